@@ -1,1 +1,1 @@
-"""Measurements: time as ratios in one run, with success and accuracy beside it."""
+"""Benchmarks: ratios of times in one run, with success and accuracy."""

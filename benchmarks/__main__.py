@@ -1,7 +1,7 @@
-"""Run the measurements: ``python -m benchmarks [name …]``; every figure is a ratio in one run.
+"""Run the benchmarks: ``python -m benchmarks [name …]``; all figures are ratios within one run.
 
-``python -m benchmarks peers`` and ``python -m benchmarks scaling`` are programs of their own, with
-options (``--help``) and without bars.
+``python -m benchmarks peers`` and ``python -m benchmarks scaling`` are separate programs with
+options (``--help``) and without limits.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ PROGRAMS = {
 
 
 def main(names: list[str]) -> int:
-    """Print one table per measurement; exit 1 if a bar is missed."""
+    """Print one table per benchmark; exit 1 if a limit is exceeded."""
     if names and names[0] in PROGRAMS:
         return run_alone(PROGRAMS[names[0]], names[1:])
     unknown = [name for name in names if name not in MEASUREMENTS]

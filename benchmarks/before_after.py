@@ -1,4 +1,4 @@
-"""``python -m benchmarks before-after TREE``: this tree's speed against that of another checkout.
+"""``python -m benchmarks before-after TREE``: compare the speed of this tree with another checkout.
 
 Two processes, one for each tree, run the same entry in turn, A B A B …; every pair gives a ratio
 of processor times, ours over theirs. An entry is slower if the lower 95 % bound of its median
@@ -26,14 +26,14 @@ from benchmarks.single_thread import environment
 __all__ = ["LIMIT", "interval_of_median", "main"]
 
 LIMIT = 1.03
-_LEAST = 0.03  # seconds of one measured run: shorter entries are repeated
+_LEAST = 0.03  # minimum duration of a measured run [s]: shorter entries are repeated
 _HERE = Path(__file__).resolve().parents[1]
 
 Run = Callable[[], object]
 
 
 def interval_of_median(ratios: Sequence[float]) -> tuple[float, float]:
-    """The 95 % interval of the median by order statistics: free of any distribution."""
+    """The 95 % interval of the median by order statistics, independent of the distribution."""
     n, ordered = len(ratios), sorted(ratios)
     tail, k = 0.0, 0
     while tail + math.comb(n, k) / 2.0**n <= 0.025:
@@ -46,7 +46,7 @@ def interval_of_median(ratios: Sequence[float]) -> tuple[float, float]:
 
 
 def _entries(groups: Sequence[str]) -> Iterator[tuple[str, Callable[[], Run]]]:
-    """Names of entries, and what prepares them, from the tree that ``PYTHONPATH`` names."""
+    """Names and setup functions of entries, from the tree in ``PYTHONPATH``."""
     sources = {
         "cycle": _cycles,
         "configurations": _configurations,
@@ -115,7 +115,7 @@ def _peers() -> Iterator[tuple[str, Callable[[], Run]]]:
 
 
 def _serve(groups: Sequence[str]) -> None:
-    """Answer on standard output: the names, then the seconds of every run asked for."""
+    """Write to standard output: the names, then the seconds of every requested run."""
     answer = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
     entries = dict(_entries(groups))
@@ -141,7 +141,7 @@ def _seconds(run: Run, times: int) -> float:
 
 
 class _Tree:
-    """A checkout and the process that measures it."""
+    """A checkout and its measuring process."""
 
     def __init__(self, root: Path, groups: Sequence[str]) -> None:
         path = os.pathsep.join([str(root / "src"), str(root)])
@@ -186,14 +186,14 @@ class _Tree:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print a line for each entry; 1 if one of them is slower than before."""
+    """Print a line for each entry; returns 1 if any is slower than before."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks before-after", description=__doc__)
     parser.add_argument("tree", type=Path, help="the other checkout")
     parser.add_argument(
         "group",
         nargs="*",
         default=["start", "cycle", "configurations", "families", "peers"],
-        help="start, cycle, configurations, families, peers; all without any",
+        help="start, cycle, configurations, families, peers; default all",
     )
     parser.add_argument("--pairs", type=int, default=15)
     options = parser.parse_args(arguments)
@@ -224,7 +224,7 @@ def _starts(ours: _Tree, theirs: _Tree, folder: Path, count: int) -> int:
 
 
 def _told(name: str, pairs: Sequence[tuple[float, float]]) -> int:
-    """Print an entry's line; whether it is slower."""
+    """Print the line of an entry; returns whether it is slower."""
     ratios = [a / b for a, b in pairs]
     low, high = interval_of_median(ratios)
     slower = low > LIMIT

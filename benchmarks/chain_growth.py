@@ -1,4 +1,4 @@
-"""How building and solving grow with the length of a chain of dyads."""
+"""Growth of the time for building and solving with the length of a chain of dyads."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["measure"]
 
 
 def measure(repeats: int = 5) -> bool:
-    """Bar: time per dyad of 1,000 dyads at most 1.5 × that of 100.
+    """Limit: time per dyad of 1,000 dyads at most 1.5 × that of 100.
 
-    The proof of a motion is shown without a bar: along a chain the intervals of all earlier dyads
-    add up, so its steps get smaller with the length.
+    The proof of a motion has no limit: the intervals of all earlier dyads accumulate along a chain,
+    so its steps become smaller with the length.
     """
     print("chain of dyads: ms per dyad (build, solve and prove, follow by 10°, the same proved)")
     per_dyad: dict[int, list[list[float]]] = {}

@@ -11,7 +11,7 @@ from benchmarks.timing import bar, seconds
 
 __all__ = ["measure"]
 
-#: Loops, pins as pairs of links, and the bar for a solve of a topology that is known already.
+#: Loops, pins as pairs of links, and the limit for repeated solves of a topology.
 TRUSSES: tuple[tuple[int, tuple[tuple[int, int], ...], float], ...] = (
     (2, ((0, 1), (0, 2), (0, 3), (1, 4), (2, 4), (3, 4)), 2.0),
     (3, ((0, 3), (0, 4), (1, 4), (1, 5), (2, 5), (3, 5), (0, 6), (1, 6), (2, 6)), 6.0),
@@ -35,7 +35,7 @@ TRUSSES: tuple[tuple[int, tuple[tuple[int, int], ...], float], ...] = (
 
 
 def measure(repeats: int = 15) -> bool:
-    """Bars for repeated solves of one topology; the first one finds the random start too."""
+    """Limits for repeated solves of a topology; the first also solves the random system."""
     print("all configurations of random trusses / 1,000 numpy.linalg.solve of 8x8")
     rng = np.random.default_rng(8)
     matrices, right = rng.normal(size=(1000, 8, 8)), rng.normal(size=(1000, 8))

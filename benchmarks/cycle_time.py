@@ -1,5 +1,5 @@
-"""One cycle of 361 rows against 1,000 small linear solves, with success and accuracy; and what
-certificates cost.
+"""One cycle of 361 rows against 1,000 small linear solves, with success and accuracy; and the cost
+of certificates.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ CYCLES = ("rapier-drive", "four-bar", "jansen-leg", "stephenson-far-crank", "and
 
 
 def measure(repeats: int = 15) -> bool:
-    """Bars: the rapier's certified cycle at most 3 × 1,000 ``numpy.linalg.solve`` of 8×8, and
+    """Limits: the rapier's certified cycle at most 3 × 1,000 ``numpy.linalg.solve`` of 8×8, and
     certified at most 3 × uncertified.
     """
     print("one cycle of 361 rows / 1,000 numpy.linalg.solve of 8x8")

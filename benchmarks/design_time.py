@@ -16,19 +16,19 @@ from linkwork.mechanism.quantities import quantities
 
 __all__ = ["measure"]
 
-#: A mechanism, the table that varies, and the bar: time per design, at once / one at a time.
+#: A mechanism, its varied table, and the limit: time per design, at once / one at a time.
 FAMILIES = (
     ("four-bar", "lengths", 1e-3),
     ("rapier-drive", "dimensions", 2e-3),
     ("jansen-leg", "lengths", 2e-3),
-    ("rapier-drive-links", "lengths", 5e-3),  # angles that Gauss-Newton has to meet
+    ("rapier-drive-links", "lengths", 5e-3),  # angles solved by Gauss-Newton
 )
 _COUNT = 100_000
 _ALONE = 20
 
 
 def measure(repeats: int = 5) -> bool:
-    """Bars: time per design of 100,000 designs against that of 20 designs alone."""
+    """Limits: time per design of 100,000 designs against that of 20 designs alone."""
     print("equations of 100,000 designs at once / one at a time, per design")
     held = True
     for name, table, limit in FAMILIES:
@@ -48,7 +48,7 @@ def measure(repeats: int = 5) -> bool:
 
 
 def _asked(mechanism: lw.Mechanism, table: str) -> Mapping[str, Array]:
-    """Every number of a table within one per cent; those of ground stay, which has coordinates."""
+    """All numbers of a table within one per cent, except those of ground, which has coordinates."""
     rng = np.random.default_rng(4)
     ground = set(getattr(mechanism.description, "links", {}).get("ground", ()))
     return {
@@ -67,7 +67,7 @@ def _one_at_a_time(designs: Designs) -> None:
 
 
 def _gap(designs: Designs) -> float:
-    """The largest difference of a coefficient from that of the design alone, of its length."""
+    """The largest relative difference of a coefficient from that of the design alone."""
     gaps = [0.0]
     for k in np.flatnonzero(designs.problem == 0):
         alone = designs.design(int(k)).compiled.table.loops.coefficient

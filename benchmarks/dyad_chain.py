@@ -1,4 +1,4 @@
-"""A chain of n dyads, each rocker driving the next: how solving grows with the mechanism."""
+"""A chain of n dyads, each rocker driving the next, to measure growth with size."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ __all__ = ["dyad_chain"]
 def dyad_chain(count: int) -> lw.Mechanism:
     """A crank that drives ``count`` four-bar loops in series along the x axis.
 
-    All loops are parallelograms but for a rod that is a little longer than the ground, so that
-    no loop has a change point near the start.
+    All loops are nearly parallelograms: the rod is slightly longer than the ground, so that no loop
+    has a change point near the start.
     """
     points: dict[str, tuple[float, float]] = {"O0": (0.0, 0.0), "A0": (0.0, 40.0)}
     links: dict[str, list[str]] = {"ground": ["O0"], "crank": ["O0", "A0"]}

@@ -22,7 +22,7 @@ __all__ = ["measure", "rapier_family"]
 
 _DESIGNS, _ROWS = 10_000, 200
 
-#: Certified, compiled: and the bar of ours / Ensemble.
+#: Certified, compiled: limit of the ratio to Ensemble.
 _GEARS = {
     (False, False): 1 / 4,
     (True, False): 1 / 1.5,
@@ -34,7 +34,7 @@ _SECOND_CORE = 1 / 1.8
 
 
 def measure(repeats: int = 9) -> bool:
-    """Bars: time per position, warm, designs built beforehand."""
+    """Limits: time per position, warm, designs built in advance."""
     print(f"families of {_DESIGNS:,} designs × {_ROWS} inputs, one thread, ratios of time")
     work = four_bar_family(_DESIGNS, _ROWS)
     four_bars, rapiers = family_of(work), rapier_family(_DESIGNS, _ROWS)
@@ -82,7 +82,7 @@ def _ratios(
     *,
     steady: bool = False,
 ) -> list[float]:
-    """One's time over the other's, each after the other."""
+    """Ratios of times, alternating."""
     pair = interleaved([one, other], repeats, clock, steady=steady)
     return [a / b for a, b in zip(*pair, strict=True)]
 
@@ -93,7 +93,7 @@ def _ensemble(work: Work) -> list[Callable[[], object]]:
 
 
 def _two_cores(family: Family, repeats: int) -> bool:
-    """Wall time of two threads against one, in work that goes on with as many."""
+    """Wall time of two threads against one, in continuous work."""
     held = True
     for certify, compiled in product((False, True), repeat=2):
         one, two = (_sweep(family, certify, compiled, threads) for threads in (1, 2))

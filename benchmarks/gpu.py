@@ -1,8 +1,8 @@
-"""``scripts/gpu``: families on a graphics card are those of the processor; positions per second.
+"""``scripts/gpu``: compare families on a graphics card with the processor; positions per second.
 
-Every family is swept by both, with proofs and without: statuses have to be equal, unknowns no
-further apart than their proofs allow, or than rounding. Then the card marches through the same
-chunk of designs again and again, and nothing is brought back: that is the speed of the kernels.
+Every family is swept by both, with and without proofs: statuses must be equal, unknowns must agree
+within their proofs, or to rounding. Then the card solves the same chunk of designs repeatedly
+without transfer of results, to measure the kernels alone.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from linkwork.mechanism.quantities import quantities
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
 
-#: Mechanisms, the table of their numbers that varies, and by how much.
+#: Mechanisms, their varied tables, and relative variations.
 FAMILIES = (
     ("four-bar", "lengths", 0.02),
     ("jansen-leg", "lengths", 0.01),
     ("rapier-drive", "dimensions", 0.005),
     ("rapier-drive-limited", "dimensions", 0.005),  # with dead points
 )
-_ROUNDING = 1e-11  # weighted, of positions that nothing proves
+_ROUNDING = 1e-11  # weighted, of unproved positions
 _HOLDS = 1.0 + 1e-6  # the sum of two radii is rounded
 
 
 def family_of(name: str, table: str, share: float, count: int) -> Family:
-    """Designs of a mechanism of the library; points stay, which lengths are measured against."""
+    """Designs of a library mechanism; points do not vary, since lengths refer to them."""
     mechanism = lw.example(name)
     ground = set(getattr(mechanism.description, "links", {}).get("ground", ()))
     own = {
@@ -61,13 +61,13 @@ class Compared:
     Parameters
     ----------
     positions : int
-        That were found.
+        Positions found.
     differing : int
-        Rows with another status or certification.
+        Rows with different status or certification.
     apart : float
         The largest distance of unknowns, weighted.
     excess : float
-        The largest distance as a share of what is allowed; at most 1 if all agree.
+        The largest distance relative to the allowed one; at most 1 if all agree.
     """
 
     positions: int
@@ -77,12 +77,12 @@ class Compared:
 
     @property
     def agrees(self) -> bool:
-        """Whether the card says what the processor says."""
+        """Whether card and processor agree."""
         return self.differing == 0 and self.excess <= _HOLDS
 
 
 def compared(ours: FamilyMotion, reference: FamilyMotion) -> Compared:
-    """The card's motion against that of the processor."""
+    """Compare the card's motion with that of the processor."""
     differing = (ours.status != reference.status) | (ours.certification != reference.certification)
     both = ours.found & reference.found
     table = ours.designs.base.compiled.table
@@ -102,8 +102,8 @@ def compared(ours: FamilyMotion, reference: FamilyMotion) -> Compared:
 
 
 def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, float]:
-    """Positions that the card marches through without bringing them back, at least so many, and
-    the seconds that takes.
+    """Number of positions solved by the card without transfer (at least ``positions``), and the
+    seconds.
     """
     model = family.designs.base
     path = Path.of(model)
@@ -128,13 +128,13 @@ def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, fl
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print two lines for each family; 1 if one of them differs, 2 without a graphics card."""
+    """Print two lines for each family; returns 1 if any differs, 2 without a graphics card."""
     parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__)
     names = [name for name, _, _ in FAMILIES]
-    parser.add_argument("family", nargs="*", choices=[[], *names], help="which; all without any")
-    parser.add_argument("--designs", type=int, default=65_536, help="of each family")
+    parser.add_argument("family", nargs="*", choices=[[], *names], help="families; default all")
+    parser.add_argument("--designs", type=int, default=65_536, help="designs of each family")
     parser.add_argument(
-        "--positions", type=float, default=1e9, help="marched through for the kernels' speed"
+        "--positions", type=float, default=1e9, help="positions for the kernels' speed"
     )
     options = parser.parse_args(arguments)
     try:

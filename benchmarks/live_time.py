@@ -1,5 +1,5 @@
-"""The live page of Jansen's leg: how long the first picture takes, and how many cycles a second are
-solved and shown while a dimension is dragged.
+"""The live page of Jansen's leg: time to the first picture, and cycles per second solved and
+displayed while a dimension is dragged.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Any
 __all__ = ["measure"]
 
 _PICTURE_BAR = 1.0  # s from the command to the first picture, in a browser that runs
-_RATE_BAR = 30.0  # solved cycles a second while a dimension is dragged
+_RATE_BAR = 30.0  # cycles per second while a dimension is dragged
 _DRAG = 4.0  # s
 _SHOWN = """() => new Promise(done => {
   const look = () =>
@@ -47,13 +47,13 @@ _DRAGGED = """async ([name, seconds]) => {
 
 
 def measure(repeats: int = 7) -> bool:
-    """Bars: 1 s to the first picture; 30 solved cycles a second."""
+    """Limits: 1 s to the first picture; 30 solved cycles a second."""
     print("the live page of Jansen's leg")
     rates = [_over_socket() for _ in range(3)]
-    print(f"  cycles a second while a length is dragged, told over the socket: {median(rates):.0f}")
+    print(f"  cycles per second during a drag of a length, over the socket: {median(rates):.0f}")
     program = shutil.which("chromium")
     if program is None:
-        print("  in a browser: not measured, there is no chromium on the PATH")
+        print("  in a browser: not measured, chromium is not on the PATH")
         return True
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
 
@@ -76,7 +76,7 @@ def measure(repeats: int = 7) -> bool:
         f"in a browser that runs: {median(shown):.2f} s ({min(shown):.2f} to {max(shown):.2f})"
     )
     print(
-        f"  cycles a second shown while a length is dragged: median {median(dragged):.0f} "
+        f"  cycles per second displayed while a length is dragged: median {median(dragged):.0f} "
         f"({min(dragged):.0f} to {max(dragged):.0f})"
     )
     return median(shown) <= _PICTURE_BAR and median(dragged) >= _RATE_BAR
@@ -84,7 +84,7 @@ def measure(repeats: int = 7) -> bool:
 
 @contextmanager
 def _served() -> Iterator[str]:
-    """The command as a process of its own; the address that it prints."""
+    """Start the command as a separate process; returns its printed address."""
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "jansen-leg.toml"
         target.write_bytes((files("linkwork") / "library" / "jansen-leg.toml").read_bytes())
@@ -99,7 +99,7 @@ def _served() -> Iterator[str]:
 
 
 def _over_socket() -> float:
-    """Cycles a second that are solved and told, two requests under way."""
+    """Cycles per second solved and sent, with two pending requests."""
     from websockets.sync.client import connect  # noqa: PLC0415 - an extra of the live page
 
     with _served() as address:

@@ -1,4 +1,4 @@
-"""The machine that figures were measured on, in neutral words."""
+"""A short description of the measuring machine."""
 
 from __future__ import annotations
 

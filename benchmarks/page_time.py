@@ -1,5 +1,5 @@
 """The offline page in a browser: script time per frame while Jansen's crank is dragged; its size;
-and how long a moving scene takes to be drawn again with another dimension.
+and the time to redraw a moving scene with another dimension.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _ONE_BAR, _ALL_BAR = 400_000, 1_000_000  # bytes
 
 
 def measure(repeats: int = 9) -> bool:
-    """Bars: 8 ms of script per frame; 400 kB with one circuit, 1 MB with all six."""
+    """Limits: 8 ms of script per frame; 400 kB with one circuit, 1 MB with all six."""
     print("the offline page of Jansen's leg, 361 rows")
     mechanism = lw.example("jansen-leg")
     motion = mechanism.cycle()
@@ -43,11 +43,11 @@ def measure(repeats: int = 9) -> bool:
         began = time.perf_counter()
         moving_scene(changed, like=before)
         took.append(1000 * (time.perf_counter() - began))
-    print(f"  drawn again with another length: median {median(took):.1f} ms")
+    print(f"  redrawn with another length: median {median(took):.1f} ms")
     held = one <= _ONE_BAR and every <= _ALL_BAR
     program = shutil.which("chromium")
     if program is None:
-        print("  script per frame: not measured, there is no chromium on the PATH")
+        print("  script per frame: not measured, chromium is not on the PATH")
         return held
     script, whole = _dragged(program, text)
     print(

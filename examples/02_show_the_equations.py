@@ -1,4 +1,4 @@
-"""The loop equations that are written for points and links, with the Jacobian.
+"""The loop equations derived from points and links, with the Jacobian.
 
 expect: 2
 """

@@ -1,4 +1,4 @@
-"""The foot of the Jansen leg over the whole cycle: how far it steps.
+"""The foot of the Jansen leg over the whole cycle: its step length.
 
 expect: 67.908
 """

@@ -1,4 +1,4 @@
-"""A crank that cannot turn fully: the rows that are out of reach are kept and say so.
+"""A crank that cannot turn fully: rows out of reach are kept with their status.
 
 expect: 52
 """

@@ -1,4 +1,4 @@
-"""The iterates of Newton-Raphson from the textbook's guess: |F| falls quadratically.
+"""The iterates of Newton-Raphson from the textbook's guess: |F| decreases quadratically.
 
 expect: 1.41e-07
 """

@@ -1,7 +1,7 @@
 """The TypeScript types of the front end's data and of the live page's messages, from Python.
 
 python scripts/frontend_types.py          writes frontend/src/page_data.ts and messages.ts
-python scripts/frontend_types.py --check  says whether they are current
+python scripts/frontend_types.py --check  checks that they are current
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ PLAIN = {str: "string", int: "number", float: "number", bool: "boolean", type(No
 
 
 def typescript(kind: object) -> str:
-    """The TypeScript type of JSON that holds a Python type."""
+    """The TypeScript type of a Python type as JSON."""
     if isinstance(kind, type) and kind in PLAIN:
         return PLAIN[kind]
     if is_dataclass(kind) and isinstance(kind, type):
@@ -35,7 +35,7 @@ def typescript(kind: object) -> str:
         return f"Readonly<Record<string, {typescript(inside[1])}>>"
     if origin is typing.Literal:
         return " | ".join(f'"{value}"' for value in inside)
-    raise TypeError(f"{kind!r} has no counterpart in the front end: use plain data")
+    raise TypeError(f"{kind!r} has no TypeScript type: use plain data")
 
 
 def interface(kind: type) -> str:

@@ -1,7 +1,7 @@
 """Writes docs/gallery.md, one small picture for each mechanism of the library, and the figures of
 docs/pictures.md.
 
-A mechanism's law is the first line of the test that states it.
+A mechanism's law is the first docstring line of its test.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from urllib.parse import quote
 from PIL import Image  # comes with Matplotlib
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))  # for the register of laws, which is a part of the tests
+sys.path.insert(0, str(ROOT))  # for the register of laws in the tests
 
 import linkwork as lw  # noqa: E402 - after the path is set
 from linkwork import drawing  # noqa: E402
@@ -39,14 +39,13 @@ _SHOWN: dict[str, tuple[str, str, dict[str, Any]]] = {
 }
 _HEAD = """# Gallery
 
-Every mechanism of the library with its law, which a test checks (`tests/library`); written by
-`scripts/gallery`. `linkwork examples NAME` prints the file with its source, `linkwork sweep` moves
-it.
+All mechanisms of the library, each with a law that a test in `tests/library` checks. `linkwork
+examples NAME` prints a file with its source. `scripts/gallery` writes this page.
 """
 
 
 def main() -> None:
-    """Write the page, and draw what can be drawn."""
+    """Write the page and the pictures."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     for old in PICTURES.glob("*.png"):
         old.unlink()
@@ -65,7 +64,7 @@ def main() -> None:
 
 
 def _figures() -> int:
-    """Write the figures that show what a picture can show; how many there are."""
+    """Write the figures of picture options; returns their number."""
     FIGURES.mkdir(parents=True, exist_ok=True)
     for figure, (name, theme, shown) in _SHOWN.items():
         wanted = dict(shown)

@@ -1,4 +1,4 @@
-"""Writes the golden drawings anew, in the form in which tests compare them."""
+"""Rewrites the golden drawings in the form compared by the tests."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))  # for the form, which is a part of the tests
+sys.path.insert(0, str(ROOT))  # for the form defined in the tests
 
 from tests.drawing.golden_form import FOLDER, GOLDEN, drawn  # noqa: E402 - after the path is set
 

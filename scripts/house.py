@@ -1,7 +1,7 @@
-"""Counts what makes the source easy or hard to carry on: scripts/house [-v]
+"""Measures the maintainability of the source: scripts/house [-v]
 
-Goals, and what no rule can tell (which classes are parts, which loops step along a path), are in
-``house.toml``. Ends with 1 where a firm goal is missed.
+Goals, and facts that no rule can detect (such as which loops step along a path), are in
+``house.toml``. Exit status 1 if a firm goal is missed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ SOURCE = HERE.parent / "src" / "linkwork"
 
 
 def measure(package: Path, known: Mapping[str, Any]) -> dict[str, Count]:
-    """Every figure by its name."""
+    """All figures by name."""
     sources = read(package)
     most = known["most"]
     per_module = Counter({str(s.path.parent): 0 for s in sources})
@@ -73,7 +73,7 @@ def report(
     verbose: bool,
     say: Callable[[str], object],
 ) -> int:
-    """Print the table; the exit status."""
+    """Print the table; returns the exit status."""
     failed = 0
     for name, count in counts.items():
         goal = goals.get(name, {})
@@ -92,10 +92,10 @@ def report(
 
 def main(words: list[str] | None = None) -> int:
     """Count and print."""
-    parser = argparse.ArgumentParser(description="Counts what makes the source hard to carry on.")
-    parser.add_argument("-v", "--verbose", action="store_true", help="say where")
-    parser.add_argument("--package", type=Path, default=SOURCE, help="of another tree")
-    parser.add_argument("--known", type=Path, default=HERE / "house.toml", help="goals, loops")
+    parser = argparse.ArgumentParser(description="Measures the maintainability of the source.")
+    parser.add_argument("-v", "--verbose", action="store_true", help="list the places")
+    parser.add_argument("--package", type=Path, default=SOURCE, help="source of another tree")
+    parser.add_argument("--known", type=Path, default=HERE / "house.toml", help="goals and loops")
     asked = parser.parse_args(words)
     known = tomllib.loads(asked.known.read_text(encoding="utf-8"))
     counts = measure(asked.package, known)

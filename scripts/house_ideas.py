@@ -1,4 +1,4 @@
-"""Ideas that should have one place: parts, quantities, rows, arithmetic, roundoff, steps."""
+"""Counts of parallel implementations: parts, quantities, rows, arithmetic, roundoff, steps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scripts.house_source import Count, Function, Source
 def files_of_a_part(
     sources: list[Source], parts: Mapping[str, str], indices: Iterable[str]
 ) -> Count:
-    """Files that name one kind of part, by its class or by its table; the median of the kinds."""
+    """Files that name one kind of part by class or table; the median over kinds."""
     index = {Path(path) for path in indices}
     named: dict[str, list[str]] = {part: [] for part in parts}
     for source in sources:
@@ -27,7 +27,7 @@ def files_of_a_part(
 
 
 def _own_names(source: Source) -> tuple[set[str], set[str]]:
-    """Classes that are defined, or imported from mechanisms; attributes and texts."""
+    """Classes defined here or imported from mechanisms; attributes and texts."""
     classes, words = set(), set()
     for node in source.nodes:
         match node:
@@ -41,7 +41,7 @@ def _own_names(source: Source) -> tuple[set[str], set[str]]:
 
 
 def files_of_a_quantity(sources: list[Source], quantities: Iterable[str]) -> Count:
-    """Files that write the name of a quantity as a text; the most of a few quantities."""
+    """Files that contain the name of a quantity as text; the maximum over some quantities."""
     texts = [
         (s, {node.value for node in s.nodes if isinstance(node, ast.Constant)}) for s in sources
     ]
@@ -51,7 +51,7 @@ def files_of_a_quantity(sources: list[Source], quantities: Iterable[str]) -> Cou
 
 
 def lists_of_parts(sources: list[Source], parts: Mapping[str, str]) -> Count:
-    """Tuples, lists, sets and tables that have three kinds of parts or more side by side."""
+    """Tuples, lists, sets and dictionaries with three or more kinds of parts."""
     found = []
     words: set[object] = {*parts, *parts.values()}
     for source in sources:
@@ -78,7 +78,7 @@ def _is_all(node: ast.Assign) -> bool:
 def containers(
     sources: list[Source], fields: Iterable[str], least: int, single: Iterable[str]
 ) -> Count:
-    """Classes with several fields that solved rows have."""
+    """Classes with several fields of solved rows."""
     typical, found = set(fields), []
     for source in sources:
         for node in source.nodes:
@@ -108,7 +108,7 @@ def arithmetic(sources: list[Source]) -> Count:
 
 
 def roundoffs(sources: list[Source], home: str) -> Count:
-    """Unit roundoffs that are worked out elsewhere than in the module that names them."""
+    """Unit roundoffs computed outside the module that defines them."""
     found = []
     for source in sources:
         if source.path != Path(home):
@@ -134,7 +134,7 @@ def _is_roundoff(node: ast.expr) -> bool:
 
 
 def tolerances(sources: list[Source], names: Iterable[str]) -> Count:
-    """Modules that have a tolerance of their own under a name that others have too."""
+    """Modules with a tolerance whose name is used by other modules too."""
     wanted, found = set(names), []
     for source in sources:
         for node in source.tree.body:
@@ -174,7 +174,7 @@ def _counts(loop: ast.For) -> bool:
 def loop_counts(
     sources: list[Source], packages: Iterable[str], declared: Mapping[str, str]
 ) -> dict[str, Count]:
-    """Loops that step along a path, and loops of which nobody has said whether they do."""
+    """Loops that step along a path, and undeclared loops."""
     roots = set(packages)
     there = {name for s in sources if s.path.parts[0] in roots for name in loops(s)}
     steps = [f"{n}: {why}" for n, why in declared.items() if n in there and why.startswith("steps")]

@@ -1,4 +1,4 @@
-"""Modules of a package as texts and syntax trees; their lines and the circles of their imports."""
+"""Modules of a package as texts and syntax trees; line counts and circular imports."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pathlib import Path
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 Documented = ast.Module | ast.ClassDef | Function
-#: Tokens that are no code.
+#: Tokens that are not code.
 _LAYOUT = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
     tokenize.ENDMARKER,
 }  # fmt: skip
-_REASON = "# long: "  # a comment that says why a file or a function is long
+_REASON = "# long: "  # marks the reason why a file or function is long
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Source:
 
     @property
     def module(self) -> tuple[str, ...]:
-        """Its name below the package, in parts; a package has that of its ``__init__``."""
+        """Its name below the package, in parts; for ``__init__`` that of the package."""
         parts = self.path.with_suffix("").parts
         return parts[:-1] if parts[-1] == "__init__" else parts
 
@@ -70,7 +70,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Count:
-    """A figure, and what was counted."""
+    """A figure, and the counted places."""
 
     value: float
     where: tuple[str, ...] = ()
@@ -137,7 +137,7 @@ def long_functions(sources: list[Source], most: int) -> Count:
 
 
 def imported(source: Source, package: str, modules: set[tuple[str, ...]]) -> set[tuple[str, ...]]:
-    """Modules of the package that are imported anywhere, for types only too."""
+    """Modules of the package that are imported, including imports for types."""
     found = set()
     for node in source.nodes:
         if isinstance(node, ast.Import):

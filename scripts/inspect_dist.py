@@ -1,7 +1,7 @@
-"""Checks what scripts/build built: python scripts/inspect_dist.py dist
+"""Checks the output of scripts/build: python scripts/inspect_dist.py dist
 
-The wheel holds every file of src/linkwork, its data among them; the sdist holds
-what is needed to test and build again.
+The wheel contains all files of src/linkwork, including data; the sdist contains
+everything needed for tests and builds.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SDIST_PARTS = ("LICENSE", "README.md", "docs", "examples", "pyproject.toml", "sr
 
 
 def wheel_problems(wheel: Path) -> list[str]:
-    """What the wheel lacks, one sentence each."""
+    """Problems of the wheel, one sentence each."""
     with zipfile.ZipFile(wheel) as archive:
         inside = {Path(name) for name in archive.namelist()}
     package = TREE / "src" / "linkwork"
@@ -45,7 +45,7 @@ def wheel_problems(wheel: Path) -> list[str]:
 
 
 def sdist_problems(sdist: Path) -> list[str]:
-    """What the sdist lacks, one sentence each."""
+    """Problems of the sdist, one sentence each."""
     with tarfile.open(sdist) as archive:
         parts = {Path(name).parts[1] for name in archive.getnames() if "/" in name}
     return [f"{sdist.name} lacks {part}" for part in SDIST_PARTS if part not in parts]

@@ -1,7 +1,7 @@
-"""Draws the pictures of docs/plots.md by the commands that stand on the page.
+"""Draws the pictures of docs/plots.md with the commands on the page.
 
-Every command ``linkwork plot NAME.toml -o FILE.png …`` is run as it stands, NAME being a mechanism
-of the library, and its picture is put beside the page.
+Every command ``linkwork plot NAME.toml -o FILE.png …`` is run for the mechanism NAME of the
+library, and its picture is stored next to the page.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Linkwork beside other software: the same work, in one run, with success and accuracy."""
+"""Comparison of Linkwork with other software on the same tasks, with success and accuracy."""

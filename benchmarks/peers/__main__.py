@@ -1,4 +1,4 @@
-"""``python -m benchmarks peers``: Linkwork and its peers on the same work, in one run."""
+"""``python -m benchmarks peers``: compare Linkwork with other software on the same tasks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FOLDER = Path(__file__).parents[2] / "docs" / "benchmarks"
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print a table per work, write the figures and a picture of them."""
+    """Print a table per task; write the figures and a picture."""
     options = _options(arguments)
     peers = chosen(options.peer)
     asked = [work for work in works() if options.work in work.name]
@@ -52,7 +52,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     if options.repeats < 5:
         parser.error("a median needs at least 5 repeats")
     if options.to is None and not options.peer and not options.work:
-        options.to = FOLDER  # a whole run renews the documented figures
+        options.to = FOLDER  # a complete run updates the documented figures
     return options
 
 
@@ -61,7 +61,7 @@ def _names() -> str:
 
 
 def _tell(name: str) -> None:
-    """Shows on a terminal what is being prepared."""
+    """Show the current preparation on a terminal."""
     if sys.stderr.isatty():
         print(f"\r{name:<40}\r", end="", file=sys.stderr, flush=True)
 

@@ -1,4 +1,4 @@
-"""One work given to all peers: set up, judged, then timed in turn."""
+"""One task for all peers: set up, checked, then timed in turn."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ LEAST_TIME = 0.005
 
 @dataclass(frozen=True, kw_only=True)
 class Entry:
-    """What one peer did on one work.
+    """The result of one peer on one task.
 
     Parameters
     ----------
     absent : str
-        Why there is nothing to report: not installed, cannot, failed; "" if it was measured.
+        Reason for a missing result: not installed, not possible, failed; "" if measured.
     members, positions : int
-        How many mechanisms it was given, and how many positions a run has.
+        Numbers of mechanisms, and of positions per run.
     nanoseconds : tuple of float
         Per position, one for each of the interleaved repeats.
     verdict : Verdict, optional
-        How right its answer was.
+        Correctness of the results.
     """
 
     work: str
@@ -70,13 +70,13 @@ def compare(
     """Entries in the order of the peers.
 
     Every peer is prepared and run once before anything is timed, so compiled code is warm; then
-    all are timed in turn, A B C … A B C …, so that a disturbance meets all of them. Time is that of
-    the processor, over all threads of the process: other programs do not count, hidden threads do.
+    all are timed in turn, A B C … A B C …, so that a disturbance affects all of them. Times are
+    processor times of all threads of the process, without other programs.
 
     Parameters
     ----------
     told : callable
-        Is given the name of each peer before it is prepared.
+        Called with the name of each peer before its preparation.
     """
     reference = reference_of(work)
     states: list[_Ready | Entry] = []
@@ -103,7 +103,7 @@ def _entry(ready: _Ready, times: Sequence[float]) -> Entry:
 
 
 def _set_up(peer: Peer, work: Work, reference: Reference) -> _Ready | Entry:
-    """The peer ready to be timed, or why it is not."""
+    """The prepared peer, or the reason for its absence."""
     absent = peer.missing()
     if absent:
         return Entry(work=work.name, peer=peer.name, absent=absent)
@@ -117,7 +117,7 @@ def _set_up(peer: Peer, work: Work, reference: Reference) -> _Ready | Entry:
             warnings.simplefilter("ignore")
             prepared = peer.prepare(part)
             verdict = judged(prepared.read(prepared.run()), reference.sample(members))
-    except Exception as error:  # a peer may fail in any way: the others are compared all the same
+    except Exception as error:  # any error of a peer must not stop the others
         reason = f"failed: {type(error).__name__}: {error}"
         return Entry(work=work.name, peer=peer.name, version=peer.version(), absent=reason)
     entry = Entry(

@@ -1,4 +1,4 @@
-"""What the runner asks of every peer."""
+"""The interface of all peers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["DyadPeer", "Peer", "Prepared"]
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:
-    """Work set up and compiled: what is timed, and how its answer is read.
+    """A prepared task: the timed function, and the conversion of its result.
 
     Parameters
     ----------
@@ -40,11 +40,11 @@ class Peer(ABC):
     name : str
         In tables.
     distribution : str
-        What ``pip install`` calls it.
+        Its name for ``pip install``.
     module : str
-        What is imported.
+        The imported module.
     most_members : int, optional
-        How many members of a family it is given at most, so that a run stays short.
+        Maximum number of members of a family, to limit the run time.
     """
 
     name: str
@@ -53,25 +53,25 @@ class Peer(ABC):
     most_members: int | None = None
 
     def missing(self) -> str:
-        """Why it cannot be used here, "" if it can."""
+        """Reason why it cannot be used here; "" if it can."""
         if find_spec(self.module) is None:
             return f"not installed (pip install {self.distribution})"
         return ""
 
     def version(self) -> str:
-        """The installed version, "" if it tells none."""
+        """The installed version; "" if unknown."""
         try:
             return version(self.distribution)
         except PackageNotFoundError:
             return ""
 
     def cannot(self, work: Work) -> str:
-        """Why it cannot do this work, "" if it can."""
+        """Reason why it cannot do this task; "" if it can."""
         return ""
 
     @abstractmethod
     def prepare(self, work: Work) -> Prepared:
-        """Set the work up, outside the time that is measured."""
+        """Set up the task; not timed."""
 
 
 class DyadPeer(Peer):

@@ -1,4 +1,4 @@
-"""The right answers, made here and by none of the solvers that are compared."""
+"""Reference solutions, computed independently of the compared solvers."""
 
 from __future__ import annotations
 

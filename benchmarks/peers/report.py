@@ -1,4 +1,4 @@
-"""What is printed and kept of a comparison: a table of 80 columns, figures as JSON."""
+"""Reports of a comparison: a table of 80 columns, figures as JSON."""
 
 from __future__ import annotations
 

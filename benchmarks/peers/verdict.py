@@ -1,4 +1,4 @@
-"""Whether an answer is right: rows found, rows on another branch, the largest error."""
+"""Correctness of results: rows found, rows on another branch, largest error."""
 
 from __future__ import annotations
 

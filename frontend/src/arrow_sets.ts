@@ -1,4 +1,4 @@
-// All kinds of arrows over the drawing, their switches, and the legend that tells their scales.
+// All kinds of arrows over the drawing, their switches, and the legend of scales.
 
 import { Arrows, Names, type ArrowKind } from "./arrows";
 import { toggle } from "./controls";
@@ -32,7 +32,7 @@ export class ArrowSets {
     this.legend = html("p", { class: "lw-legend", hidden: "" }, canvas);
   }
 
-  /** A switch for every kind that there is something of; forces are on. */
+  /** A switch for every kind with arrows; forces are on. */
   switches(box: Element): void {
     for (const arrows of this.kinds) {
       if (!arrows.any) continue;
@@ -59,7 +59,7 @@ export class ArrowSets {
     for (const arrows of this.kinds) arrows.draw(row);
   }
 
-  /** What arrows reach is in view, if that has changed. */
+  /** Enlarge the view to the extent of arrows, if it has changed. */
   private makeRoom(): boolean {
     const reach = this.kinds.flatMap((arrows) => (arrows.shown ? arrows.reach : []));
     const wanted = JSON.stringify(reach);

@@ -18,7 +18,7 @@ interface Arrow {
   readonly name: SVGTextElement | null;
 }
 
-/** Where arrows begin and end in a row: x, y, x, y each. */
+/** Tails and tips of arrows in a row: x, y, x, y each. */
 type Ends = (row: number) => number[][];
 
 export type ArrowKind = "vectors" | "velocities" | "accelerations" | "forces";
@@ -27,13 +27,13 @@ export type ArrowKind = "vectors" | "velocities" | "accelerations" | "forces";
 export class Arrows {
   private readonly group: SVGGElement;
   private arrows: Arrow[] = [];
-  /** A motion that is made arrows for when they are to be seen. */
+  /** Set a motion; its arrows are created when they are shown. */
   private waiting: MotionView | null = null;
   private ends: Ends = () => [];
-  /** How long an arrow is for what it shows; "" where that need not be said. */
+  /** The scale of the arrows; "" if not needed. */
   legend = "";
   shown = false;
-  /** How far arrows reach over the whole motion: two corners; of vectors of loops, nothing. */
+  /** The extent of arrows over the whole motion: two corners; empty for loop vectors. */
   reach: (readonly [number, number])[] = [];
 
   constructor(
@@ -45,7 +45,7 @@ export class Arrows {
     this.group = svg("g", { class: `lw-${kind}` }, overlay);
   }
 
-  /** Whether there is anything to switch on. */
+  /** Whether there are arrows. */
   get any(): boolean {
     if (this.kind === "vectors") return this.data.motions.some((motion) => motion.vectors.length > 0);
     return this.kind !== "forces" || this.data.forces.length > 0;
@@ -123,7 +123,7 @@ export class Arrows {
       });
   }
 
-  /** Drawn length divided by the size of the quantity, a short number; sets the legend. */
+  /** Drawn length per magnitude, a round number; sets the legend. */
   private scaled(largest: number, what: string, unit: string): number {
     this.legend = "";
     if (!(largest > 0)) return 0;
@@ -166,8 +166,8 @@ export class Arrows {
     if (arrow.name) this.write(arrow.name, [x0!, y0!], [x1!, y1!], [ux, uy]);
   }
 
-  /** Where a name may stand: beside the middle of a vector of a loop; beyond the tip of what is at a
-   * point, or beside it. */
+  /** Possible positions of a name: beside the middle of a loop vector; beyond or beside the tip of
+   * an arrow at a point. */
   private write(name: SVGTextElement, tail: readonly [number, number], tip: readonly [number, number], along: readonly [number, number]): void {
     const [ux, uy] = along;
     const size = 0.85 * this.data.text;
@@ -187,7 +187,7 @@ export class Arrows {
   }
 }
 
-/** Two corners of the box around the tips of arrows; nothing around no arrows. */
+/** Two corners of the box around the tips of arrows; empty without arrows. */
 function corners(ends: readonly (readonly number[])[]): (readonly [number, number])[] {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   for (const [, , x, y] of ends) {
@@ -208,7 +208,7 @@ export interface Spot {
   readonly height: number;
 }
 
-/** The names of all arrows in a row: none stands on another one, or out of sight. */
+/** Places the names of all arrows in a row without overlap, inside the view. */
 export class Names {
   private taken: Spot[] = [];
 
@@ -218,7 +218,7 @@ export class Names {
     this.taken = [];
   }
 
-  /** The first place that is free, which it then is no more. */
+  /** Take the first free position. */
   freest(places: readonly Spot[]): Spot | undefined {
     const [left, bottom, right, top] = this.view as [number, number, number, number];
     const found = places.find(
@@ -231,7 +231,7 @@ export class Names {
   }
 }
 
-/** The name of a vector without a direction that is a link's name: OA, not OA∠θ_crank. */
+/** The name of a vector without a direction named after a link: OA, not OA∠θ_crank. */
 function short(name: string): string {
   return name.includes("_") ? name.replace(/∠.*/, "") : name;
 }

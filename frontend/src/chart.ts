@@ -1,4 +1,4 @@
-// A quantity over the input, with a mark at the row that is shown. A circuit that turns back at
+// A quantity over the input, with a mark at the displayed row. A circuit that reverses at
 // dead points is one closed curve.
 
 import type { MotionView, Series } from "./motion";
@@ -57,7 +57,7 @@ export class Chart {
     this.listen();
   }
 
-  /** The curve of another motion; `steady` lets the scales grow only, while something is dragged. */
+  /** Show the curve of another motion; `steady` only enlarges the scales, during a drag. */
   show(view: MotionView, steady = false): void {
     this.view = view;
     const names = view.series.slice(1);
@@ -135,7 +135,7 @@ export class Chart {
       const far = Math.abs(value - before);
       const onward = far <= wide && !(far > 1.5 * usual && this.isGap(last, row));
       if (far > wide) {
-        // The curve goes on at the other side, a turn further: end it at the edge.
+        // The curve continues at the other side, one turn further: end it at the edge.
         const turned = before + Math.sign(before - value) * this.step(order, input);
         const end = this.rowAt(turned, this.series.values[last]!);
         if (end !== null) to("L", turned, end);
@@ -147,7 +147,7 @@ export class Chart {
     return pieces.join("");
   }
 
-  /** The row of the table at an input value whose value is next to another; null without one. */
+  /** The table row at an input value with the value nearest to another; null without one. */
   private rowAt(value: number, beside: number): number | null {
     let best: number | null = null;
     let least = 0.2 * (this.y.high - this.y.low);
@@ -159,7 +159,7 @@ export class Chart {
     return best;
   }
 
-  /** Whether rows without a position lie between two rows of the table. */
+  /** Whether there are rows without a position between two table rows. */
   private isGap(one: number, other: number): boolean {
     return !this.view.found.slice(Math.min(one, other), Math.max(one, other)).every(Boolean);
   }
@@ -169,7 +169,7 @@ export class Chart {
     return steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0;
   }
 
-  /** The distance of the first input values. */
+  /** The step of the first input values. */
   private step(order: readonly number[], input: Series): number {
     return Math.abs(input.values[order[1] ?? 0]! - input.values[order[0]!]!);
   }
@@ -207,7 +207,7 @@ export class Chart {
     }
   }
 
-  /** The index of the row whose place on the curve is nearest; across counts more than up. */
+  /** The index of the nearest row on the curve; horizontal distance counts more. */
   private nearest(x: number, y: number): number {
     const { input, order } = this.view;
     let [best, least] = [0, Infinity];

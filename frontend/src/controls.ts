@@ -1,4 +1,4 @@
-// Play, scrub, speed; which motion; what is shown.
+// Controls: play, scrub, speed, selection of the motion, display options.
 
 import type { MotionView } from "./motion";
 import { measured } from "./numbers";

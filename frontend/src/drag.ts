@@ -1,10 +1,10 @@
-// Which row a dragged place belongs to: the nearest one on its way, found from where it is, so that
-// dragging never jumps to another branch and goes on through dead points.
+// The row of a dragged point: the nearest one on its path, searched from the current row, so that
+// dragging never jumps to another branch and continues through dead points.
 
 export interface Step {
-  /** Index on the way. */
+  /** Index on the path. */
   readonly at: number;
-  /** The direction of the last move along the way: 1, -1, or 0 before the first. */
+  /** The direction of the last move along the path: 1, -1, or 0 before the first. */
   readonly sense: number;
 }
 
@@ -14,10 +14,10 @@ interface Nearest {
 }
 
 /**
- * The step from `from` to the place on the way (x, y in turn) that is nearest to (x, y).
+ * The step from `from` to the point of the path (x, y alternating) nearest to (x, y).
  *
- * Both directions are searched downhill; where both come as near, as beside a dead point, the
- * motion goes on in the direction that it had.
+ * Both directions are searched for decreasing distance; if both are equally near, as at a dead
+ * point, the motion keeps its direction.
  */
 export function stepTowards(
   way: Float64Array,
@@ -51,9 +51,9 @@ interface Search {
 }
 
 /**
- * The nearest place in one direction, not further than where the distance has grown for long. Once
- * it has grown, a later place must be nearer by more than rows are apart: on the way back from a dead
- * point every place is met again.
+ * The nearest point in one direction, until the distance has increased for long. After an increase,
+ * a later point must be nearer by more than the row spacing, since the way back from a dead point
+ * passes every point again.
  */
 function nearest(search: Search, sense: number): Nearest {
   const { count, closed, from, distance } = search;
@@ -71,7 +71,7 @@ function nearest(search: Search, sense: number): Nearest {
   return best;
 }
 
-/** How far rows are apart where a place was found. */
+/** The spacing of rows at the point found. */
 function spacing({ way, count, from }: Search, { steps }: Nearest): number {
   const at = wrapped(from + steps, count);
   const apart = (other: number): number =>

@@ -1,41 +1,41 @@
-// The mechanism in SVG. What one frame carries is one group; a new row only moves groups.
+// The mechanism in SVG, with one group per frame; a new row only moves the groups.
 
 import type { Course, MotionView } from "./motion";
 import type { PageData, Part } from "./page_data";
 import { pathOf, put, strokesOf, svg } from "./svg";
 import { toneClass } from "./theme";
 
-/** The frame of a shape that changes its form. */
+/** The frame of a deforming shape. */
 const OWN_COURSE = -2;
 
-/** Of the view, on each side, for what is shown beside the mechanism. */
+/** Margin of the view on each side, for parts outside the mechanism. */
 const MOST_GROWTH = 1;
 
-/** Of names on the screen [px]. */
+/** Size of names on the screen [px]. */
 const SMALLEST = 12.5;
 
 type Moved = (row: number) => void;
 
-/** Gives elements that are there the measures of a part like the one they were made for. */
+/** Updates existing elements with the data of a similar part. */
 type Renewed = (part: Part) => void;
 
 const LABELS = new Set(["label", "link_name", "limit_name"]);
 
 export class Drawing {
   readonly element: SVGSVGElement;
-  /** Above everything: arrows that a row computes. */
+  /** The top layer: arrows computed from a row. */
   readonly overlay: SVGGElement;
-  /** What is in view: left, bottom, right, top. */
+  /** The view: left, bottom, right, top. */
   view: readonly number[] = [];
   private readonly shapes: SVGGElement;
   private readonly handles: SVGGElement;
   private moved: Moved[] = [];
   private renewed: Renewed[] = [];
   private made = "";
-  /** Arrows of what is driven, turned round while it runs backwards. */
+  /** Arrows of inputs, reversed while the input decreases. */
   private turned: Moved[] = [];
   private backwards = false;
-  /** Places that are shown beside the view, by what they are shown for. */
+  /** Points to include in the view, by purpose. */
   private readonly more = new Map<string, readonly (readonly [number, number])[]>();
   private motion!: MotionView;
 
@@ -54,7 +54,7 @@ export class Drawing {
     this.handles = svg("g", { class: "lw-handles" }, this.element);
   }
 
-  /** Other data: sizes of symbols, what is in view. */
+  /** Set other data: sizes of symbols and view. */
   renew(data: PageData): void {
     this.data = data;
     const [left, bottom, right, top] = (this.view = around(data.view, [...this.more.values()].flat()));
@@ -64,7 +64,7 @@ export class Drawing {
     this.fit();
   }
 
-  /** Show these places too, as far as that leaves the mechanism large enough; none: no more. */
+  /** Include these points in the view, unless the mechanism becomes too small; none: reset. */
   include(what: string, places: readonly (readonly [number, number])[]): void {
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const most = MOST_GROWTH * Math.max(right - left, top - bottom);
@@ -74,7 +74,7 @@ export class Drawing {
     this.renew(this.data);
   }
 
-  /** Names grow in small drawings, so that they can be read. */
+  /** Enlarge names in small drawings for legibility. */
   fit(): void {
     const matrix = this.element.getScreenCTM();
     if (matrix === null) return;
@@ -82,7 +82,7 @@ export class Drawing {
     this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
   }
 
-  /** Draw another motion; where it has the same shapes, they are kept and only get its measures. */
+  /** Draw another motion; equal shapes are kept and updated. */
   show(view: MotionView): void {
     this.motion = view;
     const wanted = madeOf(view);
@@ -116,7 +116,7 @@ export class Drawing {
     this.addHandles();
   }
 
-  /** Move everything to a row that was found. */
+  /** Move all groups to a found row. */
   draw(row: number, backwards = false): void {
     for (const move of this.moved) move(row);
     if (backwards === this.backwards) return;
@@ -129,12 +129,12 @@ export class Drawing {
     this.element.classList.toggle(`without-${what}`, !on);
   }
 
-  /** Let what moves step back behind the vectors. */
+  /** Fade moving parts behind the vectors. */
   dim(on: boolean): void {
     this.element.classList.toggle("lw-dimmed", on);
   }
 
-  /** The place of the plane under a point of the screen. */
+  /** The coordinates in the plane of a point of the screen. */
   placeAt(event: { clientX: number; clientY: number }): [number, number] {
     const matrix = this.element.getScreenCTM();
     if (matrix === null) return [0, 0];
@@ -177,7 +177,7 @@ export class Drawing {
     if (driving) this.turned.push(turn);
   }
 
-  /** What gives a part its measures, now and whenever they change. */
+  /** Updates a part, now and at every change. */
   private measured(part: Part, renewed: Renewed): void {
     renewed(part);
     this.renewed.push(renewed);
@@ -226,7 +226,7 @@ export class Drawing {
     return { class: names.join(" "), "data-role": part.role, "data-of": part.of };
   }
 
-  /** Round places to take hold of, larger than pins, above everything. */
+  /** Round handles, larger than pins, in the top layer. */
   private addHandles(): void {
     const drawn = new Set(
       this.motion.data.parts.filter((part) => part.kind === "disc").map((part) => part.of),
@@ -242,7 +242,7 @@ export class Drawing {
   }
 }
 
-/** A view and more places. */
+/** A view enlarged to more points. */
 function around(view: readonly number[], places: readonly (readonly [number, number])[]): [number, number, number, number] {
   const [left, bottom, right, top] = view as [number, number, number, number];
   const xs = places.map(([x]) => x);
@@ -250,7 +250,7 @@ function around(view: readonly number[], places: readonly (readonly [number, num
   return [Math.min(left, ...xs), Math.min(bottom, ...ys), Math.max(right, ...xs), Math.max(top, ...ys)];
 }
 
-/** The transform that lets an arrow, straight or round, point the other way at the same place. */
+/** The transform that reverses an arrow, straight or circular, in place. */
 function turnedRound([x0, y0]: readonly [number, number], [x1, y1]: readonly [number, number]): string {
   const length = Math.hypot(x1 - x0, y1 - y0) || 1;
   const [u, v] = [(x1 - x0) / length, -(y1 - y0) / length];
@@ -258,7 +258,7 @@ function turnedRound([x0, y0]: readonly [number, number], [x1, y1]: readonly [nu
   return `matrix(${1 - 2 * u * u} ${-2 * u * v} ${-2 * u * v} ${1 - 2 * v * v} ${far * u} ${far * v})`;
 }
 
-/** What elements a motion needs: two motions of which it is the same can use the same ones. */
+/** A key of the elements of a motion: motions with equal keys can share elements. */
 function madeOf(view: MotionView): string {
   const parts = view.data.parts.map(({ kind, role, of, tone, frame, text, align, head }) =>
     [kind, role, of, tone, frame, text, align, head.length > 0].join(" "),

@@ -1,9 +1,9 @@
-// A motion as arrays over its rows: what the drawing, the plots and the table read.
+// A motion as arrays over its rows, for the drawing, the plots and the table.
 
 import type { Column, MotionData, PackedColumn, Part, PointData } from "./page_data";
 import { dense, unpacked } from "./unpack";
 
-/** A frame in one row: where its origin is, and how it is turned [rad]. */
+/** A frame in one row: its origin and its angle [rad]. */
 export interface Pose {
   readonly x: number;
   readonly y: number;
@@ -39,7 +39,7 @@ export interface Course {
 
 export class MotionView {
   readonly found: readonly boolean[];
-  /** Found rows in the order in which the mechanism passes them. */
+  /** Found rows in the order of the motion. */
   readonly order: readonly number[];
   readonly series: readonly Series[];
   readonly points: readonly Point[];
@@ -74,7 +74,7 @@ export class MotionView {
     return this.series[0]!;
   }
 
-  /** Whether the input falls where the motion passes a row of its order. */
+  /** Whether the input decreases at a row in the order of the motion. */
   falls(index: number): boolean {
     const value = (k: number): number => this.input.values[this.order[k]!]!;
     const last = this.order.length - 1;
@@ -82,17 +82,17 @@ export class MotionView {
     const from = (a: number, b: number): number => (turn ? shorter(value(b) - value(a), turn) : value(b) - value(a));
     const after = index < last ? from(index, index + 1) : NaN;
     const before = index > 0 ? from(index - 1, index) : NaN;
-    // At a dead point the way on counts; where a turn is complete, the way that led there.
+    // At a dead point the following step counts; at the end of a turn, the preceding one.
     return Number.isFinite(after) ? after < 0 : before < 0;
   }
 
-  /** Whether arrows of inputs point the other way than they are drawn, at an index that is passed
-   * forwards or on the way back. */
+  /** Whether arrows of inputs are reversed relative to the drawing, at an index passed forwards or
+   * backwards. */
   turned(index: number, back: boolean): boolean {
     return (this.falls(index) !== back) !== this.data.backwards;
   }
 
-  /** Where a frame is in a row; -1 is the ground. */
+  /** The position of a frame in a row; -1 is the ground. */
   pose(frame: number, row: number): Pose {
     const at = this.data.frames[frame];
     if (at === undefined) return { x: 0, y: 0, angle: 0 };
@@ -109,7 +109,7 @@ export class MotionView {
     return unpacked(column, this.found);
   }
 
-  /** The coordinates of a shape that changes its form. */
+  /** The coordinates of a deforming shape. */
   course(part: Part): Course {
     return {
       corners: part.course.map((column) => this.numbers(column)),
@@ -117,7 +117,7 @@ export class MotionView {
     };
   }
 
-  /** The way of a place that a frame carries, over the rows in order: x and y in turn. */
+  /** The path of a point fixed in a frame, over the rows in order: x and y alternating. */
   wayOf(frame: number, local: readonly [number, number]): Float64Array {
     const way = new Float64Array(2 * this.order.length);
     this.order.forEach((row, k) => {
@@ -130,12 +130,12 @@ export class MotionView {
   }
 }
 
-/** A difference of angles, the shorter way around. */
+/** A difference of angles, within half a turn. */
 function shorter(angle: number, turn: number): number {
   return angle - turn * Math.round(angle / turn);
 }
 
-/** Numbers that are unpacked when they are asked for. */
+/** Numbers that are unpacked on first use. */
 function lazily<T>(make: () => T): () => T {
   let made: { readonly value: T } | null = null;
   return () => (made ??= { value: make() }).value;

@@ -1,4 +1,4 @@
-// The front end: what a page, a live page and a notebook widget mount.
+// The front end mounted by offline pages, the live page and the notebook widget.
 
 import { ArrowSets } from "./arrow_sets";
 import { Chart } from "./chart";
@@ -16,38 +16,38 @@ import { themeRules } from "./theme";
 
 export type { PageData } from "./page_data";
 
-/** The page data that this front end reads. */
+/** The format of page data of this front end. */
 export const FORMAT = 1;
 
 export interface Hooks {
-  /** A row is shown. */
+  /** Called when a row is shown. */
   readonly row?: (motion: number, row: number) => void;
-  /** Do not start to move by itself. */
+  /** Do not start automatically. */
   readonly still?: boolean;
-  /** A part of a page among others: keys count only while the focus is inside. */
+  /** Embedded in a page: keys work only while the focus is inside. */
   readonly embedded?: boolean;
 }
 
-/** What was mounted. */
+/** The mounted front end. */
 export interface Mounted {
-  /** Show other data, at the same input; `steady` keeps what is in view, for a drag. */
+  /** Show other data at the same input; `steady` keeps the view, during a drag. */
   update(data: PageData, steady?: boolean): void;
   /** Show a row of the table. */
   goToRow(row: number): void;
-  /** Show the row whose input is nearest. */
+  /** Show the row with the nearest input. */
   goToInput(value: number): void;
-  /** The input of the row that is shown. */
+  /** The input of the displayed row. */
   readonly input: number;
-  /** Every quantity in the row that is shown. */
+  /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
-  /** The elements that can be added to. */
+  /** The elements that accept additions. */
   readonly places: Places;
-  /** Show a row of a motion, by its number; if it was not found there, the first that was. */
+  /** Show a row of a motion by number; if it has no position, the first found row. */
   goTo(motion: number, row: number): void;
   destroy(): void;
 }
 
-/** Parts of what was mounted. */
+/** Elements of the mounted front end. */
 export interface Places {
   readonly head: HTMLElement;
   readonly stage: HTMLElement;
@@ -57,7 +57,7 @@ export interface Places {
   readonly drawing: Drawing;
 }
 
-/** Updates follow each other within so much time [ms] while something is dragged. */
+/** Maximum interval of updates during a drag [ms]. */
 const UPDATED_WITHIN = 120;
 
 let mounted = 0;
@@ -72,7 +72,7 @@ function around(one: readonly number[], other: readonly number[]): number[] {
   return one.map((side, k) => (k < 2 ? Math.min : Math.max)(side, other[k]!));
 }
 
-/** A motion with the vectors between points that it had before, if it says nothing of vectors. */
+/** A motion with its previous vectors between points, if the new data has none. */
 function withVectors(motion: MotionData, before: MotionData | undefined): MotionData {
   if (motion.vectors.length || !before) return motion;
   return { ...motion, vectors: before.vectors.filter(({ course }) => !course.length) };
@@ -206,7 +206,7 @@ class Page implements Mounted {
     return (this.views[this.motion] ??= new MotionView(this.data.motions[this.motion]!));
   }
 
-  /** Show a motion from one of its rows on. */
+  /** Show a motion, starting at one of its rows. */
   private show(motion: number, index: number, steady = false): void {
     this.motion = motion;
     const view = this.view;
@@ -214,7 +214,7 @@ class Page implements Mounted {
     this.drawing.show(view);
     this.arrows.show(view);
     this.transport.show(view);
-    // While something is dragged people look at the drawing: numbers follow at half the rate.
+    // During a drag, numbers are updated at half the rate of the drawing.
     if (!steady || this.updates++ % 2 === 0) {
       for (const chart of this.charts) chart.show(view, steady);
       this.table.show(view);
@@ -224,7 +224,7 @@ class Page implements Mounted {
     this.player.restart(view.order.length, view.data.closed, index);
   }
 
-  /** Another motion, from where the input is now if it comes by there. */
+  /** Show another motion, at the current input if it reaches this. */
   private choose(motion: number): void {
     const here = this.input;
     this.motion = motion;
@@ -232,7 +232,7 @@ class Page implements Mounted {
     this.speak();
   }
 
-  /** The index whose input is nearest; of those as near, the one nearest to an index. */
+  /** The index with the nearest input; among equals, the one nearest to an index. */
   private nearest(value: number, index: number): number {
     const { input, order } = this.view;
     const far = order.map((row) => Math.abs(input.values[row]! - value));
@@ -241,7 +241,7 @@ class Page implements Mounted {
     return alike.reduce((best, k) => (Math.abs(k - index) < Math.abs(best - index) ? k : best), alike[0] ?? 0);
   }
 
-  /** The colours, as a sheet that no content security policy minds. */
+  /** The colours, as a style sheet allowed by any content security policy. */
   private adopt(): void {
     this.dress();
     const sheets = this.sheets();
@@ -281,12 +281,12 @@ class Page implements Mounted {
   }
 
   private tick(now: number): void {
-    // While something is dragged every update is a frame: none is drawn between two of them.
+    // During a drag every update draws a frame; no other frames are drawn.
     if (now - this.steady > UPDATED_WITHIN) this.pass(now);
     this.frame = requestAnimationFrame((next) => this.tick(next));
   }
 
-  /** Time has passed: show where the motion is now, or only go there. */
+  /** Advance the time: show the current row, or only move to it. */
   private pass(now: number, shown = true): void {
     const passed = Math.min(0.1, Math.max(0, now - this.last) / 1000);
     this.last = now;
@@ -316,7 +316,7 @@ class Page implements Mounted {
     return box;
   }
 
-  /** What is plotted at first: outputs, unknowns, then what follows from them; lengths before angles. */
+  /** The default plots: outputs, unknowns, then derived quantities; lengths before angles. */
   private plotted(): string[] {
     const columns = this.data.motions[0]!.columns.slice(1);
     const groups = ["output", "unknown", "derived"];
@@ -379,7 +379,7 @@ class Page implements Mounted {
     if (count > 1) this.choose((this.motion + by + count) % count);
   }
 
-  /** Take hold of a pin or a link and move it: the row whose place is nearest follows. */
+  /** Drag a pin or a link: the nearest row on its path is shown. */
   private drag(canvas: SVGSVGElement): void {
     let way: Float64Array | null = null;
     let off: readonly [number, number] = [0, 0];
@@ -411,7 +411,7 @@ class Page implements Mounted {
     }
   }
 
-  /** The way of what was taken hold of: a point, or a place of a link. */
+  /** The path of the dragged point, or of a point on a link. */
   private held(target: Element, [x, y]: readonly [number, number]): Float64Array | null {
     const view = this.view;
     const point = target.getAttribute("data-point");
@@ -427,7 +427,7 @@ class Page implements Mounted {
     return view.wayOf(frame, [cos * dx + sin * dy, -sin * dx + cos * dy]);
   }
 
-  /** Tell a screen reader where the motion rests, once it rests. */
+  /** Report the position to a screen reader when the motion stops. */
   private speakSoon(): void {
     clearTimeout(this.spoken);
     this.spoken = window.setTimeout(() => this.speak(), 600);

@@ -1,9 +1,9 @@
-// Numbers as people read them.
+// Number formats.
 
 const MINUS = "\u2212";
 
-/** A value to six significant digits, without an exponent where it can be helped; what is not
- * above `rounding` is 0. */
+/** A value to six significant digits, without an exponent if possible; values up to `rounding`
+ * are 0. */
 export function shortNumber(value: number, digits = 6, rounding = 0): string {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
@@ -15,7 +15,7 @@ export function shortNumber(value: number, digits = 6, rounding = 0): string {
   return withMinus(Number(text) === 0 ? text.replace("-", "") : text);
 }
 
-/** A value as m·10ⁿ, as residuals are written. */
+/** A value as m·10ⁿ, for residuals. */
 export function powerOfTen(value: number, digits = 2): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -24,7 +24,7 @@ export function powerOfTen(value: number, digits = 2): string {
   return withMinus(`${mantissa}·10${raised}`);
 }
 
-/** Of an angle: what is not above it is 0. */
+/** Smaller angles are shown as 0. */
 export const LEAST_ANGLE = 1e-9;
 
 /** A value with its unit: 60°, 12.5 mm. */
@@ -34,12 +34,12 @@ export function measured(value: number, unit: string): string {
   return unit ? `${text} ${unit}` : text;
 }
 
-/** A name as it is drawn: O2 as O₂. */
+/** A printed name: O2 as O₂. */
 export function printedName(name: string): string {
   return name.replace(/^([\p{L}]+)([0-9]+)$/u, (_, letters: string, digits: string) => letters + digits.replace(/[0-9]/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]!));
 }
 
-/** A number without zeros at the end of its decimals. */
+/** A number without trailing zeros. */
 export function trimmed(text: string): string {
   return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
 }
@@ -48,7 +48,7 @@ function withMinus(text: string): string {
   return text.replace(/^-/, MINUS);
 }
 
-/** Round numbers between two values, about as many as asked. */
+/** Round numbers between two values, approximately as many as requested. */
 export function ticks(low: number, high: number, about: number): number[] {
   const rough = (high - low) / Math.max(1, about);
   if (!(rough > 0)) return [low];
@@ -69,7 +69,7 @@ export function degreeTicks(low: number, high: number, about: number): number[] 
   return found;
 }
 
-/** The smallest short number that is not below a positive one: 1, 1.5, 2, … times a power of ten. */
+/** A positive number rounded up to 1, 1.5, 2, … times a power of ten. */
 export function roundUp(wanted: number): number {
   const power = 10 ** Math.floor(Math.log10(wanted));
   const steps = [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];

@@ -1,11 +1,11 @@
-// The entry of the offline page: its data stand in the page.
+// The entry point of the offline page, which contains its data.
 
 import { mount, type Mounted, type PageData } from "./mount";
 import { inflated } from "./unpack";
 
 declare global {
   interface Window {
-    /** For whoever wants to steer the page by a script. */
+    /** For scripts that control the page. */
     linkwork: Mounted;
   }
 }

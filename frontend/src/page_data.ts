@@ -1,6 +1,6 @@
 // Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
 
-/** A quantity over the rows: its name as printed, its unit; `group` says where it is listed: `input`, `unknown`, `output`, `derived`. */
+/** A quantity over the rows: its printed name and unit; `group` is its list: `input`, `unknown`, `output` or `derived`. */
 export interface Column {
   readonly name: string;
   readonly shown: string;
@@ -17,26 +17,26 @@ export interface Equation {
   readonly mathml: string;
 }
 
-/** A force on a point, by its number. */
+/** A force on a point, given by index. */
 export interface ForceData {
   readonly point: number;
   readonly x: number;
   readonly y: number;
 }
 
-/** What carries a shape: numbers of a point and of a turn; -1 for none. */
+/** The frame of a shape: indices of a point and of a turn; -1 for none. */
 export interface FrameData {
   readonly origin: number;
   readonly turn: number;
 }
 
-/** A row at which something turns back or branches cross. */
+/** A row at a dead point or change point. */
 export interface LimitMark {
   readonly row: number;
   readonly text: string;
 }
 
-/** One circuit or branch as it is shown. `order` are the found rows in the order in which the mechanism passes them; `closed` tells that the last is followed by the first. `speed` is that of the leading input, 0 if it has none; `backwards` tells that its arrow is drawn towards smaller values. */
+/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. */
 export interface MotionData {
   readonly name: string;
   readonly summary: string;
@@ -56,7 +56,7 @@ export interface MotionData {
   readonly limits: readonly LimitMark[];
 }
 
-/** Numbers of the rows that were found: whole multiples of `step`, differenced `order` times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes, the lowest first; -2: of four. `gaps` are places among these rows where there is no number, as derivatives at dead points; plain floats have NaN there. */
+/** Numbers of the found rows: multiples of `step`, differenced `order` times, as zigzag integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes; -2: of four. `gaps` are indices of rows without a number, such as derivatives at dead points; plain floats have NaN there. */
 export interface PackedColumn {
   readonly step: number;
   readonly order: number;
@@ -64,7 +64,7 @@ export interface PackedColumn {
   readonly gaps: readonly number[];
 }
 
-/** Everything a page shows. `view` is left, bottom, right, top of the drawing. */
+/** The complete data of a page. `view` is left, bottom, right, top of the drawing. */
 export interface PageData {
   readonly format: number;
   readonly version: string;
@@ -84,7 +84,7 @@ export interface PageData {
   readonly equations: readonly Equation[];
 }
 
-/** A shape: `line`, `area`, `disc`, `strokes` or `text`. `points` are x, y, x, y, … in its frame (`frame` ≥ 0) or in the plane (-1); of a disc its centre, of a text its anchor. A shape of its own course (`frame` -2) has packed x and y of each corner, and `shown` (1 or 0) in every row. Lengths are in the mechanism's unit. */
+/** A shape: `line`, `area`, `disc`, `strokes` or `text`. `points` are x, y, x, y, … in its frame (`frame` ≥ 0) or in the plane (-1); of a disc its centre, of a text its anchor. A deforming shape (`frame` -2) has packed x and y of each corner, and `shown` (1 or 0) in every row. Lengths are in the mechanism's unit. */
 export interface Part {
   readonly kind: string;
   readonly role: string;
@@ -102,7 +102,7 @@ export interface Part {
   readonly shown: PackedColumn | null;
 }
 
-/** A point: its coordinates, their first and second derivatives by the leading input. */
+/** A point: its coordinates and their first and second derivatives with respect to the input. */
 export interface PointData {
   readonly name: string;
   readonly shown: string;
@@ -115,7 +115,7 @@ export interface PointData {
   readonly ddy: PackedColumn;
 }
 
-/** How a role is drawn: colours (`tone`: that of the link; "" for none), widths in strokes. */
+/** The style of a role: colours (`tone`: that of the link; "" for none), widths in strokes. */
 export interface RoleStyle {
   readonly role: string;
   readonly layer: number;
@@ -126,7 +126,7 @@ export interface RoleStyle {
   readonly dashes: readonly number[];
 }
 
-/** What is known of every row; `found` is 1 or 0, statuses number `texts`. */
+/** The evidence of every row; `found` is 1 or 0, statuses are indices into `texts`. */
 export interface RowEvidence {
   readonly found: PackedColumn;
   readonly status: PackedColumn;
@@ -151,13 +151,13 @@ export interface ThemeData {
   readonly styles: readonly RoleStyle[];
 }
 
-/** The angle [rad] of a link or line that something turns with. */
+/** The angle [rad] of a link or line with which shapes rotate. */
 export interface TurnData {
   readonly name: string;
   readonly angle: PackedColumn;
 }
 
-/** A vector of a loop equation with its name, from one point to another by their numbers. Where it does not lie between points these are -1, and `course` has x and y of its tail and tip. */
+/** A vector of a loop equation with its name, between two points given by index. If it is not between points, these are -1, and `course` has x and y of its tail and tip. */
 export interface VectorData {
   readonly name: string;
   readonly start: number;

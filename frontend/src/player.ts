@@ -1,13 +1,13 @@
-// Which row is shown, and how it changes by itself.
+// The displayed row, and its change over time.
 
 export type Listener = (player: Player) => void;
 
-/** Seconds that all rows of a motion take at speed 1; a long circuit takes longer. */
+/** Duration of a motion at speed 1 [s]; a long circuit takes longer. */
 export function lasting(rows: number): number {
   return Math.min(18, Math.max(2.5, rows / 60));
 }
 
-/** A place on the way of `count` rows; plays around a closed way, to and fro on an open one. */
+/** A position on a path of `count` rows; plays around a closed path, back and forth on an open one. */
 export class Player {
   playing = false;
   speed = 1;
@@ -20,7 +20,7 @@ export class Player {
     private closed: boolean,
   ) {}
 
-  /** Whether it plays an open way back. */
+  /** Whether it plays an open path backwards. */
   get back(): boolean {
     return this.playing && this.sense < 0;
   }
@@ -34,7 +34,7 @@ export class Player {
     this.listeners.push(listener);
   }
 
-  /** Another motion is shown, from one of its rows. */
+  /** Show another motion, from one of its rows. */
   restart(count: number, closed: boolean, at: number): void {
     this.count = count;
     this.closed = closed;
@@ -58,7 +58,7 @@ export class Player {
     this.tell();
   }
 
-  /** Time has passed [s]; `told` to those who listen if another row is reached. */
+  /** Advance the time [s]; listeners are called if another row is reached. */
   advance(seconds: number, told = true): void {
     if (!this.playing) return;
     const before = this.at;

@@ -1,4 +1,4 @@
-// Does something at most so often, and at the end of a run once more.
+// Limits the rate of an action, with a final call at the end of a run.
 
 export class Slowly {
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -8,7 +8,7 @@ export class Slowly {
     private readonly act: () => void,
   ) {}
 
-  /** Act before long: all calls until then are one. */
+  /** Schedule the action; all calls until then are merged. */
   soon(): void {
     if (this.timer) return;
     this.timer = setTimeout(() => {
@@ -17,7 +17,7 @@ export class Slowly {
     }, this.every);
   }
 
-  /** Act now what is still to be done, and no more. */
+  /** Run a scheduled action now, and stop. */
   stop(): void {
     if (!this.timer) return;
     clearTimeout(this.timer);

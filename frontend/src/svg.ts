@@ -28,7 +28,7 @@ export function html<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Attributes of an element that is there already; those that are the same are left alone. */
+/** Set attributes of an existing element, if they have changed. */
 export function put(element: Element, attributes: Attributes): void {
   for (const [key, value] of Object.entries(attributes)) {
     const text = String(value);
@@ -36,12 +36,12 @@ export function put(element: Element, attributes: Attributes): void {
   }
 }
 
-/** Other text; the same is left alone. */
+/** Set the text, if it has changed. */
 export function say(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** A coordinate in a path: short, and exact beyond what a screen shows. */
+/** A coordinate in a path: short, with more than screen precision. */
 function short(number: number): string {
   return String(Number(number.toPrecision(8)));
 }

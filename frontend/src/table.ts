@@ -1,4 +1,4 @@
-// The numbers of the row that is shown: quantities, points, and what is known of the position.
+// The numbers of the displayed row: quantities, points and evidence.
 
 import type { MotionView } from "./motion";
 import { LEAST_ANGLE, powerOfTen, shortNumber } from "./numbers";
@@ -28,7 +28,7 @@ export class RowTable {
     this.proof = html("dl", { class: "lw-proof" }, parent);
   }
 
-  /** The numbers of another motion; where they have the same names, in the cells that are there. */
+  /** Show the numbers of another motion; cells with equal names are reused. */
   show(view: MotionView): void {
     this.view = view;
     const wanted = madeOf(view);
@@ -49,7 +49,7 @@ export class RowTable {
   private quantities(view: MotionView): void {
     const input = view.input;
     const least = (unit: string): number => (unit === "deg" || unit === "rad" ? LEAST_ANGLE : this.rounding);
-    const body = this.table(["", "value", `by ${input.shown}`]);
+    const body = this.table(["", "value", `w.r.t. ${input.shown}`]);
     view.series.forEach(({ shown, unit, firstUnit }, k) => {
       const line = html("tr", {}, body);
       html("th", { scope: "row" }, line, shown);
@@ -109,7 +109,7 @@ function hasBranches(view: MotionView): boolean {
   return view.data.evidence.branch_names.some(Boolean);
 }
 
-/** What cells a motion needs. */
+/** A key of the cells of a motion. */
 function madeOf(view: MotionView): string {
   const rows = view.series.map(({ shown, unit, firstUnit }) => `${shown} ${unit} ${firstUnit}`);
   const points = view.points.map(({ shown, moving }) => `${shown} ${moving}`);

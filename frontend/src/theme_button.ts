@@ -2,7 +2,7 @@
 
 import { html } from "./svg";
 
-/** Adds it to a heading; `root` is what wears the theme, or else the system's. */
+/** Add the button to a heading; `root` has the theme, by default that of the system. */
 export function themeButton(heading: Element, root: HTMLElement): void {
   const button = html("button", { type: "button", class: "lw-theme", "aria-label": "Light or dark" }, heading, "◐");
   button.title = "Light or dark";

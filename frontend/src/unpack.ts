@@ -1,12 +1,12 @@
-// Columns as they are packed by src/linkwork/viewer/packing.py.
+// Unpacks columns packed by src/linkwork/viewer/packing.py.
 
 import type { PackedColumn } from "./page_data";
 
-/** The order of a column that holds plain floats, of eight bytes or of four. */
+/** The order of a column of plain floats of eight or four bytes. */
 const PLAIN = -1;
 const SHORT = -2;
 
-/** What new browsers do themselves. */
+/** Built into new browsers. */
 const native = (Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array }).fromBase64;
 
 /** The bytes of a base64 text. */
@@ -35,7 +35,7 @@ export function wholeNumbers(bytes: Uint8Array): number[] {
   return numbers;
 }
 
-/** The numbers of the rows that were found, in order. */
+/** The numbers of the found rows, in order. */
 export function dense(column: PackedColumn): Float64Array {
   const bytes = bytesOf(column.content);
   if (column.order === PLAIN) return new Float64Array(bytes.buffer as ArrayBuffer);

@@ -1,4 +1,4 @@
-// The notebook widget: what anywidget asks for is a default export with `render`.
+// The notebook widget; anywidget requires a default export with `render`.
 
 import css from "./linkwork.css";
 import { mount, type PageData } from "./mount";
@@ -13,10 +13,10 @@ export interface Model {
   off(event: string, told: () => void): void;
 }
 
-/** At most so often [ms] Python is told the row while the motion plays. */
+/** Minimum interval of row updates to Python while the motion plays [ms]. */
 const TELL_EVERY = 100;
 
-// A notebook gives less room than a window, and has a width of its own.
+// A notebook cell is narrower than a window, and independent of its width.
 const FIT = `
 :host { display: block; container-type: inline-size; }
 .lw { min-height: 0; padding: 10px 12px; border: 1px solid var(--line); border-radius: 12px; }
@@ -68,7 +68,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   };
 }
 
-/** A tree of its own, so that neither the notebook's styles nor ours reach the other. */
+/** A shadow tree, which separates the styles of notebook and widget. */
 function shadow(el: HTMLElement): HTMLElement {
   const host = document.createElement("div");
   host.dataset.lmSuppressShortcuts = "true"; // JupyterLab leaves our keys to us
@@ -86,7 +86,7 @@ function numberOf(page: PageData, model: Model): number {
   return Math.max(0, page.motions.findIndex((motion) => motion.name === name));
 }
 
-/** Light or dark as the notebook is and becomes, where it says so; otherwise as the system is. */
+/** Follow the light or dark theme of the notebook if defined, otherwise of the system. */
 function wornBy(root: HTMLElement): () => void {
   const { dataset, classList } = document.body;
   const dress = (): void => {

@@ -295,7 +295,7 @@ def test_names_that_mean_nothing_are_refused_with_what_exists() -> None:
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        ({}, "nothing varies in this family: give a dimension and its values"),
+        ({}, "this family varies no numbers: give a dimension and its values"),
         ({"a": [1.0, 2.0], "b": [1.0, 2.0, 3.0]}, "equal lengths, got a: 2, b: 3"),
         ({"a": [1.0], "b": [1.0, 2.0]}, "equal lengths, got a: 1, b: 2"),
         ({"a": [[1.0, 2.0]]}, "an array of one axis, got 1 × 2 numbers"),

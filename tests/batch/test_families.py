@@ -176,7 +176,7 @@ def test_shapes_and_codes(family: Family, motion: FamilyMotion) -> None:
     assert len(motion) == 6
     assert motion.counts[Status.CONVERGED] == motion.found.sum()
     assert "6 designs × 361 inputs" in repr(motion)
-    assert "6 designs with their own O2 A" in repr(family)
+    assert "6 designs with varied O2 A" in repr(family)
     assert motion.message(0) == ""
     assert "dead point" in motion.message(2)  # too long to turn around: what a sweep of it says
     assert "must be a finite number, got nan" in motion.message(4)

@@ -164,7 +164,7 @@ def test_an_empty_plan_has_no_chunks() -> None:
 @pytest.mark.parametrize(
     ("make", "told"),
     [  # what types refuse is refused without them, too
-        (lambda: grid({}), "nothing varies in this plan: give a dimension and its values"),
+        (lambda: grid({}), "this plan varies no numbers: give a dimension and its values"),
         (lambda: grid({"a": []}), '"a" needs at least one value'),
         (lambda: grid({"a": ["x"]}), '"a" needs numbers'),
         (lambda: random(-1, RANGES, 1), "count must be a whole number, 0 or more, got -1"),
@@ -179,7 +179,7 @@ def test_an_empty_plan_has_no_chunks() -> None:
         (lambda: Normal(0.0, -1.0), "deviation of 0 or more"),
         (lambda: Uniform(1.0, 0.0), "range from low to high"),
         (lambda: from_table({"a": [1.0], "b": [1.0, 2.0]}), "equal lengths, got a: 1, b: 2"),
-        (lambda: from_table({}), "nothing varies in this plan: give a dimension and its values"),
+        (lambda: from_table({}), "this plan varies no numbers: give a dimension and its values"),
         (lambda: from_table(5), "a table is a DataFrame"),
         (lambda: from_table({"a": ["x"]}), '"a" needs numbers'),
         (lambda: from_table("no such file.csv"), "cannot be read: No such file"),
@@ -195,7 +195,7 @@ def test_plans_that_are_none_are_refused(make: Callable[[], object], told: str) 
     [
         ("a,b\n1,2\n3,x\n", 'line 3: "b" needs a number, got "x"'),
         ("a,b\n1,2,3\n", "line 2 has 3 cells, the header 2"),
-        ("", "nothing varies in this plan: give a dimension and its values"),
+        ("", "this plan varies no numbers: give a dimension and its values"),
     ],
 )
 def test_csv_files_are_refused_with_the_line(tmp_path: Path, text: str, told: str) -> None:

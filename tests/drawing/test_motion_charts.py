@@ -392,7 +392,7 @@ def test_the_leading_input_is_the_one_that_moves() -> None:
         ),
         (
             "four-bar", [], {"kind": "branches"}, InputError,
-            'there is no plot of a motion of kind "branches": circuits().plot makes it',
+            'there is no plot of a motion of kind "branches": use circuits().plot',
         ),
         (
             "four-bar", [], {"kind": "polar", "wrapped": True}, InputError,

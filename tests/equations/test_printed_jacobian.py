@@ -97,7 +97,7 @@ def test_a_law_is_printed_with_what_it_is() -> None:
     words = " ".join(line.strip() for line in lines[k + 1 : k + 5])
     assert re.match(
         r"θ_arm [+-] [0-9.]+° [+-] law\(θ_cam [+-] [0-9.]+°\) = 0 "
-        r"where law is the follower's motion (against the direction of its measure, )?"
+        r"where law is the follower's motion (in the negative direction, )?"
         r"as the cam turns: [-a-z0-9 ]+ over 120 by 8.0, dwell over 50, "
         r"[-a-z0-9 ]+ over 140 by -8.0, dwell over 50",
         words,

@@ -84,12 +84,12 @@ def test_the_cams_are_right_as_they_stand() -> None:
         ),
         (
             program("harmonic", 180, -30, 25),
-            "line 34  cams[2].base  is too small: the segments lead the follower 30 towards the "
+            "line 34  cams[2].base  is too small: the segments move the follower 30 towards the "
             "cam's centre, which is only 24.4949 away",
         ),
         (
             program("harmonic", 180, -30, 25, 'contact = "flat"'),
-            "line 34  cams[2].base  is too small: the segments lead the follower 30 towards the "
+            "line 34  cams[2].base  is too small: the segments move the follower 30 towards the "
             "cam's centre, which is only 25 away",
         ),
         (
@@ -133,7 +133,7 @@ def test_a_cam_that_cannot_move_its_slider_so_is_refused(lift: str, message: str
         ),
         (
             program("cycloidal", 180, -40, 40),
-            "line 27  cams[1].base  does not fit: on it the arm stands 29.6863 deg beside the line "
+            "line 27  cams[1].base  does not fit: there the arm is at 29.6863 deg from the line "
             "from the pivot to the cam's centre, and the segments swing it across that line",
         ),
         (
@@ -189,7 +189,7 @@ def test_welds_around_a_ring_have_to_agree() -> None:
     (problem,) = caught.value.problems
     assert problem.key == ("welds", 2)
     assert problem.message == (
-        '"c" cannot keep its angle relative to "a": other joints turn it by 1° from there'
+        '"c" cannot keep its angle relative to "a": other joints change it by 1°'
     )
 
 
@@ -284,7 +284,7 @@ link = "first"
             "needs one of law, table and pitch_curve, it has law and table",
         ),
         ('law = "-psi"', 'column 2: "psi" is not defined (dimensions: phi)'),
-        ('law = "phi"', "does not fall everywhere: external gears turn against each other"),
+        ('law = "phi"', "is not decreasing: external gears turn in opposite directions"),
         ('law = "-phi - 10*abs(sin(phi))"', "is not smooth, or changes too fast, near phi = "),
         (
             'law = "-(phi + 2*atan(0.999*sin(phi)/(1 - 0.999*cos(phi))))"',
@@ -292,13 +292,13 @@ link = "first"
         ),
         (
             'law = "-phi*0.7071"',
-            "turns the second wheel by -0.7071 of a turn while the first one turns once: that is "
-            "no ratio of whole numbers up to 12, so the pitch curves do not close",
+            "turns the second wheel by -0.7071 of a turn while the first one turns once: "
+            "not a ratio of whole numbers up to 12, so the pitch curves do not close",
         ),
         (
             'law = "-2*phi - 20*sin(phi)"',
-            "turns the second wheel 2 times while the first one turns 1 times, but not alike: its "
-            "pitch curve does not close",
+            "turns the second wheel 2 times while the first one turns 1 times, but each time "
+            "differently: its pitch curve does not close",
         ),
         (
             "table = [[0, 0], [90, -90], [180, -180], [270, -270], [350, -360]]",
@@ -306,7 +306,7 @@ link = "first"
         ),
         (
             "table = [[0, 0], [90, -90], [80, -180], [270, -270], [360, -360]]",
-            "the first angle must rise, the second must fall",
+            "the first angle must increase, the second must decrease",
         ),
         (
             "pitch_curve = [[110, 0], [0, 50], [-50, 0], [0, -50]]",
@@ -314,7 +314,7 @@ link = "first"
         ),
         (
             "pitch_curve = [[50, 0], [40, 0], [30, 10], [35, -5]]",
-            "is not seen in one direction only once from its centre",
+            "is not star-shaped about its centre",
         ),
     ],
 )

@@ -57,16 +57,16 @@ CASES = {
     "a cosine of an unknown": (
         changed(RAPIER, "-s16 - i*b1", "-s16 - b1*cos(θ13)"),
         "1 problem in file.toml\n"
-        '  line 20  loops."C0 C D E"  column 66: cos of the unknown θ13 has no place in a loop '
-        "equation: write e^(i*θ13), or use [equations]\n"
+        '  line 20  loops."C0 C D E"  column 66: a loop equation cannot contain '
+        "cos of the unknown θ13: write e^(i*θ13), or use [equations]\n"
         "        …4)*e^(i*θ14) + a6 = -s16 - b1*cos(θ13)\n"
         "                                       ^",
     ),
     "pi among degrees": (
         changed(RAPIER, "-s16 - i*b1", "-s16 - b1*e^(i*pi/2)"),
         "1 problem in file.toml\n"
-        '  line 20  loops."C0 C D E"  column 67: angles are in degrees here, so pi is out of '
-        'place: write 180, or angle = "rad"\n'
+        '  line 20  loops."C0 C D E"  column 67: angles are in degrees here: write 180 '
+        'instead of pi, or set angle = "rad"\n'
         "        …)*e^(i*θ14) + a6 = -s16 - b1*e^(i*pi/2)\n"
         "                                       ^",
     ),
@@ -102,7 +102,7 @@ CASES = {
     ),
     "points that are defined by each other": (
         changed(RAPIER, 'D = "B - b4*e^(i*θ14)"', 'D = "E - b4*e^(i*θ14)"'),
-        "1 problem in file.toml\n  line 41  points.D  is defined by itself: D → E → D",
+        "1 problem in file.toml\n  line 41  points.D  is defined in terms of itself: D → E → D",
     ),
     "a length as input without a range": (
         changed(RAPIER, 'variable = "θ12"\nfrom = 0\nto   = 360\nstep = 1', 'variable = "s16"'),

@@ -28,7 +28,7 @@ def test_planetary_gear_turns_its_carrier_once_for_three_turns_of_the_sun() -> N
 
 @law("planetary-differential")
 def test_differential_turns_its_carrier_by_the_weighted_mean() -> None:
-    """carrier = (40 sun + 80 ring)/120, counted from the start."""
+    """carrier = (40 sun + 80 ring)/120, measured from the start."""
     motion = motion_of("planetary-differential")
     same(motion["carrier"], (40 * motion["sun"] + 80 * (motion["ring"] - 90)) / 120, 360)
 
@@ -105,7 +105,7 @@ def test_oval_gears_turn_by_the_law_of_their_pitch_curves() -> None:
 
 @law("geared-five-bar")
 def test_geared_five_bar_closes_over_cranks_of_ratio_two() -> None:
-    """right = 30° - 2·left; C is the left one of the points 130 from A and 120 from B."""
+    """right = 30° - 2·left; C is the left of the two points 130 from A and 120 from B."""
     motion = motion_of("geared-five-bar")
     left = degrees(motion, "left")
     same(motion["right"], 30 - 2 * motion["left"], 720)
@@ -119,7 +119,7 @@ def test_geared_five_bar_closes_over_cranks_of_ratio_two() -> None:
 
 @law("belt-drive")
 def test_belt_drive_halves_the_angle_and_drives_a_crank_rocker() -> None:
-    """pulley = motor/2, both the same way; B as in a crank-rocker."""
+    """pulley = motor/2 in the same direction; B as in a crank-rocker."""
     motion = motion_of("belt-drive")
     same(motion["pulley"], motion["motor"] / 2, 360)
     same(motion["crank"], motion["pulley"], 360)
@@ -277,7 +277,7 @@ def test_dixons_rectangles_keep_their_common_axes() -> None:
 
 @law("parallel-cranks")
 def test_coupled_wheels_turn_together() -> None:
-    """All wheels turn by one angle and the rod only translates."""
+    """All wheels turn by the same angle; the rod only translates."""
     motion = motion_of("parallel-cranks")
     same(motion["second"], motion["first"], 360)
     same(motion["third"], motion["first"], 360)
@@ -286,7 +286,7 @@ def test_coupled_wheels_turn_together() -> None:
 
 @law("scissor-three-bars")
 def test_three_parallel_bars_stay_parallel() -> None:
-    """All bars turn by one angle; F = 120 e^{iθ}."""
+    """All bars turn by the same angle; F = 120 e^{iθ}."""
     motion = motion_of("scissor-three-bars")
     same(motion["bar2"], motion["bar1"], 360)
     same(motion["bar3"], motion["bar1"], 360)

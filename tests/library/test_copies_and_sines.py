@@ -34,7 +34,7 @@ def test_scotch_yoke_moves_exactly_as_a_sine() -> None:
 
 @law("oldham-coupling")
 def test_oldham_coupling_turns_both_shafts_equally_and_its_cross_twice() -> None:
-    """Both discs turn equally; M = (e/2)(1 + e^{2iθ}) goes twice around."""
+    """Both discs turn by the same angle; M = (e/2)(1 + e^{2iθ}) turns twice per revolution."""
     motion = motion_of("oldham-coupling")
     same(motion["disc2"] - motion["disc1"], 90, 360)
     same(motion.trace("M"), 6 + 6 * np.exp(2j * degrees(motion, "disc1")), 12)
@@ -86,7 +86,7 @@ def test_cognates_draw_one_curve(name: str, turning: str, ahead: float) -> None:
 def test_geneva_wheel_turns_by_its_law_while_the_pin_is_in_the_slot(
     slots: int, ratio: float
 ) -> None:
-    """tan β = λ sin α/(1 - λ cos α), λ = sin(180°/n); the wheel turns the other way."""
+    """tan β = λ sin α/(1 - λ cos α), λ = sin(180°/n); the wheel turns in the opposite direction."""
     drive = lw.example("geneva-drive").with_dimensions(n=slots)
     motion = motion_of("geneva-drive") if slots == 4 else drive.sweep()
     share = math.sin(math.pi / slots)

@@ -16,7 +16,7 @@ from tests.oracles.four_bar import FourBar
 @law("four-bar", "four-bar-crossed")
 @pytest.mark.parametrize(("name", "side"), [("four-bar", 1), ("four-bar-crossed", -1)])
 def test_norton_four_bar_closes_where_two_circles_meet(name: str, side: int) -> None:
-    """B is where the circles about A (120) and O4 (80) meet, on one side of AO4 for good."""
+    """B is where the circles about A (120) and O4 (80) meet, always on the same side of AO4."""
     motion = motion_of(name)
     bar = FourBar(100, 40, 120, 80)
     crank = degrees(motion, "crank")

@@ -94,7 +94,7 @@ def test_three_rpr_platform_has_its_six_published_assemblies() -> None:
 
 @law("double-four-bar")
 def test_double_four_bar_is_two_four_bars() -> None:
-    """The rocker of the first four-bar, 20° on, drives the second."""
+    """The rocker of the first four-bar, turned by 20°, drives the second."""
     motion = motion_of("double-four-bar")
     first = FourBar(100, 40, 120, 80)
     _, third = first.phasors(degrees(motion, "θ1"), 1)
@@ -151,7 +151,7 @@ def test_stephenson_far_crank_reaches_the_coupler_point_of_its_four_bar() -> Non
 
 @law("double-butterfly")
 def test_double_butterfly_lists_every_configuration_that_random_starts_find() -> None:
-    """Ten distances between pins hold in each of its configurations, and no other is found.
+    """All configurations satisfy ten distances between pins; no other exists.
 
     Solved from scratch at crank 60°, from random starts.
     """

@@ -32,7 +32,7 @@ def time_ratio(name: str, quantity: str) -> float:
 
 @law("inverted-slider-crank")
 def test_slotted_lever_points_at_the_crank_pin() -> None:
-    """The lever points at the crank's pin; ratio (180 + 2 asin(r/d))/(180 - 2 asin(r/d))."""
+    """The lever points to the crank's pin; ratio (180 + 2 asin(r/d))/(180 - 2 asin(r/d))."""
     motion = motion_of("inverted-slider-crank")
     pin = 100 * np.exp(1j * degrees(motion, "crank")) + 250j
     same(motion["s"], np.abs(pin), 350)
@@ -119,7 +119,7 @@ def test_pumpjack_stroke_is_the_published_one_to_three_percent() -> None:
 
 @law("beam-engine")
 def test_beam_engine_copies_the_link_point_and_keeps_the_piston_upright() -> None:
-    """CF = 2.5·CP; the piston's pin strays 1.1 from a line over a stroke of 151."""
+    """CF = 2.5·CP; the piston's pin deviates by 1.1 from a line over a stroke of 151."""
     motion = motion_of("beam-engine")
     k = complex(280, -420) + 75 * np.exp(1j * degrees(motion, "crank"))
     end = circles_meet(k, 400, np.zeros(k.shape), 300, -1)
@@ -149,7 +149,7 @@ def test_sun_turns_twice_as_far_as_the_arm_less_the_rods_swing() -> None:
 
 @law("boxer-engine")
 def test_boxer_pistons_mirror_each_other() -> None:
-    """s = r cos θ + √(l² - r² sin² θ) on either side, so the pistons' middle rests at O."""
+    """s = r cos θ + √(l² - r² sin² θ) on either side; the midpoint of the pistons is O."""
     motion = motion_of("boxer-engine")
     crank = degrees(motion, "throw1")
     closed = 35 * np.cos(crank) + np.sqrt(120**2 - (35 * np.sin(crank)) ** 2)

@@ -21,7 +21,7 @@ def test_newton_converges_to_cardanos_root() -> None:
 
 @law("newton-another-root")
 def test_newton_finds_another_root_than_the_nearest() -> None:
-    """From 1.55, nearest to 2 of the roots 1, 2, 3, it goes to another."""
+    """From 1.55 the iteration misses 2, the nearest of the roots 1, 2, 3."""
     x = 1.55
     for _ in range(20):
         x -= (x**3 - 6 * x**2 + 11 * x - 6) / (3 * x**2 - 12 * x + 11)

@@ -457,7 +457,7 @@ def test_loops_that_say_the_same_twice_are_refused_with_a_reason() -> None:
     two = "4*e^(i*a) + 6*e^(i*b) + 8*e^(i*c) + 10*e^(i*d) = 2*e^(i*q)"
     found = looped({"1": one, "2": two}, a=0, b=100, c=190, d=280).configurations()
     assert found.completeness is Completeness.NOT_LISTED
-    assert found.message.endswith("do not say different things: one follows from the others")
+    assert found.message.endswith("are not independent: one follows from the others")
 
 
 def test_blocks_of_many_loops_are_not_tried() -> None:
@@ -467,7 +467,7 @@ def test_blocks_of_many_loops_are_not_tried() -> None:
     }
     found = looped(loops, **{f"{c}{k}": 10.0 for k in range(7) for c in "ab"}).configurations()
     assert found.completeness is Completeness.NOT_LISTED
-    assert "are 7 coupled loops, more than the 6 whose paths are followed" in found.message
+    assert "are 7 coupled loops; paths are followed for at most 6" in found.message
 
 
 def test_a_random_start_that_was_not_confirmed_makes_no_claim(

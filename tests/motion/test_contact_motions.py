@@ -128,19 +128,17 @@ NOT_LISTED = (
         (
             "cam by its outline, sliding knife",
             0,
-            NOT_LISTED.format("s, law, law_x, law_y", "contain a law, as cams and curves do"),
+            NOT_LISTED.format("s, law, law_x, law_y", "contain a law of a cam or curve"),
         ),
         (
             "cam by its outline, sliding flat",
             0,
-            NOT_LISTED.format(
-                "law, law_dx, law_dy, law_speed", "contain a law, as cams and curves do"
-            ),
+            NOT_LISTED.format("law, law_dx, law_dy, law_speed", "contain a law of a cam or curve"),
         ),
         (
             "curve open",
             0,
-            NOT_LISTED.format("rod, u, u_x, u_y", "contain a law, as cams and curves do"),
+            NOT_LISTED.format("rod, u, u_x, u_y", "contain a law of a cam or curve"),
         ),
     ],
 )

@@ -205,11 +205,10 @@ def test_cylinders_in_lock_step_are_the_reason_given() -> None:
     found = dead_inputs_of(lw.example("excavator"))
     assert not found.cover_all
     assert found.reason.startswith(
-        "the equations of stick, stick_ram_angle tie one length to another, "
-        "as inputs driven in lock-step do; "
+        "the equations of stick, stick_ram_angle relate two lengths, as inputs driven together do; "
     )
     assert "racks" not in found.reason
-    assert "tie an angle to a length, as racks and rolling do" in (
+    assert "relate an angle to a length, as racks and rolling wheels do" in (
         dead_inputs_of(lw.example("rack-steering")).reason
     )
 
@@ -280,7 +279,7 @@ def test_loops_that_say_the_same_twice_are_no_complete_list() -> None:
     two = "4*e^(i*a) + 6*e^(i*b) + 8*e^(i*c) + 10*e^(i*d) = 2*e^(i*t)"
     found = dead_inputs_of(looped(one, two, t=60, a=0, b=100, c=190, d=280))
     assert found.reason == (
-        "the equations of a, b, c, d do not say different things: one follows from the others"
+        "the equations of a, b, c, d are not independent: one follows from the others"
     )
 
 

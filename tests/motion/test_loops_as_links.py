@@ -243,7 +243,7 @@ def test_textbook_equations_are_called_by_their_names(
                 unknowns="θ3 θ4",
                 driven="θ2",
             ),
-            "the angles of its vectors depend on each other, as those of wheels do",
+            "the angles of its vectors depend on each other, as for gears",
         ),
         (
             _loops(

@@ -1,4 +1,4 @@
-"""The script that counts what makes the source hard to carry on, over made-up packages."""
+"""The script that measures maintainability, on example packages."""
 
 from __future__ import annotations
 

@@ -1,16 +1,16 @@
-// What every panel can do: ask the program, and know the file as it is.
+// The interface of panels to the program: send requests, read the state of the file.
 
 import type { FileState, LiveRequest } from "../messages";
 
 export interface Desk {
-  /** Ask once. */
+  /** Send a request. */
   readonly ask: (request: LiveRequest) => void;
-  /** Ask often, as from a slider: only the latest is worth an answer. */
+  /** Send frequent requests, as from a slider: only the latest needs an answer. */
   readonly latest: (request: LiveRequest) => void;
-  /** The file as the program told it last. */
+  /** The last received state of the file. */
   readonly file: () => FileState;
-  /** The values of the inputs that are shown. */
+  /** The displayed input values. */
   readonly here: () => Record<string, number>;
-  /** Every quantity in the row that is shown. */
+  /** All quantities of the displayed row. */
   readonly values: () => Readonly<Record<string, number>>;
 }

@@ -1,4 +1,4 @@
-// Undo, redo, reload, save; whether there is something to save.
+// The toolbar: undo, redo, reload, save, and the mark of unsaved changes.
 
 import type { FileState } from "../messages";
 import { html } from "../svg";
@@ -38,7 +38,7 @@ export class Bar {
     document.title = `${state.unsaved ? "• " : ""}${state.title} – Linkwork`;
   }
 
-  /** Nothing can be done any more. */
+  /** Disable all buttons. */
   close(): void {
     this.gone.abort();
     for (const button of this.element.querySelectorAll("button")) button.disabled = true;

@@ -1,4 +1,4 @@
-// A palette of what a mechanism is made of, the input, and the text of the file.
+// The palette of parts, the input, and the text of the file.
 
 import type { DrivenInput, FileState, LiveEdit, PalettePart } from "../messages";
 import { toggle } from "../controls";
@@ -6,7 +6,7 @@ import { html } from "../svg";
 import type { Desk } from "./asking";
 import { typed } from "./ranges";
 
-/** One thing to fill in: a name or number to type, or points and links to choose. */
+/** A field of a form: a name or number to type, or points and links to choose. */
 export interface Field {
   readonly name: string;
   readonly entry: string;
@@ -16,7 +16,7 @@ export interface Field {
   readonly named?: readonly string[];
 }
 
-/** What was typed or chosen: one entry, or several. */
+/** User input of a field: one entry or several. */
 export type Entry = string | readonly string[];
 type Entries = Readonly<Record<string, Entry>>;
 
@@ -33,7 +33,7 @@ const one = (name: string, entry: string, required = true): Field => ({ name, en
 const PLAIN: readonly Piece[] = [
   {
     title: "Point",
-    doc: "x and y are its coordinates in the sketch of the file, from which the mechanism is first assembled",
+    doc: "x and y are its coordinates in the sketch of the file, the initial guess of the assembly",
     fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
@@ -55,7 +55,7 @@ const PLAIN: readonly Piece[] = [
   },
 ];
 
-/** Points, links and joints, and the parts that files can hold. */
+/** Points, links and joints, and all kinds of parts of files. */
 export function piecesOf(parts: readonly PalettePart[]): readonly Piece[] {
   return [
     ...PLAIN,
@@ -63,10 +63,10 @@ export function piecesOf(parts: readonly PalettePart[]): readonly Piece[] {
   ];
 }
 
-/** Fields that may be left empty, but seldom are. */
+/** Optional fields that are usually given. */
 const USUAL = new Set(["on link", "radii", "teeth"]);
 
-/** What was filled in of a part; what was left empty is left out. */
+/** The completed fields of a part; empty fields are omitted. */
 export function partOf(table: string, entries: Entries): LiveEdit {
   const filled = Object.entries(entries).filter(([, entry]) => entry.length > 0);
   return { kind: "add_part", table, typed: Object.fromEntries(filled) };
@@ -137,7 +137,7 @@ export class Build {
     this.pieces(this.desk.file()); // what was collected can be named
   }
 
-  /** The file with the points and links that are collected. */
+  /** The file with queued points and links. */
   private withCollected(file: FileState): FileState {
     const points = { ...file.points };
     const links = [...file.links];
@@ -216,7 +216,7 @@ export class Build {
       this.palette.querySelector("summary")!.after(box);
       html("summary", {}, box, piece.title);
       box.open = open.includes(piece.title);
-      // made when it is opened: most of them never are
+      // created when opened: most are never used
       box.addEventListener("toggle", () => box.open && box.childElementCount === 1 && this.form(box, piece, file));
     }
   }
@@ -259,7 +259,7 @@ function field(form: Element, label: string, value: string): HTMLInputElement {
   return input;
 }
 
-/** A field of a piece, and what reads it. */
+/** A field of a form, and the function that reads it. */
 function entry(form: Element, what: Field, file: FileState): () => Entry {
   const { name, entry: kind, required, doc = "", words = [], named = [] } = what;
   const label = name.replaceAll("_", " ");
@@ -310,7 +310,7 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   return () => [input.value].filter((text) => text.trim());
 }
 
-/** A change in a few words. */
+/** A short description of a change. */
 export function described(edit: LiveEdit): string {
   const what = edit.kind.replace("_", " ");
   const fields = edit as unknown as Readonly<Record<string, unknown>>;

@@ -1,4 +1,4 @@
-// The one connection with the program, and what is said over it.
+// The connection to the program, and its messages.
 
 import type { LiveEvent, LiveRequest } from "../messages";
 
@@ -25,7 +25,7 @@ export class Connection {
     this.socket.addEventListener("close", (event) => hooks.lost(this.why(event.code)));
   }
 
-  /** Ask, and get the number that the answers repeat. */
+  /** Send a request; returns the id repeated by its answers. */
   ask(request: LiveRequest): number {
     const id = ++this.count;
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ ...request, id }));

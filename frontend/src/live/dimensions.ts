@@ -7,7 +7,7 @@ import { html } from "../svg";
 import type { Desk } from "./asking";
 import { clean, rangeAround, typed } from "./ranges";
 
-/** Tables of the file that are listed, and what they are called; the others are left to the text. */
+/** Listed tables of the file with their headings; others are edited in the text. */
 const GROUPS: readonly (readonly [string, readonly string[], boolean])[] = [
   ["Dimensions", ["dimensions", "lengths", "angles", "sliders"], true],
   ["Measured in the sketch", ["measured"], false],
@@ -55,7 +55,7 @@ export class Dimensions {
   }
 }
 
-/** What a length of 0 is compared with. */
+/** Reference size for a length of 0. */
 function sizeOf(file: FileState): number {
   const lengths = file.numbers.filter((one) => one.unit === file.length_unit).map((one) => Math.abs(one.value));
   return Math.max(...lengths, 1e-3);
@@ -99,7 +99,7 @@ function sliderRow(number: ChangeableNumber, desk: Desk): Row {
     show: (now, size) => {
       const range = rangeAround(now.value, now.unit, size);
       const outside = now.value < Number(slider.min) || now.value > Number(slider.max);
-      // The range stays while the value is well inside: a slider that runs away cannot be set back.
+      // The range stays while the value is well inside, so that the slider can be set back.
       if (slider.dataset.known === undefined || outside || off(slider, now.value)) {
         slider.min = String(range.low);
         slider.max = String(range.high);
@@ -114,7 +114,7 @@ function sliderRow(number: ChangeableNumber, desk: Desk): Row {
   };
 }
 
-/** Whether a value is none of the steps of a slider. */
+/** Whether a value is between the steps of a slider. */
 function off(slider: HTMLInputElement, value: number): boolean {
   const steps = (value - Number(slider.min)) / Number(slider.step);
   return Math.abs(steps - Math.round(steps)) > 1e-6;

@@ -1,9 +1,9 @@
-// Few requests at a time; of those that wait only the latest, as of a slider that is being dragged.
+// Limits pending requests; of waiting ones only the latest is sent, as for a dragged slider.
 
-/** Seconds after which requests that nobody answered count as answered. */
+/** Timeout of requests without answer [s]. */
 export const PATIENCE = 1.5;
 
-/** Requests under way: one is worked on while the answer to the other is shown. */
+/** Maximum pending requests: one is computed while the answer to the other is displayed. */
 export const UNDER_WAY = 2;
 
 export class Latest<T> {
@@ -11,23 +11,23 @@ export class Latest<T> {
   private waiting: T | null = null;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  /** `send` gives the number that the answer repeats. */
+  /** `send` returns the id repeated by the answer. */
   constructor(private readonly send: (request: T) => number) {}
 
-  /** Send it, at once or when what is under way has been answered. */
+  /** Send a request, immediately or after pending ones are answered. */
   put(request: T): void {
     if (this.under.length >= UNDER_WAY) this.waiting = request;
     else this.start(request);
   }
 
-  /** This request and all before it have been answered; others are not of this kind. */
+  /** Mark this request and all earlier ones as answered; ids of other kinds are ignored. */
   answered(number: number | null): void {
     if (number === null || !this.under.includes(number)) return;
     this.under = this.under.filter((one) => one > number);
     this.next();
   }
 
-  /** Nothing that waits is of interest any more. */
+  /** Drop all waiting requests. */
   clear(): void {
     this.waiting = null;
   }

@@ -1,4 +1,4 @@
-// The entry of the live page: what the program tells is shown, what is done is asked.
+// The entry point of the live page.
 
 import { html } from "../svg";
 import { LivePage } from "./live_page";

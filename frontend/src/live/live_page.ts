@@ -1,4 +1,4 @@
-// The live page: the drawing and player of every page, and around them what edits the file.
+// The live page: drawing and player as on every page, with panels that edit the file.
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
 import { mount, type Mounted } from "../mount";
@@ -19,7 +19,7 @@ import { Sketch } from "./sketch";
 import { Tabs } from "./tabs";
 import { Ways } from "./ways";
 
-/** What answers a request: the next one may be sent. */
+/** Events that answer a request, so that the next can be sent. */
 const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "newton_shown", "refused", "problems_found"]);
 
 export class LivePage {
@@ -37,7 +37,7 @@ export class LivePage {
   private file: FileState | null = null;
   private page: Mounted | null = null;
   private plain: HTMLElement | null = null;
-  /** No row of the table has a position. */
+  /** Whether no row of the table has a position. */
   private rowless = false;
 
   constructor(private readonly element: HTMLElement) {
@@ -175,7 +175,7 @@ export class LivePage {
     this.sketch.attach(page);
   }
 
-  /** The same places where there is no motion to mount. */
+  /** The same layout without a motion. */
   private places(): { canvas: HTMLElement } {
     if (this.page !== null) return this.page.places;
     if (this.plain === null) {
@@ -194,7 +194,7 @@ export class LivePage {
     return { canvas: this.plain.querySelector(".lw-canvas")! };
   }
 
-  /** A picture of points in place of a motion. */
+  /** Show a picture of points instead of a motion. */
   private still(points: Points, text: string): void {
     const { canvas } = this.places();
     const drawn = Object.keys(points).length > 0;
@@ -204,7 +204,7 @@ export class LivePage {
     if (text) this.notices.open(text, []);
   }
 
-  /** What stands where there is nothing to draw. */
+  /** Show equations if there is nothing to draw. */
   private equations(): HTMLElement {
     const box = html("div", { class: "lw-plain-equations" });
     for (const equation of this.file!.equations) html("p", {}, box, equation);

@@ -1,4 +1,4 @@
-// Newton's steps one by one, from a guess that is dragged: |F|, the unknowns, the Jacobian, the end.
+// The Newton panel: steps from a dragged guess, with |F|, unknowns, Jacobian and final status.
 
 import type { FileState, NewtonIterate, NewtonShown } from "../messages";
 import type { Mounted } from "../mount";
@@ -9,7 +9,7 @@ import type { Desk } from "./asking";
 import { clean, rangeAround } from "./ranges";
 import { drawLinks } from "./schematic";
 
-/** The four troubles, as people would say them. */
+/** The four kinds of failure in words. */
 export const TROUBLES: Readonly<Record<string, string>> = {
   SINGULAR_DERIVATIVE: "The Jacobian is singular: the Newton step is undefined or very long.",
   INFLECTION: "The iteration diverges or cycles around an inflection.",
@@ -74,7 +74,7 @@ export class Newton {
     if (this.on) this.begin();
   }
 
-  /** Another row is shown: the same guess at its input. */
+  /** Another row is displayed: use the same guess at its input. */
   moved(): void {
     if (!this.on) return;
     this.at = this.desk.here();
@@ -98,7 +98,7 @@ export class Newton {
     html("button", { type: "button" }, parent, text).addEventListener("click", act);
   }
 
-  /** From the guess of the file, at the input that is shown. */
+  /** Start from the guess of the file at the displayed input. */
   private begin(): void {
     const file = this.desk.file();
     this.page?.goToInput(this.page.input); // it stands still
@@ -150,7 +150,7 @@ export class Newton {
     this.desk.latest({ kind: "newton_steps", guess: this.guess, at: this.at, full_steps: this.full.checked, ...pull });
   }
 
-  /** Every iterate in a line: which can be chosen. */
+  /** List all iterates for selection. */
   private list(): void {
     this.steps.replaceChildren();
     const body = html("table", {}, this.steps);
@@ -218,14 +218,14 @@ export class Newton {
     }
   }
 
-  /** A place itself, or the nearest that can be seen: a guess far away can be dragged back. */
+  /** A point, or the nearest point in the view, so that a distant guess can be dragged back. */
   private inSight([x, y]: readonly [number, number], margin: number): [number, number] {
     const { x: left, y: top, width, height } = this.page!.places.drawing.element.viewBox.baseVal;
     const within = (value: number, low: number, high: number): number => Math.min(Math.max(value, low + margin), high - margin);
     return [within(x, left, left + width), -within(-y, top, top + height)];
   }
 
-  /** Where the guess can be taken hold of: one unknown follows the point. */
+  /** A handle of the guess: one unknown follows the point. */
   private handle(name: string, [x, y]: readonly [number, number], r: number): void {
     const handle = svg("circle", { class: "lw-sketched", "data-guessed": name, cx: x, cy: -y, r }, this.handles);
     svg("title", {}, handle).textContent = `Drag ${name} to change the guess`;

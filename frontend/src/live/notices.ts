@@ -1,12 +1,12 @@
-// What is told beside the drawing: where the motion ends, what went wrong, what to decide.
+// Notices next to the drawing: limits of the motion, problems, and decisions.
 
 import type { FileChanged, LimitFound, MotionFound, ProblemsFound } from "../messages";
 import { html } from "../svg";
 
-/** How many dead points are told one by one. */
+/** Maximum number of listed dead points. */
 const TOLD = 4;
 
-/** What the program says of a cycle that needs no word. */
+/** Message of a complete cycle, which is not shown. */
 const FOUND = "position found";
 
 export type Choices = Readonly<Record<string, () => void>>;
@@ -16,7 +16,7 @@ export class Notices {
   private readonly motion = html("div", { class: "lw-motion-notice", role: "status" }, this.element);
   private readonly message = html("div", { class: "lw-message", role: "alert" }, this.element);
 
-  /** The dead points of a motion, each a button that goes there. */
+  /** The dead points of a motion, each with a button that moves to it. */
   limits(found: MotionFound, unit: string, goTo: (input: number) => void): void {
     const text = reach(found);
     this.motion.replaceChildren();
@@ -32,7 +32,7 @@ export class Notices {
     if (found.limits.length > TOLD) html("span", {}, this.motion, `and ${found.limits.length - TOLD} more`);
   }
 
-  /** A mechanism that stays open. */
+  /** A mechanism that cannot be closed. */
   open(text: string, remedies: readonly (readonly [string, string, () => void])[]): void {
     this.motion.replaceChildren();
     this.motion.hidden = false;
@@ -62,7 +62,7 @@ export class Notices {
     this.say(event.message, event.reloaded || !event.unsaved ? {} : choices);
   }
 
-  /** Something was done as wished. */
+  /** Confirm an action. */
   done(text: string): void {
     this.say(text);
     this.message.dataset.done = "";
@@ -92,7 +92,7 @@ export class Notices {
   }
 }
 
-/** How much of the range is reached, in words; empty if all of it is. */
+/** The unreached part of the range in words; empty if all of it is reached. */
 export function reach(found: Pick<MotionFound, "limits" | "missing" | "message">): string {
   if (!found.limits.length && !found.missing) return found.message === FOUND ? "" : found.message;
   const missing = found.missing === 1 ? "1 position" : `${found.missing} positions`;
@@ -102,7 +102,7 @@ export function reach(found: Pick<MotionFound, "limits" | "missing" | "message">
   return found.missing ? `${missing} cannot be reached. ${head}:` : `${head}:`;
 }
 
-/** A limit in a few signs: where the input is. */
+/** The input value of a limit. */
 export function told(limit: LimitFound, unit: string): string {
   const value = String(Number(limit.input.toFixed(4))).replace("-", "\u2212");
   return `${limit.located ? "" : "about "}${value}${unit === "deg" ? "°" : unit ? ` ${unit}` : ""}`;

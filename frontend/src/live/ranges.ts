@@ -1,4 +1,4 @@
-// Over which values a slider goes.
+// Ranges and steps of sliders.
 
 export interface Range {
   readonly low: number;
@@ -15,7 +15,7 @@ export function roundStep(rough: number): number {
 
 /**
  * The range of a slider around a value, which is one of its steps: a length from a fifth to twice
- * what it is, an angle by a quarter turn both ways, a length of 0 by `size` both ways.
+ * its value, an angle by ± a quarter turn, a length of 0 by ± `size`.
  */
 export function rangeAround(value: number, unit: string, size: number): Range {
   const quarter = unit === "deg" ? 90 : unit === "rad" ? Math.PI / 2 : 0;
@@ -37,7 +37,7 @@ export function clean(value: number): number {
   return Number(value.toPrecision(12));
 }
 
-/** What was typed: a number, or else a formula. */
+/** User input: a number, or otherwise a formula. */
 export function typed(text: string): number | string {
   const plain = text.trim().replace("\u2212", "-").replace(/°$/, "").replace(/^([-+]?\d+),(\d+)$/, "$1.$2");
   const number = Number(plain);

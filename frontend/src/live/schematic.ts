@@ -1,5 +1,5 @@
-// A mechanism as its links between its points, where no motion has been drawn: an open one, an
-// iterate, a configuration, a sketch.
+// A simple drawing of links and points without a motion: for an open mechanism, an iterate, a
+// configuration or a sketch.
 
 import type { Link, OpenEnd } from "../messages";
 import { printedName } from "../numbers";
@@ -14,7 +14,7 @@ export interface Box {
   readonly top: number;
 }
 
-/** The box around points, with some air; never empty. */
+/** The box around points with a margin; never empty. */
 export function boxAround(points: readonly (readonly [number, number])[]): Box {
   if (!points.length) return { left: -1, bottom: -1, right: 1, top: 1 };
   const xs = points.map(([x]) => x);
@@ -29,7 +29,7 @@ export function viewBox({ left, bottom, right, top }: Box): string {
 }
 
 export interface Look {
-  /** Of strokes, in the plane's unit. */
+  /** Stroke width, in the unit of the plane. */
   readonly stroke: number;
   readonly names?: number;
   readonly ends?: readonly OpenEnd[];
@@ -66,7 +66,7 @@ export function drawLinks(group: SVGGElement, links: readonly Link[], points: Po
   }
 }
 
-/** A picture of its own. */
+/** A separate picture. */
 export function pictureOf(links: readonly Link[], points: Points, ends: readonly OpenEnd[] = [], names = true): SVGSVGElement {
   const box = boxAround([...Object.values(points), ...ends.map((end) => end.end)]);
   const size = Math.max(box.right - box.left, box.top - box.bottom);

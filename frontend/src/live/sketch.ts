@@ -1,4 +1,4 @@
-// The points of the sketch over the drawing, to be moved with the pointer or the arrow keys.
+// The points of the sketch over the drawing, moved with the pointer or arrow keys.
 
 import type { FileState, PointMoved } from "../messages";
 import type { Mounted } from "../mount";
@@ -36,7 +36,7 @@ export class Sketch {
     this.switch.hidden = Object.keys(this.desk.file().points).length === 0;
   }
 
-  /** Draw it where the file has it, unless a point is being held. */
+  /** Draw the sketch as in the file, unless a point is being dragged. */
   renew(): void {
     const page = this.page;
     if (page === null || this.held !== null) return;
@@ -57,7 +57,7 @@ export class Sketch {
     if (focused) this.handles.querySelector<SVGElement>(`[data-sketched="${CSS.escape(focused)}"]`)?.focus();
   }
 
-  /** What followed a point, in words. */
+  /** A message about the lengths that followed a point. */
   told(moved: PointMoved): string {
     const { point, followed, stayed } = moved;
     const parts = [`${point} was moved in the sketch.`];

@@ -1,11 +1,11 @@
-// Panels of which one is shown.
+// Tabs: panels of which one is shown.
 
 import { html } from "../svg";
 
 export interface Panel {
   readonly title: string;
   readonly element: HTMLElement;
-  /** Shown or left. */
+  /** Called when the panel is shown or hidden. */
   readonly shown?: (on: boolean) => void;
 }
 

@@ -1,4 +1,4 @@
-// Every way to put the mechanism together, to choose from.
+// The panel of assembly configurations.
 
 import type { ConfigurationsFound } from "../messages";
 import { measured } from "../numbers";
@@ -25,7 +25,7 @@ export class Ways {
     if (on) this.find();
   }
 
-  /** The file is another one: what is listed may be wrong. */
+  /** The file has changed: the list may be outdated. */
   renew(): void {
     if (this.on) this.find();
   }
@@ -55,7 +55,7 @@ export class Ways {
   }
 }
 
-/** Whether all unknowns of a way are as they are shown; angles agree but for whole turns. */
+/** Whether a configuration is the displayed one; angles are compared modulo whole turns. */
 export function same(
   unknowns: Readonly<Record<string, number>>,
   shown: Readonly<Record<string, number>>,

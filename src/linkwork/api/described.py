@@ -1,4 +1,4 @@
-"""A mechanism as it is described: its equations, and copies with other numbers or inputs."""
+"""Described mechanisms: equations, and copies with other numbers or inputs."""
 
 from __future__ import annotations
 
@@ -96,6 +96,13 @@ class DescribedMechanism:
         ------
         MechanismError
             With every problem found.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> longer = lw.example("four-bar").changed(lengths={"O2 A": 42, "A B": 120, "O4 B": 80})
+        >>> round(longer.solve(at=60)["rocker"], 3)
+        63.482
         """
         return type(self)(replace(self.description, **parts))
 
@@ -115,11 +122,24 @@ class DescribedMechanism:
             If the link does not exist.
         InputError
             If the link cannot be the ground.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").inversion("coupler").name
+        'Four-bar linkage, open, coupler fixed'
         """
         return type(self)(motion.inversion(self.model, link, input))
 
     def inversions(self) -> tuple[Inversion, ...]:
-        """All inversions of the chain, each with its type."""
+        """All inversions of the chain, each with its type.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> [inversion.type.split(":")[0] for inversion in lw.example("four-bar").inversions()][:2]
+        ['crank-rocker (GCRR)', 'double-crank (GCCC)']
+        """
         return motion.inversions(self.model)
 
     def driven_by(self, **what: Any) -> Self:
@@ -139,9 +159,23 @@ class DescribedMechanism:
         return type(self)(motion.driven_otherwise(self.model, Input(**what)))
 
     def check(self) -> CheckReport:
-        """How the mechanism was read: equations, unknowns, blocks, mobility, start."""
+        """How the mechanism was read: equations, unknowns, blocks, mobility, start.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> print(lw.example("four-bar").check().classification.type)
+        crank-rocker (GCRR): Grashof, s + l < p + q by 20 mm
+        """
         return motion.check(self.model)
 
     def equations(self) -> closure.EquationSheet:
-        """The loop equations and their Jacobian as text, LaTeX or MathML."""
+        """The loop equations and their Jacobian as text, LaTeX or MathML.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> print(lw.example("four-bar").equations().text().splitlines()[0])
+        unknowns  θ_coupler (angle), θ_rocker (angle)
+        """
         return closure.EquationSheet(self.model.equations)

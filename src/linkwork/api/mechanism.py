@@ -66,14 +66,13 @@ class Mechanism(SolvableMechanism):
         at : number or Mapping[str, number], optional
             Input value(s) in file units, as in :meth:`solve`.
         configuration : str, optional
-            The configuration or branch to draw, as in :meth:`solve`; the cycle is the one through
-            it.
+            The configuration or branch to draw, as in :meth:`solve`; also selects the cycle.
         vectors : bool
             Whether to draw the loop equations as vectors.
         traces : sequence of str, optional
             The points whose paths are drawn; by default those of the file's ``[trace]``.
         options : SceneOptions, optional
-            What else to draw; see :class:`linkwork.drawing.SceneOptions`.
+            Further contents; see :class:`linkwork.drawing.SceneOptions`.
         progress : callable, optional
             Called with the finished fraction of the cycle, 0 to 1.
 
@@ -88,6 +87,12 @@ class Mechanism(SolvableMechanism):
             If there is no position at this input value.
         UnknownNameError
             If a point or configuration does not exist.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").scene(at=60).caption
+        'crank = 60°'
         """
         position = self.solve(at, configuration=configuration, throw=True)
         chosen = options or drawing.SceneOptions()
@@ -238,7 +243,7 @@ class Mechanism(SolvableMechanism):
         all_circuits: bool,
         progress: Callable[[float], None] | None = None,
     ) -> dict[str, Motion]:
-        """The motions that are shown, by name."""
+        """The displayed motions, by name."""
         if all_circuits:
             return self.cycles(progress=progress)
         return {"motion": self.cycle() if motion is None else motion}
@@ -290,5 +295,11 @@ class Mechanism(SolvableMechanism):
         ------
         InputError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").save(pathlib.Path(folder) / "bar.toml")
         """
         textfile.save(self.description, Path(path))

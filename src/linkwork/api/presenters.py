@@ -1,4 +1,4 @@
-"""The functions that show results as text, tables, pictures and pages, for their methods."""
+"""Connects display methods of results to the functions that implement them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["register_presenters"]
 
 
 def register_presenters() -> None:
-    """Register a function for every method of a result that shows it; loaded when it is called."""
+    """Register the function behind every display method; it is loaded at its first call."""
     register_presenter(Motion.__repr__, lambda: motion_text)
     register_presenter(Motion.table, lambda: table_of)
     register_presenter(Motion.plot, lambda: drawing.plot_motion)

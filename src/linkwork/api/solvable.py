@@ -175,13 +175,13 @@ class SolvableMechanism(DescribedMechanism):
         """The cycle of a slightly changed mechanism, without proofs.
 
         It is many times faster than :meth:`sweep`: Newton-Raphson starts from the positions of the
-        neighbour, at all rows together. If that is not safe, the branch is followed anew; see
+        neighbour, at all rows together. If that is not safe, the branch is followed again; see
         :func:`linkwork.motion.warm_started`.
 
         Parameters
         ----------
         neighbour : Motion, optional
-            The cycle of a mechanism whose numbers differ a little.
+            The cycle of a mechanism with slightly different numbers.
         """
         started = None if neighbour is None else motion.warm_started(self.model, neighbour)
         if started is None:
@@ -224,6 +224,13 @@ class SolvableMechanism(DescribedMechanism):
             Input value(s) in file units; by default those of the guess.
         options : NewtonOptions, optional
             Tolerances and the limit of a step.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> found = lw.example("four-bar").iterates(at=60)
+        >>> len(found.iterates), found.position.status.name
+        (5, 'CONVERGED')
         """
         return motion.iterates(self.model, guess, at, options=options)
 
@@ -262,6 +269,24 @@ class SolvableMechanism(DescribedMechanism):
         ----------
         at : number or Mapping[str, number], optional
             Input value(s) in file units; by default those of the guess.
+
+        Returns
+        -------
+        Configurations
+            Iterates over the positions; ``completeness`` grades the list.
+
+        Raises
+        ------
+        UnknownNameError, InputError
+            If the input values do not fit the mechanism.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> for position in lw.example("four-bar").configurations(at=60):
+        ...     print(position.configuration, round(position["rocker"], 3))
+        open 64.943
+        crossed -111.77
         """
         return motion.configurations(self.model, at)
 
@@ -277,10 +302,23 @@ class SolvableMechanism(DescribedMechanism):
         progress : callable, optional
             Called with the finished fraction, 0 to 1.
 
+        Returns
+        -------
+        Circuits
+            The circuit of the guess first.
+
         Raises
         ------
         InputError
             If the mechanism has no input.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> for circuit in lw.example("four-bar").circuits():
+        ...     print(circuit.name, circuit.end.name, circuit.certified)
+        circuit 1 CLOSED True
+        circuit 2 CLOSED True
         """
         return motion.circuits(self.model, certify=certify, progress=progress)
 
@@ -293,10 +331,22 @@ class SolvableMechanism(DescribedMechanism):
             The varied numbers in file units: dimensions, lengths (``"O2 A"``), angles, coordinates
             (``"O4.x"``); or a plan of :mod:`linkwork.batch`.
 
+        Returns
+        -------
+        Family
+            D designs.
+
         Raises
         ------
         UnknownNameError, InputError
             If a name does not exist, or the arrays have different lengths.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> family = lw.example("four-bar").family({"O2 A": [38, 40, 42]})
+        >>> family.reduced(["stroke(rocker)"])["stroke(rocker)"].round(3)
+        array([69.571, 73.781, 78.116])
         """
         return batch.family_of(self.model, dimensions)
 
@@ -318,7 +368,7 @@ class SolvableMechanism(DescribedMechanism):
             As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
-        # a motion between dead points is shown there and back, along the circuit
+        # a motion between dead points is shown back and forth, along the circuit
         if motion.found.all() or not motion.found.any():
             return motion
         return self.sweep(
@@ -334,6 +384,12 @@ class SolvableMechanism(DescribedMechanism):
         ----------
         certify, progress
             As in :meth:`sweep`.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> {name: len(motion) for name, motion in lw.example("four-bar").cycles().items()}
+        {'circuit 1': 361, 'circuit 2': 361}
         """
         found = {}
         circuits = self.circuits(certify=False)

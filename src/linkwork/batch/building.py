@@ -1,9 +1,9 @@
 """Build the equations of many designs by running the builder of one design on arrays.
 
-A pass builds all designs that are left, with one of them in the lead (the mechanism itself in the
-first pass); what it finds holds for the designs in which every decision is the leader's. Most
-families need one pass. Designs for which the builder has no lanes (cams, shapes that only
-Gauss-Newton finds) are built one at a time.
+A pass runs the builder on all remaining designs and takes every decision as for one of them, the
+leader (the mechanism itself in the first pass); the results are valid for the designs with the same
+decisions. Most families need one pass. Designs that the builder cannot process as arrays (cams,
+shapes that need Gauss-Newton) are built one at a time.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from linkwork.motion.model import Model, model_of
 
 __all__ = ["Builder", "build_design", "family_base", "write_equations"]
 
-_BLOCK = 1 << 14  # designs built together: their lanes stay in the processor's cache
+_BLOCK = 1 << 14  # designs built together: their arrays fit into the processor's cache
 _MOST_PASSES = 100
 _COMPLEX = ("loops", "points")
 
 
 def write_equations(description: Description) -> LoopEquations:
-    """The equations of a description, whose numbers may be lanes."""
+    """The equations of a description; its numbers may be arrays of designs."""
     match description:
         case Linkage():
             return write_loops(description)
@@ -57,16 +57,16 @@ class Builder:
     base : Model
         The family's structure; see :func:`family_base`.
     values : Mapping[Quantity, (B,)]
-        What varies, in file units.
+        The varied numbers, in file units.
     together : bool
-        Whether designs can be built in passes; else one at a time.
+        Whether designs can be built in passes; otherwise one at a time.
 
     Attributes
     ----------
     arrays : dict[str, (B, ...)]
         The fields of :class:`Coefficients`; NaN where there is a problem.
     problem : (B,)
-        Which of ``problems`` a design has; 0 for none.
+        Index of a design's problem in ``problems``; 0 for none.
     """
 
     base: Model
@@ -84,14 +84,14 @@ class Builder:
         count = len(next(iter(self.values.values())))
         for name, values in _named(own).items():
             kind = complex if name in _COMPLEX else float
-            # one coefficient of all designs after the other, as passes write them
+            # Fortran order: passes write one coefficient of all designs at a time
             self.arrays[name] = np.full((len(values), count), np.nan, dtype=kind).T
         self.problem = np.zeros(count, dtype=np.intp)
         self._number = {"": 0}
         self._numbers_of_base = {q: q.of(self.base.description) for q in self.values}
 
     def run(self) -> None:
-        """Build every design."""
+        """Build all designs."""
         count = len(self.problem)
         for start in range(0, count, _BLOCK):
             left = np.arange(start, min(start + _BLOCK, count))
@@ -104,8 +104,8 @@ class Builder:
         self._check_finite()
 
     def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
-        """Build the designs that go the leader's way; returns the others."""
-        # the mechanism itself in lane 0; later passes follow a design that did not agree with it
+        """Build the designs with the leader's decisions; returns the others."""
+        # lane 0 is the mechanism; later passes follow a design that disagreed with it
         consensus = LaneArithmetic(1 + len(rows), leader=0 if first else 1)
         numbers = {
             quantity: consensus.lanes(
@@ -136,7 +136,7 @@ class Builder:
         return rows[~agreeing]
 
     def _alone(self, k: int) -> None:
-        """Build one design by itself."""
+        """Build one design separately."""
         numbers = {quantity: float(values[k]) for quantity, values in self.values.items()}
         rows = np.array([k])
         try:
@@ -151,8 +151,8 @@ class Builder:
             self._write(rows, np.ones(1, dtype=bool), found)
 
     def _write(self, rows: IndexArray, which: AnyArray, found: Coefficients) -> None:
-        """Enter the coefficients of the designs ``rows[which]``."""
-        # a slice is written many times faster than single places
+        """Store the coefficients of the designs ``rows[which]``."""
+        # slices are written much faster than single elements
         whole = bool(which.all()) and len(rows) == rows[-1] - rows[0] + 1
         at: slice | IndexArray = slice(rows[0], rows[-1] + 1) if whole else rows[which]
         for name, values in _named(found).items():
@@ -179,7 +179,7 @@ class Builder:
         )
 
     def _check_finite(self) -> None:
-        """What has no finite coefficients is looked at by itself, and refused if it stays so."""
+        """Rebuild designs without finite coefficients separately; reject those still not finite."""
         odd = np.flatnonzero(~self._finite() & (self.problem == 0))
         for k in odd:
             self._alone(int(k))
@@ -201,15 +201,15 @@ def _named(found: Coefficients) -> dict[str, Sequence[object]]:
 
 
 def build_design(description: Description) -> Model:
-    """The model of one design, as for any mechanism."""
+    """The model of one design, compiled like any mechanism."""
     return model_of(description)
 
 
 def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     """The structure of a family, and whether designs can be built in passes.
 
-    The structure is the mechanism's own, but that what varies keeps its term where it is 0, as the
-    offset of a slider.
+    The structure is that of the mechanism, except that varied numbers keep their terms at the value
+    0, such as the offset of a slider.
     """
     description = model.description
     spoken = sum(which.speed is not None for which in description.inputs)
@@ -232,7 +232,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
 
 
 def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
-    """The mechanism's own equations with the terms of these."""
+    """The mechanism's equations with the terms of the given ones."""
     loops = tuple(
         replace(loop, left=_plain_terms(loop.left), right=_plain_terms(loop.right))
         for loop in equations.loops

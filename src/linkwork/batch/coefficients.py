@@ -1,4 +1,4 @@
-"""The coefficients of designs as compiled programs read them, by register."""
+"""The coefficients of designs by register of the compiled programs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def loop_coefficients(designs: Designs) -> dict[str, Array]:
 
 
 def zero_coefficients(designs: Designs, coefficients: dict[str, Array]) -> set[str]:
-    """Those that are 0 in every design without a problem."""
+    """Coefficients that are 0 in every design without a problem."""
     fine = np.flatnonzero(designs.problem == 0)
     which = slice(None) if len(fine) == len(designs) else fine
     return {name for name, values in coefficients.items() if not values[which].any()}

@@ -17,7 +17,7 @@ __all__ = ["numbers", "read_columns"]
 
 
 def read_columns(table: object, columns: Sequence[str] | None) -> dict[str, Array]:
-    """The columns of a table by name; all of them unless some are chosen.
+    """The columns of a table by name; by default all.
 
     Parameters
     ----------
@@ -26,9 +26,9 @@ def read_columns(table: object, columns: Sequence[str] | None) -> dict[str, Arra
     Raises
     ------
     InputError
-        For a table without columns, or a cell that is no number: with its line.
+        If the table has no columns, or a cell is not a number (names its line).
     UnknownNameError
-        For a column that the table does not have.
+        If a column does not exist.
     """
     if isinstance(table, str | PathLike):
         return _read_csv(Path(table), columns)
@@ -70,7 +70,7 @@ def _known(names: Sequence[str], columns: Sequence[str] | None) -> Sequence[str]
 
 def _read_csv(path: Path, columns: Sequence[str] | None) -> dict[str, Array]:
     try:
-        # a byte order mark, as spreadsheets write it, is no part of the first name
+        # a byte order mark written by spreadsheets is not part of the first name
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file)
             header = [name.strip() for name in next(reader, [])]

@@ -17,23 +17,23 @@ from linkwork.motion.quantity_values import QuantityValues
 __all__ = ["DesignValues"]
 
 
-_NONE = np.zeros(())  # the rates of what is only asked for its value
+_NONE = np.zeros(())  # rates of a quantity whose value only is requested
 
 
 class DesignValues(QuantityValues):
-    """Reads quantities off the variables of D designs over R rows, (R, D) each.
+    """Computes quantities from the variables of D designs over R rows, (R, D) each.
 
     Parameters
     ----------
     designs : Designs
     inputs : (R, p)
-        As asked, file units.
+        Requested inputs, file units.
     v : (n, R, D)
         Unknowns, internal units; NaN where there is no position.
     turns : (R, D)
-        How many whole turns further than asked the first input of a position is.
+        Whole turns from the requested to the actual first input of a position.
     rates : DesignRates, optional
-        Without them only values can be asked for.
+        If omitted, only values are available.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class DesignValues(QuantityValues):
 
     @cached_property
     def _blanks(self) -> tuple[Array, Array]:
-        """0, NaN where a variable has no first or no second derivative, (R, D)."""
+        """0, or NaN where a variable has no first or second derivative, (R, D)."""
         if self.rates is None:
             return _NONE, _NONE
         first = np.isnan(self.rates.first).any(axis=0) | self.lost
@@ -84,7 +84,7 @@ class DesignValues(QuantityValues):
         return Jet(value, first, second)
 
     def place(self, point: str) -> Jet:
-        """A point by its exact name: its parent's place, and its own terms."""
+        """A point by its exact name: its parent's position plus its own terms."""
         table = self.model.compiled.points
         number = {own: k for k, own in enumerate(table.names)}
         parent = self.equations.points[point].parent

@@ -29,18 +29,18 @@ class _HasModel(Protocol):
 class Designs:
     """B designs of one topology as arrays.
 
-    Every array has its coefficients one after the other in memory (Fortran order): a coefficient
-    of all designs is contiguous. Rows of designs with a problem are NaN.
+    Arrays are in Fortran order: a coefficient of all designs is contiguous in memory. Rows of
+    designs with a problem are NaN.
 
     Parameters
     ----------
     base : Model
-        The mechanism itself: structure, blocks, names. What varies keeps its term even where it is
-        0 in the mechanism, as the offset of a slider.
+        The mechanism itself: structure, blocks, names. Varied numbers keep their terms even if they
+        are 0 in the mechanism, such as the offset of a slider.
     dimensions : Mapping[str, (B,)]
-        What varies, in file units, by the name asked.
+        The varied numbers, in file units, by the names given.
     quantities : tuple of Quantity
-        The same as numbers of the description, in the same order.
+        The corresponding numbers of the description, in the same order.
     loops : (B, T) complex
         Coefficients of ``base.compiled.table.loops``, in the order of its terms, [length].
     linear : (B, R)
@@ -50,19 +50,19 @@ class Designs:
     link_angles : (B, links)
         Constants of ``base.equations.links``, [rad].
     start : (B, N)
-        Guess of the unknowns, then the inputs that it belongs to, [rad] or [length].
+        Guess of the unknowns, then its inputs, [rad] or [length].
     numbers : (B, D)
-        All named dimensions, in the order of ``base.equations.dimensions``, in file units: for
-        outputs, and the constants of plain equations.
+        All named dimensions, in the order of ``base.equations.dimensions``, in file units, for
+        outputs and constants of plain equations.
     redundant : (B, r)
         Lengths of ``base.equations.redundant``.
     length_scale : (B,)
         The longest link.
     problem : (B,)
-        Which of ``problems`` a design has; 0 for none.
+        Index of a design's problem in ``problems``; 0 for none.
     problems : tuple of str
-        Distinct problems, the first one empty. Numbers in them are left out where they differ from
-        design to design: :meth:`message` has those of one design.
+        Distinct problems, the first one empty. Numbers that differ between designs are omitted:
+        :meth:`message` contains those of one design.
     """
 
     base: Model
@@ -86,7 +86,7 @@ class Designs:
         bad = int(np.count_nonzero(self.problem))
         varied = ", ".join(self.dimensions)
         return (
-            f'<Designs of "{self.base.description.name}": {len(self)} with their own {varied}; '
+            f'<Designs of "{self.base.description.name}": {len(self)} with varied {varied}; '
             f"{bad} with a problem>"
         )
 
@@ -101,19 +101,19 @@ class Designs:
         return replace(self, dimensions=FrozenDict(dimensions), **rows)  # type: ignore[arg-type]
 
     def description(self, k: int) -> Description:
-        """The k-th design as it would be described by itself.
+        """The description of the k-th design.
 
         Raises
         ------
         MechanismError
-            If it has a problem that shows in its description.
+            If its description has a problem.
         """
         columns = zip(self.quantities, self.dimensions.values(), strict=True)
         numbers = {quantity: float(values[k]) for quantity, values in columns}
         return with_numbers(self.base.description, numbers)
 
     def design(self, k: int) -> Model:
-        """The k-th design by itself, made ready as any mechanism is.
+        """The compiled model of the k-th design.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class Designs:
         return build_design(self.description(k))
 
     def message(self, k: int) -> str:
-        """What is wrong with the k-th design, with its own numbers; empty for nothing."""
+        """The problem of the k-th design, with its numbers; empty if there is none."""
         if not self.problem[k]:
             return ""
         try:
@@ -134,13 +134,13 @@ class Designs:
 
 
 def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -> Designs:
-    """Designs that differ in some numbers from a mechanism.
+    """Designs of a mechanism with some numbers varied.
 
     Parameters
     ----------
-    mechanism : Model, or an object with one
+    mechanism : Model, or an object with a model
     dimensions : Mapping[str, number or (B,)]
-        What varies, in file units: a name of ``[dimensions]``; an entry of ``[lengths]``
+        The varied numbers, in file units: a name of ``[dimensions]``; an entry of ``[lengths]``
         (``"O2 A"``) or ``[angles]`` (``"B A P"``); a coordinate (``"O4.x"``); the offset of a
         slider (``"s16.offset"``); in loops and plain equations a name of ``[guess]``. A plain
         number holds for all designs.
@@ -148,15 +148,23 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     Raises
     ------
     UnknownNameError
-        For a name that is no number of the mechanism.
+        If a name is not a number of the mechanism.
     InputError
-        If what is given is no number, or arrays differ in length.
+        If an entry is not a number or array of numbers, or arrays differ in length.
 
     Notes
     -----
-    A design that cannot be built has a problem and raises nothing. The equations are those that
-    the design has by itself, to rounding. A mechanism that names a configuration gives its start
-    to all designs: looking for the configuration of that name in each would take long.
+    A design that cannot be built has a problem; no error is raised. The equations equal those of
+    the design compiled separately, to rounding. If the mechanism names a configuration, all designs
+    start from it: a search for this configuration in every design would take too long.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> from linkwork.batch import designs_of
+    >>> designs = designs_of(lw.example("four-bar"), {"O2 A": [38, 40, -1]})
+    >>> designs.problem.tolist(), designs.loops.shape[0]
+    ([0, 0, 1], 3)
     """
     model = mechanism if isinstance(mechanism, Model) else mechanism.model
     if not isinstance(dimensions, Mapping):
@@ -193,7 +201,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
 
 def _check_different(named: Mapping[str, Quantity]) -> None:
     if not named:
-        raise InputError("nothing varies in this family: give a dimension and its values")
+        raise InputError("this family varies no numbers: give a dimension and its values")
     first: dict[Quantity, str] = {}
     for name, quantity in named.items():
         if first.setdefault(quantity, name) != name:

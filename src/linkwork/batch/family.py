@@ -22,11 +22,11 @@ from linkwork.motion.model import Model
 
 __all__ = ["Family", "Reduction", "family_of"]
 
-#: A reduction by name, or a function of values (D, R) that gives (D,); NaN marks missing positions.
+#: A reduction by name, or a function from values (D, R) to (D,); NaN marks missing positions.
 Reduction = str | Callable[[Array], Array]
 
-_MOST_BYTES = 4 << 30  # of unknowns that one call may hold in memory
-_PART = 16_384  # designs reduced at a time, fewer where unknowns and rates take more than
+_MOST_BYTES = 4 << 30  # limit for the unknowns of one call
+_PART = 16_384  # designs reduced at a time, fewer if unknowns and rates exceed
 _PART_BYTES = 1 << 30
 
 
@@ -36,6 +36,14 @@ class Family:
     Parameters
     ----------
     designs : Designs
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> family = lw.example("four-bar").family({"O2 A": [38, 40, 42]})
+    >>> motion = family.sweep()
+    >>> motion["rocker"].shape, bool(motion.certified.all())
+    ((3, 361), True)
     """
 
     def __init__(self, designs: Designs) -> None:
@@ -47,11 +55,11 @@ class Family:
     def __repr__(self) -> str:
         varied = ", ".join(self.designs.dimensions)
         name = self.designs.base.description.name
-        return f'<Family of "{name}": {len(self)} designs with their own {varied}>'
+        return f'<Family of "{name}": {len(self)} designs with varied {varied}>'
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies, (D,) each, in file units."""
+        """The varied numbers, (D,) each, in file units."""
         return self.designs.dimensions
 
     def take(self, index: Sequence[int] | IndexArray | BoolArray | slice) -> Family:
@@ -66,28 +74,28 @@ class Family:
         specialised: bool | None = None,
         device: str = "cpu",
     ) -> FamilyMotion:
-        """Every design at every row of the mechanism's table, each on the branch of its start.
+        """Solve every design at every row of the mechanism's table, on the branch of its start.
 
-        Positions, statuses and proofs are those that each design has by itself.
+        Positions, statuses and proofs equal those of each design swept alone.
 
         Parameters
         ----------
         certify : bool
             Prove every position and the motion to it.
         threads : int, optional
-            How many cores work; all of them by default.
+            Number of cores; all by default.
         specialised : bool, optional
-            Compile this mechanism's equations, which takes seconds once and is kept on disk. By
-            default where so many positions are asked for that it saves time.
+            Compile this mechanism's equations, which takes seconds once and is cached on disk. By
+            default only if the number of positions is large enough to save time.
         device : str
-            ``"gpu"``: a graphics card computes positions and proofs (the extra ``gpu``), the same
-            to rounding; compiling takes seconds once for each mechanism.
+            ``"gpu"`` computes positions and proofs on a graphics card (extra ``gpu``), with the
+            same results to rounding; compiling takes seconds once for each mechanism.
 
         Raises
         ------
         InputError
-            If the result would not fit into memory: use :meth:`parts` or :meth:`reduced`; if there
-            is no such device.
+            If the result does not fit into memory (use :meth:`parts` or :meth:`reduced`), or the
+            device does not exist.
         MissingPackageError
             If ``gpu`` is not installed.
         """
@@ -98,7 +106,7 @@ class Family:
         positions = len(self) * len(self.designs.base.rows)
         execution = Execution(specialised=specialised, positions=positions, device=device)
         if execution.device == "gpu":
-            graphics_card()  # or the reason why there is none, before anything is computed
+            graphics_card()  # raises an error before any computation
         return execution
 
     def _sweep(self, certify: bool, threads: int, execution: Execution) -> FamilyMotion:
@@ -123,14 +131,14 @@ class Family:
         specialised: bool | None = None,
         device: str = "cpu",
     ) -> Iterator[FamilyMotion]:
-        """The motions of so many designs at a time, in order; memory stays bounded."""
+        """The motions of ``designs`` designs at a time, in order, with bounded memory."""
         designs, workers = whole_number("designs", designs, least=1), _workers(threads)
         parts = (self.take(slice(k, k + designs)) for k in range(0, len(self), designs))
         execution = self._execution(specialised, device)
         return (part._sweep(certify, workers, execution) for part in parts)
 
     def _part(self) -> int:
-        """How many designs are reduced at a time, rates included."""
+        """Number of designs reduced at a time, rates included."""
         model = self.designs.base
         # unknowns and two derivatives, and what is computed of them
         each = 8 * len(model.rows) * (3 * len(model.equations.unknowns) + 1)
@@ -145,32 +153,31 @@ class Family:
         specialised: bool | None = None,
         device: str = "cpu",
     ) -> dict[str, Array]:
-        """One number per design of its whole motion: ``reduced(["stroke(s16)", "max(mu)"])``.
+        """One number for the whole motion of each design: ``reduced(["stroke(s16)", "max(mu)"])``.
 
         Parameters
         ----------
         wanted : sequence of str, or Mapping
-            Numbers of a motion by name, see ``linkwork quantities``; or quantities and rates
-            (``B.x.velocity``), each with a function, or several, of values (D, R) to (D,), in which
+            Numbers of a motion by name, see ``linkwork quantities``; or a mapping of quantities and
+            rates (``B.x.velocity``) to one or more functions from values (D, R) to (D,), where
             missing positions are NaN. Names of reductions in a mapping are deprecated.
 
         Returns
         -------
         dict
-            By these names, ``"mu.name of the function"`` for functions, (D,) each, with ``found``
-            and ``certified``: how many rows hold a position, and how many are proved;
-            ``limit.lower`` and ``limit.upper``: between which inputs a design can move, see
-            :class:`FamilyLimits`.
+            By these names, ``"mu.name of the function"`` for functions, (D,) each; also ``found``
+            and ``certified``, the numbers of rows with a position and of proved rows, and
+            ``limit.lower`` and ``limit.upper``, the range of inputs, see :class:`FamilyLimits`.
 
         Raises
         ------
         InputError, UnknownNameError
-            For a number of a motion or a quantity that does not exist.
+            If a number of a motion or a quantity does not exist.
         """
         columns = list(_columns(wanted))
-        # the motion of no designs knows all names, at no cost
+        # a motion without designs has all names, at no cost
         nothing = self.take(slice(0)).sweep(certify=False)
-        for column in columns:  # what does not exist is refused before anything is computed
+        for column in columns:  # reject unknown names before any computation
             column.check(nothing)
         found: dict[str, list[Array]] = {column.key: [np.empty(0)] for column in columns}
         found |= {"found": [np.empty(0, dtype=int)], "certified": [np.empty(0, dtype=int)]}
@@ -188,25 +195,25 @@ class Family:
 
 
 def family_of(model: Model, dimensions: Mapping[str, object]) -> Family:
-    """The family of a mechanism; see :func:`linkwork.batch.designs_of` for what may vary."""
+    """The family of a mechanism; :func:`linkwork.batch.designs_of` lists the variable numbers."""
     return Family(designs_of(model, dimensions))
 
 
 def _workers(threads: int | None) -> int:
-    """How many threads are asked for; as many as there are cores by default."""
+    """The number of threads; by default the number of cores."""
     return cores() if threads is None else whole_number("threads", threads, least=1)
 
 
 @dataclass(frozen=True)
 class _Column:
-    """A number of every design: by its name, or what a function makes of a quantity's values."""
+    """A number of every design, given by name or by a function of a quantity's values."""
 
     key: str
     name: str
     function: Callable[[Array], Array] | None = None
 
     def check(self, motion: FamilyMotion) -> None:
-        """Refuse what does not exist, on the motion of no designs."""
+        """Reject unknown names, using a motion without designs."""
         if self.function is None:
             motion.value(self.name)
         else:

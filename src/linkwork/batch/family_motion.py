@@ -40,9 +40,9 @@ from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
 
-_MOST_BYTES = 4 << 30  # of labelled arrays that nobody named
-_EVIDENCE = ("residual", "condition", "radius")  # of the evidence of a motion's rows
-_NEAR = 1 << 16  # positions whose rates are read at a time: temporaries stay in the cache
+_MOST_BYTES = 4 << 30  # limit for labelled arrays requested without names
+_EVIDENCE = ("residual", "condition", "radius")  # names of the evidence of rows
+_NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit into the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -53,11 +53,11 @@ class FamilyMotion:
     ----------
     designs : Designs
     inputs : (R, p)
-        What was asked, in file units.
+        Requested inputs, in file units.
     rows : DesignRows
         Unknowns, statuses and proofs, internal units.
     threads : int
-        How many cores compute rates, which happens when the first one is asked for.
+        Number of cores that compute rates, at their first request.
     """
 
     designs: Designs
@@ -84,7 +84,7 @@ class FamilyMotion:
         return design_rates(self.designs, self.rows, self.threads)
 
     def _moving(self) -> Iterator[tuple[slice, DesignValues]]:
-        """Quantities with rates, some designs at a time, so that what is computed stays near."""
+        """Quantities with rates, some designs at a time for the processor's cache."""
         rates, rows = self._rates, self.rows
         # temporaries of all designs at once would leave the cache
         step = max(1, _NEAR // max(1, len(self.inputs)))
@@ -106,16 +106,16 @@ class FamilyMotion:
 
     @property
     def quantities(self) -> Quantities:
-        """What can be asked for."""
+        """All quantities by name."""
         return self.designs.base.quantities
 
     def quantity(self, name: str) -> Asked:
-        """A quantity by name, checked before anything is computed.
+        """A quantity by name, checked before any computation.
 
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            Lists the nearest names.
         """
         asked = self.quantities.find(name)
         if asked.group is Group.EVIDENCE and asked.name not in _EVIDENCE:
@@ -126,7 +126,7 @@ class FamilyMotion:
         return asked
 
     def check_names(self, names: Iterable[str]) -> None:
-        """Raise an error for names that do not exist, before anything is computed.
+        """Raise an error for unknown names, before any computation.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class FamilyMotion:
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            Lists the nearest names.
         """
         for name in names:
             self.quantity(name)
@@ -144,13 +144,13 @@ class FamilyMotion:
         """Values of a quantity by name, (D, R), file units; NaN where there is no position.
 
         Names are those of a :class:`~linkwork.results.motion.Motion`: ``family["B.x"]``, and of its
-        rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians): NaN at dead
-        points too. ``condition``, ``residual`` and ``radius`` are names as in its table.
+        rates ``family["B.x.d1"]``, ``family["B.x.velocity"]`` (angles in radians), which are NaN
+        at dead points. ``condition``, ``residual`` and ``radius`` are available as in its table.
 
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            Lists the nearest names.
         """
         asked = self.quantity(name)
         if asked.group is Group.EVIDENCE:
@@ -169,12 +169,12 @@ class FamilyMotion:
         return found
 
     def series(self, name: str) -> Series:
-        """A quantity with both derivatives by the leading input, (D, R) each, as in a motion.
+        """A quantity with both derivatives with respect to the leading input, (D, R) each.
 
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            Lists the nearest names.
         """
         asked = self.quantity(name)
         value, first, second = (np.empty(self.status.shape) for _ in range(3))
@@ -189,7 +189,7 @@ class FamilyMotion:
         Raises
         ------
         InputError, UnknownNameError
-            If there is none of this name.
+            If the name does not exist.
         """
         asked = self.quantities.find_of_motion(name)
         if not asked.follows:
@@ -201,7 +201,7 @@ class FamilyMotion:
         return found
 
     def trace(self, point: str) -> ComplexArray:
-        """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` its velocity likewise."""
+        """The path of a point as x + iy, (D, R); ``trace("B.velocity")`` is its velocity."""
         own, rate = Rate.split(point)
         points = self.quantities.names.points
         own = find_spelling(own, points)
@@ -213,31 +213,31 @@ class FamilyMotion:
 
     @cached_property
     def speed(self) -> Array | None:
-        """The rate of every design's first input, (D,) [rad/s or length/s]; ``None`` without."""
+        """The speed of every design's first input, (D,) [rad/s or length/s]; ``None`` without."""
         return design_speeds(self.designs)
 
     @property
     def condition(self) -> Array:
-        """Of the equations at every position, (D, R): how much they magnify errors; see
+        """Condition number of the equations at every position, (D, R); see
         :class:`~linkwork.results.motion.Motion`.
         """
         return self._evidence.condition.T
 
     @property
     def residual(self) -> Array:
-        """How well every position closes, (D, R), relative to the longest link."""
+        """Residual of every position, (D, R), relative to the longest link."""
         return self._evidence.residual.T
 
     @cached_property
     def limits(self) -> FamilyLimits:
-        """Between which inputs every design can move, on the branch of its start."""
+        """The range of inputs of every design, on the branch of its start."""
         model = self.designs.base
         unit = float(model.input_scale[lock_step(model.rows)[0]])
         return FamilyLimits.of(self.rows.limits, self.rows.limit_kinds, unit)
 
     @property
     def dimensions(self) -> Mapping[str, Array]:
-        """What varies from design to design, (D,) each, in file units."""
+        """The varied numbers, (D,) each, in file units."""
         return self.designs.dimensions
 
     @property
@@ -247,7 +247,7 @@ class FamilyMotion:
 
     @property
     def found(self) -> BoolArray:
-        """Which rows hold a position, (D, R)."""
+        """Whether a row has a position, (D, R)."""
         found: BoolArray = np.isin(self.rows.status.T, Status.CONVERGED.code)
         return found
 
@@ -258,26 +258,26 @@ class FamilyMotion:
 
     @property
     def certified(self) -> BoolArray:
-        """Which rows are proved, (D, R)."""
+        """Whether a row is proved, (D, R)."""
         proved: BoolArray = np.isin(self.rows.certification.T, Certification.CERTIFIED.code)
         return proved
 
     @property
     def radius(self) -> Array:
-        """Within this a true position lies, (D, R), weighted; NaN where nothing is proved."""
+        """Radius within which a true position is proved, (D, R), weighted; NaN without a proof."""
         radius = self.rows.radius
         return radius.T if len(radius) else np.full(self.status.shape, np.nan)
 
     @property
     def counts(self) -> Counter[Status]:
-        """How many rows ended in which status."""
+        """Number of rows by status."""
         codes, numbers = np.unique(self.rows.status, return_counts=True)
         pairs = zip(codes.tolist(), numbers.tolist(), strict=True)
         return Counter({Status.of_code(code): number for code, number in pairs})
 
     def message(self, k: int) -> str:
-        """Why rows of the k-th design have no position: what the design says by itself; "" if all
-        were found.
+        """Why rows of the k-th design have no position, as for the design alone; "" if all were
+        found.
         """
         if self.found[k].all():
             return ""
@@ -289,14 +289,14 @@ class FamilyMotion:
         Parameters
         ----------
         names : str
-            Quantities and rates; all of them if none is named.
+            Quantities and rates; all by default.
 
         Raises
         ------
         UnknownNameError
-            With the names that exist.
+            Lists the existing names.
         InputError
-            If all of them would not fit into memory.
+            If the arrays do not fit into memory.
         """
         try:
             import xarray
@@ -332,12 +332,12 @@ class FamilyMotion:
         if needed > _MOST_BYTES:
             raise InputError(
                 f"{len(names)} quantities and rates of {len(self)} designs take "
-                f"{needed / 2**30:.0f} GiB: name the ones that you need"
+                f"{needed / 2**30:.0f} GiB: name those you need"
             )
         return names
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity or rate, "" for none."""
+        """The unit of a quantity or rate, or ""."""
         return self.quantities.find(name).unit
 
 

@@ -1,4 +1,4 @@
-"""Solve designs over a table of inputs by compiled kernels, and the rest one by one."""
+"""Solve designs over a table of inputs by compiled kernels, the remaining ones one by one."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ from linkwork.results.motion import LimitKind
 __all__ = ["March", "Path", "design_rows"]
 
 _ON_PATH = 1e-12
-_FINEST = 1e-8  # step, of a radian or a length, where a row lies right in front of a dead point
+_FINEST = 1e-8  # relative step for rows directly before a dead point
 
 
 def design_rows(
     designs: Designs, *, certify: bool, threads: int = 1, execution: Execution | None = None
 ) -> DesignRows:
-    """Every design over the rows of the mechanism's table, on the branch of its own start.
+    """Solve every design over the rows of the mechanism's table, on the branch of its start.
 
-    The compiled march serves equations of loops and lines; designs that it cannot lead through
-    all rows (dead points, change points, no position at the start) and mechanisms with other
-    equations are swept one at a time, so that every row has the status that it has by itself.
+    The compiled march handles loop and linear equations; designs that it cannot complete (dead
+    points, change points, no position at the start) and mechanisms with other equations are swept
+    one at a time, so every row has the same status as in a single sweep.
     """
     model = designs.base
     left = designs.problem == 0
@@ -64,7 +64,7 @@ def design_rows(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Path:
-    """The straight line through the table's inputs: u = origin + rate t; ``size``: of a step."""
+    """The straight line through the table's inputs: u = origin + rate t; ``size``: step."""
 
     model: Model
     lead: int
@@ -74,7 +74,7 @@ class Path:
 
     @classmethod
     def of(cls, model: Model) -> Path | None:
-        """``None`` where the compiled march does not serve."""
+        """``None`` if the compiled march cannot be used."""
         if not are_served(model):
             return None
         lead, rate = lock_step(model.rows)
@@ -84,12 +84,12 @@ class Path:
 
     @property
     def falling(self) -> bool:
-        """Whether the table goes towards smaller values of t."""
+        """Whether t decreases along the table."""
         t = self.model.rows[:, self.lead]
         return bool(t[-1] < t[0])
 
     def input_radius(self, start: Array) -> Array:
-        """How far inputs asked for, or computed on the way from ``start`` (D,), are off, (p,)."""
+        """Error bounds of requested inputs, and of those computed from ``start`` (D,), (p,)."""
         t = self.model.rows[:, self.lead]
         gap = np.abs(self.model.rows - (self.origin + np.outer(t, self.rate))).max(axis=0)
         farthest = max(np.abs(t).max(), np.abs(start[np.isfinite(start)]).max(initial=0.0))
@@ -101,7 +101,7 @@ class Path:
     def fill(
         self, designs: Designs, found: DesignRows, certify: bool, threads: int, execution: Execution
     ) -> BoolArray:
-        """Designs that went through all rows are filled in; which they are, (D,)."""
+        """Fill in the designs that reached all rows; returns their mask, (D,)."""
         march = self.march(designs, certify, threads, execution)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
@@ -114,7 +114,7 @@ class Path:
         return whole
 
     def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> March:
-        """The march of designs whose start lies on the path, or can be led to it."""
+        """The march of designs that start on the path or can be moved to it."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
@@ -122,7 +122,7 @@ class Path:
         return March(self, designs, served, certify, threads, execution)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
-        """Statuses of rows that were reached, and of the others of designs that are done."""
+        """Set the status of reached rows, and of the other rows of finished designs."""
         proof = Certification.CERTIFIED if certify else Certification.NOT_ASKED
         if reached.all():
             found.status[:], found.certification[:] = Status.CONVERGED.code, proof.code
@@ -135,7 +135,7 @@ class Path:
 
 
 class March:
-    """The compiled march of a family, and what becomes of designs that stop at dead points."""
+    """The compiled march of a family, with the treatment of dead points."""
 
     def __init__(
         self,
@@ -155,16 +155,16 @@ class March:
         self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
         self.kernel.shift(execution)
         # NaN: the march leaves such designs out
-        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
+        self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # otherwise not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
         self.free = turns_freely(model)
-        #: Rows (W,) that designs (W,) have gone around for, and how many whole turns.
+        #: Rows (W,) reached by designs (W,) after whole turns, and the number of turns.
         self.wound: list[tuple[IndexArray, IndexArray, int]] = []
         self.limits = np.repeat([[-np.inf], [np.inf]], len(designs), axis=1)
 
     def _enter(self, designs: Designs, beside: IndexArray) -> None:
-        """Let designs whose start lies beside the path begin at the row they can be led to."""
+        """Move designs that start off the path to a row on it."""
         if not len(beside):
             return
         t = self.path.model.rows[:, self.path.lead]
@@ -175,7 +175,7 @@ class March:
         self.guess[:, beside], self.start[beside] = v, t[nearest]
 
     def note_limits(self, found: DesignRows, which: BoolArray) -> None:
-        """Enter where some designs can move; what the march has located are dead points."""
+        """Store the limits of some designs; those located by the march are dead points."""
         np.copyto(found.limits, self.limits, where=which)
         dead = LIMIT_KINDS.index(LimitKind.DEAD_POINT)
         np.copyto(found.limit_kinds, np.int8(dead), where=which & np.isfinite(self.limits))
@@ -186,11 +186,11 @@ class March:
         Returns
         -------
         done, reached : (D,), (R, D)
-            Which designs need nothing more: each row is reached, or lies beyond a dead point.
+            Designs that are finished: each row is reached or lies beyond a dead point.
         """
         begun, found = self._march(t, v, radius, slice(None))
         reached = found.reached
-        if reached.all():  # as a rule, and quicker to tell than of each design
+        if reached.all():  # the usual case, quicker to check for all designs together
             return np.ones(len(begun), dtype=bool), reached
         done: BoolArray = np.logical_and.reduce(reached, axis=0)
         stopped = np.flatnonzero(begun & ~done)
@@ -203,7 +203,7 @@ class March:
         around = (-1, 1) if self.free else ()
         for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
-        for turns in (0, *around):  # rows right in front of dead points
+        for turns in (0, *around):  # rows directly before dead points
             self._wind(t, turns, v, radius, reached, stopped, limits, _FINEST)
         self.limits[:, stopped] = limits
         settled = self._find_complete(t, reached[:, stopped], limits)
@@ -219,10 +219,10 @@ class March:
         apart: float = 0.0,
         smallest: float | None = None,
     ) -> tuple[BoolArray, MarchResult]:
-        """Rows at values of t that may be ``apart`` from those that are meant, and which designs
-        began.
+        """Rows at values of t, which may differ by ``apart`` from the requested ones, and a mask of
+        the designs that began.
 
-        ``smallest``: of the steps, if it is another one than usual.
+        ``smallest``: minimum step, if not the default.
         """
         steps = Steps() if smallest is None else Steps(smallest=smallest)
         found = self.kernel.result(v, radius)
@@ -243,11 +243,11 @@ class March:
     def _limit(
         self, limits: Array, found: MarchResult, there: IndexArray, mine: IndexArray
     ) -> None:
-        """Note between which values of t designs can move, where a march says that they stopped;
-        ``there`` (S,): their places in the march, ``mine`` (S,): in the family.
+        """Store the range of t of designs stopped in a march; ``there`` (S,): their indices in the
+        march, ``mine`` (S,): in the family.
 
-        ``limits`` (2, S): infinite where nothing has stopped them; NaN where what did is no dead
-        point that was found.
+        ``limits`` (2, S): infinite if the march was not stopped; NaN if it was stopped without a
+        located dead point.
         """
         for way in range(2):
             ended = np.flatnonzero(~np.isnan(found.end[way, there]) & np.isinf(limits[way]))
@@ -273,7 +273,7 @@ class March:
         limits: Array,
         smallest: float | None = None,
     ) -> None:
-        """Fill the rows that designs reach so many turns away, with steps as small as that."""
+        """Fill the rows reached after whole ``turns``, with steps down to ``smallest``."""
         moved = t + turns * FULL_TURN
         inside = (moved[:, None] >= limits[0]) & (moved[:, None] <= limits[1])
         those = np.flatnonzero((~reached[:, stopped] & inside).any(axis=0))
@@ -281,7 +281,7 @@ class March:
             return
         mine = stopped[those]
         own, radii = np.empty((len(v), len(t), len(mine))), np.empty((len(radius), len(mine)))
-        # neither 2π nor the sum is exact
+        # 2π and the sum are rounded
         apart = (
             4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + abs(turns) * FULL_TURN)
             if turns
@@ -300,7 +300,7 @@ class March:
         limits[:, those] = known
 
     def _find_complete(self, t: Array, reached: BoolArray, limits: Array) -> BoolArray:
-        """Designs of which no row is missing that lies within their limits, (S,)."""
+        """Designs without missing rows within their limits, (S,)."""
         low, high = limits
         settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
         # turns that can bring a row of the table between two limits
@@ -312,7 +312,7 @@ class March:
 
 
 def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
-    """What the programs of a family read, by register, (D,) each."""
+    """The coefficients of a family by register, (D,) each."""
     found = loop_coefficients(designs)
     input_radius = path.input_radius(
         designs.start[:, path.model.compiled.solver.unknowns + path.lead]

@@ -14,7 +14,7 @@ from linkwork.results.motion import LimitKind
 
 __all__ = ["LIMIT_KINDS", "FamilyLimits", "ends_as_limits"]
 
-#: What ends a branch, by code; 0 for nothing.
+#: Kind of the end of a branch, by code; 0 for none.
 LIMIT_KINDS: tuple[LimitKind | None, ...] = (None, *LimitKind)
 
 
@@ -25,9 +25,9 @@ class FamilyLimits:
     Parameters
     ----------
     lower, upper : (D,)
-        The leading input there, in file units, around the input of the design's own start: -∞, ∞
-        where nothing ended the branch on the way to the rows of the table; NaN where an end was
-        met and not located, or the design has no position.
+        The leading input at the ends, in file units, below and above the input of the design's
+        start: -∞, ∞ if the branch has no end on the path to the rows of the table; NaN if an end
+        was met but not located, or the design has no position.
     lower_kind, upper_kind : (D,) text
         ``dead point``, ``change point``, ``limit`` (not located), or "" for none.
     """
@@ -43,7 +43,7 @@ class FamilyLimits:
 
     @classmethod
     def of(cls, limits: Array, kinds: StatusArray, unit: float) -> FamilyLimits:
-        """From values (2, D) and codes (2, D); ``unit``: internal units per file unit."""
+        """Limits from values (2, D) and codes (2, D); ``unit``: internal units per file unit."""
         words = np.array(["" if kind is None else kind.word for kind in LIMIT_KINDS])
         lower, upper = limits / unit
         lower_kind, upper_kind = words[kinds]

@@ -13,7 +13,7 @@ from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 
 __all__ = ["lead_to_rows"]
 
-_CHUNK = 1 << 22  # distances held at a time
+_CHUNK = 1 << 22  # distances in memory at a time
 
 
 def lead_to_rows(
@@ -24,12 +24,12 @@ def lead_to_rows(
     which: IndexArray,
     threads: int,
 ) -> tuple[Array, IndexArray]:
-    """Lead designs from their starts to the nearest row, straight from inputs to inputs.
+    """Move designs from their starts to the nearest row, along a straight line of inputs.
 
     Parameters
     ----------
     rows : (R, p)
-        Inputs of the table's rows on its path, two or more inputs.
+        Two or more inputs at the rows of the table.
     coefficients : Mapping[str, (D,)]
         By register.
     which : (M,)
@@ -38,7 +38,7 @@ def lead_to_rows(
     Returns
     -------
     v : (n, M)
-        Unknowns at the rows, NaN where the way does not lead there; proved with the kernel's steps.
+        Unknowns at the rows, NaN if a row is not reached; proved with the kernel's steps.
     nearest : (M,)
         The rows.
     """
@@ -52,14 +52,14 @@ def lead_to_rows(
         given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
     found = kernel.result(v, radius)
-    # each design has a path of its own, from its start (0) to its row (1)
+    # each design has its own path, from its start (0) to its row (1)
     ends = np.array([0.0, 1.0])
     kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
     return np.where(found.reached[1], v[:, 1], np.nan), nearest
 
 
 def _nearest(designs: Designs, rows: Array, which: IndexArray) -> IndexArray:
-    """The row whose inputs differ least, lengths relative to the longest link, (M,)."""
+    """The row with the nearest inputs, lengths relative to the longest link, (M,)."""
     n = designs.base.compiled.solver.unknowns
     turns = designs.base.compiled.table.is_angle[n:]
     found = np.empty(len(which), dtype=np.intp)

@@ -32,18 +32,17 @@ class Coefficients:
 
 @dataclass(frozen=True, kw_only=True)
 class Pattern:
-    """Everything of equations that is no coefficient.
+    """The parts of equations other than coefficients.
 
     Parameters
     ----------
     rest : tuple
         Variables, linear rows without constants, parents of points, variables of link angles,
-        named numbers, redundant lengths: equal or not.
+        named numbers, redundant lengths; compared for equality.
     loops, points : tuple of tuple of TermKey
         The terms of every row.
     laws : tuple of LawEquation
-        Laws of cams and curves; they have numbers, which have no place in a family and must be
-        the same.
+        Laws of cams and curves; their numbers cannot vary in a family and must be equal.
     """
 
     rest: tuple[object, ...]
@@ -71,9 +70,9 @@ class Pattern:
         )
 
     def coefficients(self, equations: LoopEquations) -> Coefficients | None:
-        """The coefficients in this pattern's order; ``None`` if they do not fit into it.
+        """The coefficients in the order of this pattern; ``None`` if they do not match it.
 
-        A term that the equations do not have, as that of an offset of 0, has the coefficient 0.
+        A term missing in the equations, such as that of an offset of 0, has the coefficient 0.
         """
         own = Pattern.of(equations)
         if own.rest != self.rest or not _same_laws(own.laws, self.laws):
@@ -104,7 +103,7 @@ def _in_order(
     keys: Sequence[Sequence[TermKey]],
     wanted: Sequence[Sequence[TermKey]],
 ) -> list[complex] | None:
-    """The values of all terms by the wanted keys; like terms of a row in their own order."""
+    """The values of all terms by key; like terms of a row keep their order."""
     if len(rows) != len(wanted):
         return None
     values: list[complex] = []

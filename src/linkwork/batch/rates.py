@@ -27,15 +27,16 @@ from linkwork.motion.speeds import leading_speeds
 
 __all__ = ["DesignEvidence", "DesignRates", "design_evidence", "design_rates", "design_speeds"]
 
-_MOST_BYTES = 8 << 30  # of the rates of one family
+_MOST_BYTES = 8 << 30  # limit for the rates of one family
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignRates:
-    """Derivatives of the unknowns by the leading input, (n, R, D) each, internal units.
+    """Derivatives of the unknowns with respect to the leading input, (n, R, D) each, internal
+    units.
 
-    NaN where there is no position, and where they do not exist (dead points). ``driven`` (2, R, D):
-    whether the inputs have a first and a second one.
+    NaN without a position and at dead points. ``driven`` (2, R, D): whether the inputs have first
+    and second derivatives.
     """
 
     first: Array
@@ -43,7 +44,7 @@ class DesignRates:
     driven: BoolArray
 
     def take(self, part: slice) -> DesignRates:
-        """Those of some designs."""
+        """The rates of some designs."""
         return DesignRates(
             first=self.first[:, :, part],
             second=self.second[:, :, part],
@@ -53,21 +54,21 @@ class DesignRates:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignEvidence:
-    """``condition``, ``residual`` (R, D), as a motion has them; NaN where there is no position."""
+    """``condition``, ``residual`` (R, D), as for a motion; NaN without a position."""
 
     condition: Array
     residual: Array
 
 
 def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignRates:
-    """The rates of all unknowns, of all designs together by a compiled program.
+    """The rates of all unknowns, computed for all designs together by a compiled program.
 
-    Designs that were swept alone have those that the sweep found.
+    For designs swept alone, the rates of that sweep are used.
 
     Raises
     ------
     InputError
-        If they would not fit into memory.
+        If they do not fit into memory.
     """
     n, count, width = rows.v.shape
     if 2 * rows.v.nbytes > _MOST_BYTES:
@@ -90,7 +91,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
 
 
 def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> DesignEvidence:
-    """How near every position is to a singular one, and how well it closes."""
+    """Condition number and residual of every position."""
     condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
     if _together(designs, rows):
         reading, base = _Reading.of(designs), designs.base
@@ -98,7 +99,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
         program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
         condition, residual = reading.run(program, rows, threads)
         found = rows.status == Status.CONVERGED.code
-        # of a position that exists; NaN is left for those that do not
+        # of existing positions; NaN for the others
         condition[found & ~np.isfinite(condition)] = np.inf
         condition[~found] = residual[~found] = np.nan
     for k, own in rows.own.items():
@@ -107,13 +108,13 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
 
 
 def _together(designs: Designs, rows: DesignRows) -> bool:
-    """Whether there is a design that was not swept alone."""
+    """Whether any design was not swept alone."""
     return bool((~rows.alone & (designs.problem == 0)).any())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Reading:
-    """What programs need to be run at the positions of a family."""
+    """The arguments of programs run at the positions of a family."""
 
     designs: Designs
     coefficients: dict[str, Array]
@@ -135,7 +136,7 @@ class _Reading:
         )
 
     def run(self, program: PlaceProgram, rows: DesignRows, threads: int) -> Array:
-        """At the inputs for which the positions were solved: on the straight line of the table."""
+        """Run at the inputs of the solved positions, on the straight line of the table."""
         model = self.designs.base
         lead, rate = lock_step(model.rows)
         inputs = Drive.through(model, model.rows[0], rate, lead).path.at(model.rows[:, lead])
@@ -150,7 +151,7 @@ def design_speeds(designs: Designs) -> Array | None:
         return None
     found = np.full(len(designs), np.nan)
     fine = np.flatnonzero(designs.problem == 0)
-    # all at once where the formula of the speed is elementwise
+    # all together if the formula of the speed is elementwise
     left = fine[_speeds_together(designs, fine, found)] if len(fine) else fine
     for k in left:
         with suppress(LinkworkError):  # a formula without a value for this design
@@ -164,7 +165,7 @@ def _speed_of(designs: Designs, description: Description) -> float:
 
 
 def _speeds_together(designs: Designs, fine: IndexArray, found: Array) -> BoolArray:
-    """Fill in the speeds of sound designs; which of them are left to be asked one by one."""
+    """Fill in the speeds of valid designs; returns those to compute one by one."""
     consensus = LaneArithmetic(len(fine))
     columns = zip(designs.quantities, designs.dimensions.values(), strict=True)
     numbers = {quantity: consensus.lanes(values[fine]) for quantity, values in columns}

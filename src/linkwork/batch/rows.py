@@ -22,9 +22,9 @@ class DesignRows:
 
     ``v`` (n, R, D): unknowns, NaN where there is no position. ``status``, ``certification``
     (R, D): codes. ``radius`` (R, D): of the proof, weighted, NaN without one; (0, D) if none is
-    asked for. ``limits`` (2, D): where the branch ends below and above, and ``limit_kinds`` (2, D)
-    what ends it, see :func:`linkwork.batch.limits.ends_as_limits`; NaN without a position.
-    ``alone`` (D,): designs that were computed one at a time; ``own``: what they say themselves.
+    requested. ``limits`` (2, D): lower and upper end of the branch, ``limit_kinds`` (2, D): their
+    kinds, see :func:`linkwork.batch.limits.ends_as_limits`; NaN without a position.
+    ``alone`` (D,): designs computed one at a time; ``own``: their own results.
     """
 
     v: Array
@@ -40,10 +40,10 @@ class DesignRows:
     def blank(
         cls, unknowns: int, rows: int, designs: int, certify: bool, falling: bool
     ) -> DesignRows:
-        """No positions yet; rows are left as they come until they are filled or cleared.
+        """Rows without positions, uninitialised until they are filled or cleared.
 
-        Where inputs fall, unknowns and radii stand in memory by rising inputs: so does the march
-        write them.
+        If inputs decrease, unknowns and radii are stored by increasing inputs, the order in which
+        the march writes them.
         """
         way = slice(None, None, -1 if falling else 1)
         return cls(
@@ -58,18 +58,18 @@ class DesignRows:
 
     @cached_property
     def turns(self) -> TurnArray:
-        """How many whole turns further the position of a row was found, (R, D)."""
+        """Whole turns from the requested input to that of the position, (R, D)."""
         return np.zeros(self.status.shape, dtype=np.int32)
 
     def freeze(self) -> DesignRows:
-        """The rows, read-only from here on."""
+        """Make all arrays read-only."""
         for array in vars(self).values():
             if isinstance(array, np.ndarray):
                 array.setflags(write=False)
         return self
 
     def clear(self, where: BoolArray, certify: bool) -> None:
-        """No position in some rows (R, D); no status in any of them."""
+        """Remove the position of some rows (R, D) and the status of all."""
         self.v[:, where] = np.nan
         self.status[:] = Status.NO_START.code
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED

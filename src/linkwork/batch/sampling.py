@@ -1,10 +1,10 @@
 """Plans: the values of the varied dimensions of a family.
 
-A plan is a mapping of arrays, as :func:`linkwork.batch.designs_of` takes, that can also be made
-piece by piece: ``plan.chunk(k)`` needs no other chunk, so a study can be spread over any number of
-workers and gives the same designs. Random plans are drawn by a counter-based generator (Philox)
-whose key is the seed and whose counter is the column and the chunk; their chunk size is therefore
-a part of the plan, as the seed is.
+A plan is a mapping of arrays, the argument of :func:`linkwork.batch.designs_of`, which can also be
+generated in chunks: ``plan.chunk(k)`` needs no other chunk, so a study can use any number of
+workers and gives the same designs. Random plans use a counter-based generator (Philox): its key is
+the seed, its counter the column and the chunk. The chunk size is therefore part of the plan, like
+the seed.
 
 References
 ----------
@@ -44,16 +44,16 @@ __all__ = [
 
 #: Designs in a chunk. Changing it changes every random plan.
 CHUNK = 65_536
-_ROUNDS = 8  # of the shuffle; four are enough for a random permutation in theory
+_ROUNDS = 8  # rounds of the shuffle; in theory four give a random permutation
 
-#: Draws so many values; it must use nothing but the generator.
+#: Draws a number of values, with no random source other than the generator.
 Distribution = Callable[[np.random.Generator, int], Array]
 Range = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """Every value from ``low`` to ``high`` is as likely."""
+    """Uniform distribution from ``low`` to ``high``."""
 
     low: float
     high: float
@@ -67,7 +67,7 @@ class Uniform:
 
 @dataclass(frozen=True)
 class Normal:
-    """Values about a ``mean`` with a standard ``deviation``, as of a tolerance."""
+    """Normal distribution with ``mean`` and standard ``deviation``."""
 
     mean: float
     deviation: float
@@ -98,16 +98,16 @@ class Plan(Mapping[str, Array]):
 
     @property
     def chunks(self) -> int:
-        """How many chunks there are; all but the last one have ``CHUNK`` designs."""
+        """The number of chunks; all but the last have ``CHUNK`` designs."""
         return -(-self.count // CHUNK)
 
     def chunk(self, k: int) -> dict[str, Array]:
-        """The k-th chunk, which needs none of the others.
+        """The k-th chunk, independent of the others.
 
         Raises
         ------
         InputError
-            If there is no such chunk.
+            If the chunk does not exist.
         """
         if not 0 <= k < self.chunks:
             raise InputError(f"there is no chunk {k}: this plan has {self.chunks}, from 0 on")
@@ -127,7 +127,7 @@ class Plan(Mapping[str, Array]):
         return len(self.names)
 
     def __eq__(self, other: object) -> bool:
-        return self is other  # arrays have no single truth to compare by
+        return self is other  # comparison of arrays has no single truth value
 
     __hash__ = object.__hash__
 
@@ -150,7 +150,7 @@ class _Grid(Plan):
 
     def _column(self, column: int, k: int) -> Array:
         levels, rows = self.levels[column], self._rows(k)
-        # the last name changes fastest, as digits do
+        # the last name changes fastest, like the last digit
         repeats = math.prod(len(later) for later in self.levels[column + 1 :])
         number = np.arange(rows.start, rows.stop) // repeats % len(levels)
         values: Array = levels[number]
@@ -170,7 +170,7 @@ class _Random(Plan):
         if values.shape != (CHUNK,):
             name, got = self.names[column], " × ".join(map(str, values.shape)) or "one"
             raise InputError(f'the distribution of "{name}" drew {got} values, not {CHUNK}')
-        return values[: len(self._rows(k))]  # a whole chunk is drawn whatever the count
+        return values[: len(self._rows(k))]  # a whole chunk is drawn, independent of the count
 
 
 class _LatinHypercube(Plan):
@@ -218,16 +218,16 @@ def random(count: int, of: Mapping[str, Range | Distribution], seed: int) -> Pla
     Parameters
     ----------
     of : Mapping[str, (low, high) or Distribution]
-        A range has equally likely values; :class:`Normal`, :class:`Uniform` or any function of a
-        NumPy generator and a count.
+        A range means a uniform distribution; otherwise :class:`Normal`, :class:`Uniform` or any
+        function of a NumPy generator and a count.
     seed : int
-        The same distributions in the same order and the same seed give the same plan; another count
-        only cuts it off elsewhere.
+        Equal distributions, order and seed give the same plan; the count only determines its
+        length.
 
     Raises
     ------
     InputError
-        For a range that is none, a negative count or seed.
+        If a range is invalid, or the count or seed is negative.
     """
     drawn = {
         name: given if callable(given) else Uniform(*_range(name, given))
@@ -237,7 +237,7 @@ def random(count: int, of: Mapping[str, Range | Distribution], seed: int) -> Pla
 
 
 def latin_hypercube(count: int, ranges: Mapping[str, Range], seed: int) -> Plan:
-    """Random values that fill every range evenly: one design in each of ``count`` equal parts.
+    """Random values spread evenly: one design in each of ``count`` equal parts of every range.
 
     Parameters
     ----------
@@ -246,12 +246,12 @@ def latin_hypercube(count: int, ranges: Mapping[str, Range], seed: int) -> Plan:
     Raises
     ------
     InputError
-        For a range that is none, a negative count or seed.
+        If a range is invalid, or the count or seed is negative.
 
     Notes
     -----
-    The order of the parts is a Feistel cipher of their numbers, which needs no list of all of them:
-    a chunk of a plan of 10^9 designs takes no longer than one of 10^6.
+    The order of the parts is a Feistel cipher of their numbers, which needs no list of all parts: a
+    chunk of a plan of 10^9 designs takes no longer than one of 10^6.
     """
     found = {name: _range(name, given) for name, given in _some(ranges).items()}
     return _LatinHypercube(whole_number("count", count), found, whole_number("seed", seed))
@@ -264,15 +264,15 @@ def from_table(table: object, columns: Sequence[str] | None = None) -> Plan:
     ----------
     table : DataFrame, structured array, Mapping[str, (n,)], or path of a CSV file with a header
     columns : sequence of str, optional
-        The columns that vary; all unless given.
+        The varied columns; by default all.
 
     Raises
     ------
     InputError
-        For a table without columns, columns of different lengths, or a cell that is no number:
-        with its line.
+        If the table has no columns, columns have different lengths, or a cell is not a number
+        (names its line).
     UnknownNameError
-        For a column that the table does not have.
+        If a column does not exist.
     """
     found = read_columns(table, columns)
     lengths = {name: len(values) for name, values in _some(found).items()}
@@ -320,14 +320,14 @@ def _mix_bits(x: AnyArray) -> AnyArray:
     return mixed
 
 
-# What was given
+# Checks of arguments
 
 
 def _some(given: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
         raise InputError(f"a plan needs a mapping of names and values, got {as_told(given)}")
     if not given:
-        raise InputError("nothing varies in this plan: give a dimension and its values")
+        raise InputError("this plan varies no numbers: give a dimension and its values")
     return given
 
 

@@ -24,7 +24,7 @@ __all__ = ["message_single", "sweep_single"]
 
 
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
-    """A design by itself with the family's table, should its own depend on what varies."""
+    """A single design with the family's table, in case its own table depends on varied numbers."""
     base, model = designs.base, designs.design(k)
     # a range given by formulas of dimensions can differ from design to design
     if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
@@ -43,11 +43,11 @@ def _with_plain_range(base: Model, which: Input) -> Input:
 
 
 def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:
-    """One design by the ordinary sweep."""
+    """Sweep one design by :mod:`linkwork.motion.sweeping`."""
     found.alone[k] = True
     try:
         rows, ends = sweep_rows(_at_shared_inputs(designs, k), certify=certify)
-    except LinkworkError:  # told by ``message_single``
+    except LinkworkError:  # reported by ``message_single``
         found.v[:, :, k] = found.radius[:, k] = np.nan
         found.status[:, k] = Status.NO_START.code
         none = Certification.NO_POSITION if certify else Certification.NOT_ASKED
@@ -65,18 +65,18 @@ def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> 
 def _note_way(
     base: Model, k: int, rows: SolvedRows, ends: tuple[BranchEnd, ...], found: DesignRows
 ) -> None:
-    """Whole turns to the rows of a design that went alone, and the limits it met."""
+    """Store the whole turns to the rows of a design swept alone, and its limits."""
     if not (rows.status == Status.CONVERGED.code).any():
         return
     found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
     if base.equations.inputs[0].kind == "angle":
-        # a row found on the other way around holds an input whole turns away
+        # a row reached in the other direction has an input whole turns away
         gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
         found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
 
 
 def message_single(designs: Designs, k: int) -> str:
-    """What a design has to say of its own motion, or why it has none."""
+    """The message of a design's motion, or the reason why it has none."""
     try:
         return sweep(_at_shared_inputs(designs, k), certify=False).message
     except LinkworkError as error:

@@ -65,7 +65,7 @@ class _Program(click.Group):
 
 def _ended_by(error: BaseException, debug: bool) -> int:
     """Print the message of an error; returns the exit code."""
-    # head and less close the pipe when they have enough: no error
+    # head and less close the pipe early: not an error
     if isinstance(error, BrokenPipeError):
         abandon_output()
         return _READER_GONE

@@ -166,7 +166,7 @@ class _Range:
     value: Array
 
 
-_STILL = 1e-10  # relative range below which a value counts as constant: its extremes have no place
+_STILL = 1e-10  # relative range below which a value counts as constant, without located extremes
 
 
 def _ranges(motion: Motion, columns: Sequence[str]) -> list[str]:

@@ -16,8 +16,8 @@ from linkwork.results.quantities.registry import Listed
 
 __all__ = ["quantities"]
 
-_GAPS = 8  # before every column of the table
-_NARROWEST = 16  # characters of the line about a quantity
+_GAPS = 8  # before each column of the table
+_NARROWEST = 16  # width of the explanations
 
 
 @click.command
@@ -26,11 +26,11 @@ _NARROWEST = 16  # characters of the line about a quantity
 @json_option
 @debug_option
 def quantities(file: str, changes: tuple[str, ...], as_json: bool) -> None:
-    """List everything that can be asked of a mechanism.
+    """List all quantities of a mechanism.
 
     Every name is a column of sweep and plot, an output in a file, and a
     quantity of families and studies; numbers of a motion are values of
-    sweeps, families and studies. "…" stands for any quantity.
+    sweeps, families and studies. "…" is any quantity.
 
     \b
       linkwork quantities rapier.toml
@@ -47,7 +47,7 @@ def quantities(file: str, changes: tuple[str, ...], as_json: bool) -> None:
 
 
 def _table(listed: Sequence[Listed]) -> list[str]:
-    """Name, kind, unit and a line about each; the line goes on below where it is long."""
+    """Name, kind, unit and explanation of each; long explanations are wrapped."""
     used = _GAPS + sum(
         max(len(text) for text in texts)
         for texts in (
@@ -57,7 +57,7 @@ def _table(listed: Sequence[Listed]) -> list[str]:
         )
     )
     rows = [row for line in listed for row in _rows(line, max(WIDTH - used, _NARROWEST))]
-    headers = ("name", "kind", "unit", "what it is")
+    headers = ("name", "kind", "unit", "meaning")
     columns = zip(headers, zip(*rows, strict=True), strict=True)
     return table_lines([Column(header=header, cells=cells) for header, cells in columns])
 

@@ -74,9 +74,9 @@ _POSITIVE = _Tolerance(min=0.0, min_open=True, max=math.inf, max_open=True)
     type=click.IntRange(1),
     default=_DEFAULT.max_steps,
     show_default=True,
-    help="Give up after so many iterations.",
+    help="Maximum number of iterations.",
 )
-@click.option("--full-steps", is_flag=True, help="Take full Newton steps, however far links turn.")
+@click.option("--full-steps", is_flag=True, help="Take full Newton steps of any size.")
 @set_option
 @json_option
 @debug_option

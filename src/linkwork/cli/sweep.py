@@ -139,7 +139,7 @@ def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> S
 
 
 def _asked(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], list[str]]:
-    """The columns and the numbers of the whole motion among the names that were asked for."""
+    """The columns, and the numbers of the whole motion, among the requested names."""
     quantities = mechanism.model.quantities
     numbers = [name for name in names if "(" in name]
     columns = [name for name in names if name not in numbers]
@@ -181,7 +181,7 @@ def _plotted(motion: Motion, columns: list[str], path: str) -> str:
 def _written_workbook(
     mechanism: Mechanism, motion: Motion, columns: list[str], path: str
 ) -> list[str]:
-    """Write the workbook; returns lines about it, with everything that does not recalculate."""
+    """Write the workbook; returns lines about it and its values that do not recalculate."""
     found = workbook_of(mechanism.model, motion, columns)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())

@@ -61,7 +61,7 @@ def abandon_output() -> None:
     """Discard all further output: the reader of the pipe has closed it."""
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        # Python flushes at exit and would fail a second time
+        # Python flushes at exit and would fail again
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
     except (OSError, ValueError):  # a stream without a file cannot fail
@@ -122,7 +122,7 @@ def wrapped(text: str, first: str = "", rest: str | None = None) -> list[str]:
 
     Control characters, which could come from a file, become ?.
     """
-    # control characters of a file could drive the terminal
+    # control characters of a file could change the terminal
     printable = "".join(c if c.isprintable() or c.isspace() else "?" for c in text)
     return textwrap.wrap(
         printable,
@@ -178,7 +178,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
             shown = True
             bar.__enter__()
         if shown:
-            # branches report in their own order: a bar does not go back
+            # branches report in any order: the bar must not move backwards
             bar.update(max(int(_BAR_STEPS * fraction) - bar.pos, 0))
 
     try:

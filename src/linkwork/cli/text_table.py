@@ -59,7 +59,7 @@ def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
         count = 0
         for column in others:
             used += _GAP + _width(column.lines[0])
-            # at least one column in each block, however wide
+            # at least one column in each block, of any width
             if used > width and count:
                 break
             count += 1
@@ -72,7 +72,7 @@ def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
 
 
 def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
-    """A number with so many decimals, without a negative zero."""
+    """A number with the given decimals, without a negative zero."""
     if not math.isfinite(value):
         return _NOTHING
     text = f"{value:.{decimals}f}"
@@ -81,10 +81,10 @@ def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
 
 
 def lengths(values: Iterable[float]) -> list[str]:
-    """Lengths with common decimals: so many that the largest shows six significant digits."""
+    """Lengths with common decimals; the largest has six significant digits."""
     numbers = list(values)
     largest = max((abs(v) for v in numbers if math.isfinite(v)), default=0.0)
-    # fixed decimals would show zeros only, or a row of meaningless digits
+    # fixed decimals would show only zeros, or meaningless digits
     if largest and not 1e-6 <= largest < 1e9:
         return [significant(v, _LENGTH_DIGITS) for v in numbers]
     decimals = max(_LENGTH_DIGITS - 1 - _exponent(largest), 0)
@@ -92,7 +92,7 @@ def lengths(values: Iterable[float]) -> list[str]:
 
 
 def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
-    """A number with so many significant digits; 0 where it is at most ``noise``."""
+    """A number with the given significant digits; 0 if it is at most ``noise``."""
     if not math.isfinite(value):
         return _NOTHING
     if abs(value) <= noise:
@@ -143,7 +143,7 @@ def _padded(text: str, width: int, right: bool) -> str:
 def _width(text: str) -> int:
     """The number of terminal cells that the text occupies."""
     return sum(
-        # combining marks take no cell of their own, East Asian characters two
+        # combining marks take no cell, East Asian characters two
         0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
         for c in text
     )

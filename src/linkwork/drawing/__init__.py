@@ -1,4 +1,4 @@
-"""Pictures of positions: a pose becomes a scene of primitives, writers only translate it."""
+"""Pictures of positions: a pose becomes a scene of primitives, which writers translate to files."""
 
 from __future__ import annotations
 

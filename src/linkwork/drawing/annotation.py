@@ -1,4 +1,4 @@
-"""What is drawn over a mechanism to explain it: arrows, centres, dimensions, with their names."""
+"""Annotations drawn over a mechanism: arrows, centres and dimensions, with their names."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _SHORT = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Annotation:
-    """One kind of explanation.
+    """One kind of annotation.
 
     Parameters
     ----------
     drawn : list of Primitive
     names : list of Choice
-        Texts whose places are chosen when everything is drawn.
+        Texts whose positions are chosen when everything else is drawn.
     caption : str
-        What has to be said to read it, as the scale of arrows; "" if nothing.
+        Explanation such as the scale of arrows; "" if none.
     """
 
     drawn: list[Primitive] = field(default_factory=list)
@@ -32,7 +32,7 @@ class Annotation:
 
     @classmethod
     def joined(cls, parts: Iterable[Annotation]) -> Annotation:
-        """Several kinds as one."""
+        """Combine several annotations."""
         every = list(parts)
         return cls(
             drawn=[primitive for part in every for primitive in part.drawn],
@@ -42,8 +42,6 @@ class Annotation:
 
 
 def round_up(wanted: float) -> float:
-    """The smallest short number that is not below a positive one: 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8
-    times a power of ten.
-    """
+    """A positive number rounded up to 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten."""
     power: float = 10.0 ** int(f"{wanted:e}".partition("e")[2])
     return min(step * power for step in _SHORT if step * power >= wanted * (1.0 - 1e-12))

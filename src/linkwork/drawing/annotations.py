@@ -1,4 +1,4 @@
-"""Every explanation that a picture was asked for, in the order in which they make room."""
+"""All annotations of a picture, in the order of their placement."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ __all__ = ["Subject", "annotation_of"]
 
 @dataclass(frozen=True)
 class Subject:
-    """What a picture is of: a position in its motion, the paths shown, its frame and sizes.
+    """The subject of a picture: a position in its motion, the paths shown, its frame and sizes.
 
-    ``polygons`` are those of the loops' vectors, if they are shown.
+    ``polygons`` are the vector polygons of the loops, if shown.
     """
 
     position: Position
@@ -42,7 +42,7 @@ class Subject:
 
 
 def annotation_of(subject: Subject, chosen: SceneOptions, drawn: Sequence[Primitive]) -> Annotation:
-    """All explanations as one; ``drawn`` is the mechanism, which they should not cover."""
+    """All annotations combined; they avoid covering ``drawn``, the mechanism."""
     found = list(_of_motion(subject, chosen))
     if chosen.dimensions:
         before = [*drawn, *Annotation.joined(found).drawn]

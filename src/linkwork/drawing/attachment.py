@@ -1,8 +1,8 @@
-"""What moves with what: the frame of a mechanism in which a drawn shape stands still.
+"""Attachment of drawn shapes to the moving frame of a mechanism in which they are constant.
 
-A frame has its origin at a point (or stands still) and turns with a link or with the line between
-two points (or does not turn). Whether a shape is rigid in a frame is read off its coordinates in
-the rows of a motion, so new symbols need no declaration of their own.
+A frame has its origin at a point (or fixed) and rotates with a link or with the line between two
+points (or not at all). Whether a shape is constant in a frame is determined from its coordinates in
+the rows of a motion, so new symbols need no declaration.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from linkwork.results.motion import Motion
 
 __all__ = ["STILL", "Frame", "Frames"]
 
-_RIGID = 1e-7  # of the drawn size: shapes that move less in a frame stand still in it
+_RIGID = 1e-7  # of the drawn size: shapes that move less are constant in a frame
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a shape is carried: by the point ``origin``, turned with ``turn``; "" for ground.
+    """The frame of a shape: moves with the point ``origin``, rotates with ``turn``; "" for ground.
 
     ``turn`` is the name of a link, or ``from>to`` for the line between two points.
     """
@@ -45,7 +45,7 @@ class Frames:
     points : Mapping[str, array (N,)]
         Paths x + iy.
     turns : Mapping[str, array (N,)]
-        Angles [rad] of what turns, unwrapped along the rows.
+        Angles [rad] of rotating parts, unwrapped along the rows.
     """
 
     points: FrozenDict[str, ComplexArray]
@@ -53,19 +53,19 @@ class Frames:
 
     @classmethod
     def of(cls, motion: Motion, pose: Pose) -> Frames:
-        """All frames that shapes of a mechanism may be rigid in."""
+        """All frames in which shapes of a mechanism may be constant."""
         return cls(points=FrozenDict(pose.paths), turns=FrozenDict(_turns(motion, pose)))
 
     def angle(self, frame: Frame) -> Array | float:
-        """The angle of a frame [rad], shape (N,), or 0 if it never turns."""
+        """The angle of a frame [rad], shape (N,), or 0 if it does not rotate."""
         return self.turns[frame.turn] if frame.turn else 0.0
 
     def origin(self, frame: Frame) -> ComplexArray | complex:
-        """The origin of a frame, shape (N,), or 0 if it stands still."""
+        """The origin of a frame, shape (N,), or 0 if it is fixed."""
         return self.points[frame.origin] if frame.origin else 0j
 
     def local(self, frame: Frame, shape: ComplexArray, rows: CountArray) -> ComplexArray:
-        """Coordinates in a frame of a shape (R, m) that is given in ``rows``."""
+        """Coordinates in a frame of a shape (R, m) given in ``rows``."""
         origin, angle = np.asarray(self.origin(frame)), np.asarray(self.angle(frame))
         if origin.ndim:
             shape = shape - origin[rows][..., None]
@@ -74,7 +74,7 @@ class Frames:
         return shape
 
     def placed(self, frame: Frame, local: ComplexArray, rows: CountArray) -> ComplexArray:
-        """A shape (m,) of a frame in R rows, shape (R, m)."""
+        """Coordinates (R, m) in R rows of a shape (m,) constant in a frame."""
         count = len(rows)
         found = np.broadcast_to(local, (count, len(local)))
         angle, origin = np.asarray(self.angle(frame)), np.asarray(self.origin(frame))
@@ -93,14 +93,14 @@ class Frames:
         first: str = "",
         closed: bool = False,
     ) -> Frame | None:
-        """The frame in which a shape (R, m) is rigid over ``rows``; ground before all others.
+        """The frame in which a shape (R, m) is constant over ``rows``; ground is tried first.
 
-        ``first`` is the point or link that is tried before the others; ``size`` is that of the
-        drawing. The corners of a ``closed`` shape may be numbered from another one in every row:
-        a gear that has turned by a tooth is the same gear.
+        ``first`` is the point or link tried next; ``size`` is that of the drawing. The corners of
+        a ``closed`` shape may start at a different corner in every row: a gear rotated by a tooth
+        looks the same.
         """
         middle = shape.mean(axis=1, keepdims=True)
-        # direction and origin are sought one after the other, not in pairs: quicker
+        # searching direction and origin separately is faster than in pairs
         for turn in _ordered(self.turns, first):
             if not _constant(self.local(Frame(turn=turn), shape - middle, rows), size, closed):
                 continue
@@ -121,7 +121,7 @@ def _constant(local: ComplexArray, size: float, closed: bool = False) -> bool:
         return True
     if not closed:
         return False
-    # the corner nearest to the first one of the first row is numbered first
+    # start at the corner nearest to the first one of the first row
     corner = np.abs(local - local[0, 0]).argmin(axis=1)
     count = local.shape[1]
     again = np.take_along_axis(local, (corner[:, None] + np.arange(count)) % count, axis=1)
@@ -129,7 +129,7 @@ def _constant(local: ComplexArray, size: float, closed: bool = False) -> bool:
 
 
 def _turns(motion: Motion, pose: Pose) -> Iterator[tuple[str, Array]]:
-    """The directions of all links, and of all lines that something runs along."""
+    """The directions of all links and of all guiding lines."""
     skeleton, radians = pose.skeleton, motion.units.angle.radians
     for bar in skeleton.bars:
         if bar.name in motion.links:
@@ -145,7 +145,7 @@ def _turns(motion: Motion, pose: Pose) -> Iterator[tuple[str, Array]]:
 
 
 def _direction(line: ComplexArray) -> Array:
-    """Angles [rad] of vectors (N,), unwrapped over the rows that have one; NaN elsewhere."""
+    """Angles [rad] of vectors (N,), unwrapped over the rows with a direction; NaN elsewhere."""
     angle = np.angle(line)
     known = np.isfinite(angle)
     # unwrapping across a NaN would lose all later rows

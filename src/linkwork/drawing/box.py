@@ -1,4 +1,4 @@
-"""An upright rectangle in the plane."""
+"""Axis-parallel rectangles in the plane."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Box:
 
     @classmethod
     def around(cls, points: Iterable[XY]) -> Box:
-        """The smallest box that holds every point; there must be one."""
+        """The smallest box around all points, at least one."""
         xs, ys = zip(*points, strict=True)
         return cls(min(xs), min(ys), max(xs), max(ys))
 
@@ -49,15 +49,15 @@ class Box:
         return self.left, self.bottom, self.right, self.top
 
     def grown(self, by: float) -> Box:
-        """The box with ``by`` added on every side."""
+        """The box enlarged by ``by`` on every side."""
         return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def with_box(self, other: Box) -> Box:
-        """The smallest box that holds both."""
+        """The smallest box around both."""
         return Box.around((*self.corners, *other.corners))
 
     def distance(self, point: XY) -> float:
-        """How far a point is from the box; zero inside."""
+        """The distance of a point from the box; zero inside."""
         x, y = point
         return math.hypot(
             max(self.left - x, 0.0, x - self.right), max(self.bottom - y, 0.0, y - self.top)

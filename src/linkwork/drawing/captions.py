@@ -1,4 +1,4 @@
-"""Names and values as figures print them."""
+"""Names and values as printed in figures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = [
     "reached_caption",
 ]
 
-_INDEX = re.compile(r"(?<=[^\W\d_])\d+(?![.\d])")  # behind a letter
+_INDEX = re.compile(r"(?<=[^\W\d_])\d+(?![.\d])")  # after a letter
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -59,7 +59,7 @@ def inputs_caption(
 
 
 def lines_within(text: str, width: float) -> list[str]:
-    """A text in lines of at most ``width`` [em]; words that are longer are broken."""
+    """Break a text into lines of at most ``width`` [em]; longer words are broken."""
     lines: list[str] = []
     for word in text.split():
         if lines and text_width(f"{lines[-1]} {word}", 1.0) <= width:
@@ -74,17 +74,17 @@ def lines_within(text: str, width: float) -> list[str]:
 
 
 def lead_text(motion: Motion, row: int) -> str:
-    """The leading input at a row: ``148.131°``; with its name where there are several."""
+    """The leading input at a row: ``148.131°``; with its name if there are several."""
     name, values = _lead(motion)
     text = printed_value(float(values[row]), motion.input_units[name], motion.units)
     return f"{printed_name(name)} = {text}" if len(motion.inputs) > 1 else text
 
 
 def reached_caption(motion: Motion) -> str:
-    """The leading input's values at which positions were found: ``0° to 149.6°, 201.3° to 360°``.
+    """The ranges of the leading input in which positions were found: ``0° to 149.6°, 201.3° to
+    360°``.
 
-    Rows that were not found leave a gap; branches that only a way around the circuit leads to
-    are left out.
+    Rows that were not found leave a gap; branches reached only around the circuit are omitted.
     """
     name, values = _lead(motion)
     home = {branch for branch, asked in zip(motion.branch, motion.asked, strict=True) if asked}
@@ -105,7 +105,7 @@ def reached_caption(motion: Motion) -> str:
 
 
 def _lead(motion: Motion) -> tuple[str, Array]:
-    """The first input that moves."""
+    """The first input that varies."""
     return next(
         ((name, values) for name, values in motion.inputs.items() if np.ptp(values[motion.asked])),
         next(iter(motion.inputs.items())),

@@ -1,4 +1,4 @@
-"""Instant centres as numbered crosses, and centrodes as curves that roll on each other."""
+"""Symbols of instant centres (numbered crosses) and centrodes (curves)."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from linkwork.results.instant_centres import Centrodes, InstantCentre
 __all__ = ["centre_symbols", "centrode_symbols", "numbered"]
 
 _SUBSCRIPT = str.maketrans("0123456789,", "₀₁₂₃₄₅₆₇₈₉‚")
-_FAR = 0.35  # of the drawn size: centres further outside are told, not drawn
-_OUTSIDE = 0.3  # of the drawn size: so far curves go on outside
+_FAR = 0.35  # of the drawn size: centres further outside are counted, not drawn
+_OUTSIDE = 0.3  # of the drawn size: curves are cut off at this distance outside
 
 
 def numbered(centres: Sequence[InstantCentre]) -> dict[str, int]:
@@ -32,7 +32,7 @@ def numbered(centres: Sequence[InstantCentre]) -> dict[str, int]:
 
 
 def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Measures) -> Annotation:
-    """A cross at every centre in or near the picture, and which links the numbers mean."""
+    """A cross at every centre in or near the picture, and a caption of the link numbers."""
     number = numbered(centres)
     near = within.grown(_FAR * measures.size)
     groups: list[tuple[complex, list[str]]] = []
@@ -50,7 +50,7 @@ def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Meas
     for place, together in groups:
         text = " ".join(together)
         drawn.append(_cross(place, text, measures))
-        height = measures.text  # indices are smaller still
+        height = measures.text  # subscripts are smaller
         names.append(places_beside(Role.CENTRE_NAME, text, text, place, height, measures))
     links = ", ".join(f"{k}:{printed_name(link)}" for link, k in number.items())
     left = [f"{far} further away"] * bool(far) + [f"{endless} at infinity"] * bool(endless)
@@ -61,7 +61,7 @@ def centre_symbols(centres: Sequence[InstantCentre], within: Box, measures: Meas
 def _gather(
     groups: list[tuple[complex, list[str]]], place: complex, name: str, near: float
 ) -> None:
-    """Add a name to the group at its place."""
+    """Add a name to the group at its position."""
     for other, names in groups:
         if abs(other - place) <= near:
             names.append(name)
@@ -70,7 +70,7 @@ def _gather(
 
 
 def _name(one: int, two: int, count: int) -> str:
-    """``I₁₂``; with a comma where numbers have two digits."""
+    """``I₁₂``; with a comma for two-digit numbers."""
     comma = "," if count > 9 else ""
     return "I" + f"{one}{comma}{two}".translate(_SUBSCRIPT)
 
@@ -84,7 +84,7 @@ def _cross(place: complex, of: str, measures: Measures) -> Hatch:
 def centrode_symbols(
     paths: Sequence[Centrodes], pose: Pose, within: Box, measures: Measures
 ) -> Annotation:
-    """The fixed centrode of every link, and the moving one where the link is now."""
+    """The fixed centrode of every link, and the moving one at the current position."""
     drawn: list[Primitive] = []
     near = within.grown(_OUTSIDE * measures.size)
     for path in paths:
@@ -96,7 +96,7 @@ def centrode_symbols(
 
 
 def _placed(path: Centrodes, pose: Pose) -> ComplexArray:
-    """The moving centrode in the plane, with its link where it is now."""
+    """The moving centrode in the plane, at the current position of its link."""
     bar = next(bar for bar in pose.skeleton.bars if bar.name == path.link)
     origin = pose.points[bar.points[0]]
     if path.link in pose.angles:
@@ -112,7 +112,7 @@ def _placed(path: Centrodes, pose: Pose) -> ComplexArray:
 def _curve(
     role: Role, link: str, curve: ComplexArray, near: Box, measures: Measures
 ) -> list[Primitive]:
-    """A curve in and near the picture, in as many pieces as it takes."""
+    """A curve in and near the picture, in one or more pieces."""
     (left, bottom), (right, top) = near.corners
     inside = (curve.real >= left) & (curve.real <= right)
     inside &= (curve.imag >= bottom) & (curve.imag <= top)

@@ -1,7 +1,7 @@
 """Dimension lines: lengths of links and of ground, radii of wheels, the input.
 
-Numbers are those of the drawn position, in the length unit of the axes. A line stands beside what
-it measures, on the side and at the distance where it covers least.
+Numbers are measured in the drawn position, in the length unit of the axes. A line is placed next to
+its object, on the side and at the distance where it covers least.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from linkwork.results.position import Position
 __all__ = ["dimension_symbols"]
 
 _HEAD = 0.7  # of the head of an input arrow
-_FURTHER = 1.5  # what it costs to stand further away
-_SHARES = (0.5, 0.35, 0.65, 0.22, 0.78)  # of the line: where its number may stand
-_ARC = 8.0  # radii of a pin is that of an angle's arc, at most
+_FURTHER = 1.5  # penalty for a larger distance
+_SHARES = (0.5, 0.35, 0.65, 0.22, 0.78)  # of the line: possible positions of the number
+_ARC = 8.0  # maximum radius of an angle's arc, in pin radii
 
 
-_NARROW = 1.0  # rad: beside the arcs of smaller angles there is no less room for a number
+_NARROW = 1.0  # rad: smaller angles reserve as much space for the number
 
 
 @dataclass(frozen=True)
 class _Span:
-    """Two places whose distance is a dimension, and what is written on it."""
+    """Two points whose distance is a dimension, and its text."""
 
     of: str
     start: complex
@@ -49,7 +49,7 @@ class _Span:
 def dimension_symbols(
     position: Position, pose: Pose, measures: Measures, drawn: Sequence[Primitive]
 ) -> Annotation:
-    """All dimensions of a position; ``drawn`` is what they should not cover."""
+    """All dimensions of a position; they avoid covering ``drawn``."""
     found: list[Primitive] = []
     names: list[Choice] = []
     for part, (name, value) in zip(pose.skeleton.driven, position.input.items(), strict=False):
@@ -94,7 +94,7 @@ def _lengths(pose: Pose) -> Iterator[_Span]:
 
 
 def _ground(pose: Pose) -> Iterator[_Span]:
-    """From each fixed pivot to the next one, left to right."""
+    """Distances of neighbouring fixed pivots, left to right."""
     carried = {point for bar in pose.skeleton.bars for point in bar.points}
     pivots = {pose.points[name] for name in pose.skeleton.fixed if name in carried}
     for start, end in pairwise(sorted(pivots, key=lambda z: (z.real, z.imag))):
@@ -102,7 +102,7 @@ def _ground(pose: Pose) -> Iterator[_Span]:
 
 
 def _inputs(position: Position, pose: Pose) -> Iterator[_Span]:
-    """The lengths that are driven: of sliders along their lines, of cylinders."""
+    """Driven lengths: of sliders along their lines, of cylinders."""
     guides = {guide.name: guide for guide in pose.skeleton.guides}
     struts = {strut.name: strut for strut in pose.skeleton.struts}
     for part in pose.skeleton.driven:
@@ -120,7 +120,7 @@ def _inputs(position: Position, pose: Pose) -> Iterator[_Span]:
 
 
 def _radii(pose: Pose, measures: Measures) -> Iterator[Polyline]:
-    """From the centre of every wheel to its rim, up and to the right."""
+    """Radii of all wheels, drawn up and to the right."""
     way = cmath.exp(0.25j * cmath.pi)
     for disc in pose.skeleton.of(Disc):
         centre = pose.points[disc.center]
@@ -135,7 +135,7 @@ def _radii(pose: Pose, measures: Measures) -> Iterator[Polyline]:
 def _angle(
     part: DrivenPart, value: float, shown: str, pose: Pose, measures: Measures
 ) -> tuple[list[Primitive], Choice]:
-    """An arc from where the input counts from to the driven link, and its value."""
+    """An arc from the zero direction of the input to the driven link, and its value."""
     bar = next(bar for bar in pose.skeleton.bars if bar.name == part.name)
     others = [pose.points[name] - pose.points[bar.points[0]] for name in bar.points[1:]]
     reach = next((z for z in others if z), measures.size + 0j)
@@ -183,7 +183,7 @@ def _angle(
 def _freest(
     span: _Span, measures: Measures, obstacles: Obstacles
 ) -> tuple[list[Primitive], list[Choice]]:
-    """The dimension line that covers least, with its number in it or beside it."""
+    """The dimension line that covers least, with its number in or next to it."""
     length = abs(span.end - span.start)
     if length < 1e-6 * measures.size:
         return [], []
@@ -204,8 +204,8 @@ def _freest(
 def _line(
     span: _Span, away: complex, share: float, measures: Measures
 ) -> tuple[list[Primitive], list[Choice], list[Box]]:
-    """A dimension line at a distance from what it measures, its number at a share of its length;
-    the boxes that it fills.
+    """A dimension line at a distance from its object, with the number at a fraction of its length;
+    also returns the boxes it fills.
     """
     height = 0.8 * measures.text
     start, end = span.start + away, span.end + away
@@ -225,7 +225,7 @@ def _line(
         for z in (span.start, span.end)
     ]
     middle = start + share * (end - start)
-    # a number in the line needs room for itself and both arrow heads
+    # a number in the line needs space for itself and both arrow heads
     fits = min(share, 1.0 - share) * length > room + 1.5 * head
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
         inner = tail if fits else middle
@@ -249,7 +249,7 @@ def _line(
 
 
 def _boxes(start: complex, end: complex, measures: Measures) -> list[Box]:
-    """Small boxes along a line that together cover it, its ends left out."""
+    """Small boxes that cover a line except its ends."""
     reach = 0.5 * measures.pin
     count = max(2, math.ceil(abs(end - start) / (2 * reach)))
     places = [start + (end - start) * k / count for k in range(1, count)]

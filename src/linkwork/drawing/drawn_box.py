@@ -1,4 +1,4 @@
-"""How large a picture is: everything that a mechanism shows, now and over a motion."""
+"""The extent of a picture: all drawn parts of a mechanism, now and over a motion."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from linkwork.results.motion import Motion
 
 __all__ = ["drawn_box", "reach_of"]
 
-_OF_OUTLINE = 90  # points of an outline that are followed through a motion
+_OF_OUTLINE = 90  # points of an outline that are tracked over a motion
 
 
 def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Box:
-    """The box of what is drawn: points and round parts in all poses, traces, fixed guides."""
+    """The box of all drawn parts: points and round parts in all poses, traces, fixed guides."""
     poses = [pose, *others]
     drawn = [name for name in pose.points if name not in pose.construction]
     places = (one.points[name] for one in poses for name in drawn)
@@ -33,7 +33,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
     rounds = chain.from_iterable(map(_round_parts, poses))
     box = Box.around((float(z.real), float(z.imag)) for z in chain(places, travelled, rounds))
-    # Blocks on stems stand further out, by some sizes of symbols.
+    # Blocks on stems are further out, by some symbol sizes.
     ends = (
         one.points[name] + stem
         for one in poses
@@ -43,7 +43,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
 
 
 def _round_parts(pose: Pose) -> Iterator[complex]:
-    """Outermost points of wheels, cams and curves; lines to roll on that no motion tells."""
+    """Outermost points of wheels, cams and curves, and of rolling lines without a motion."""
     if not pose.paths:
         for figure in pose.skeleton.figures:
             yield from (pose.points[name] for name in figure.extent)

@@ -1,4 +1,4 @@
-"""A moving scene as pictures, one after the other, all of one size and one view."""
+"""A moving scene as a sequence of pictures with equal size and view."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 __all__ = ["film"]
 
-_LONG_SIDE, _SHORT_SIDE = 6.0, 2.0  # of the drawing, in inches
-_MARGIN, _LINE = 0.2, 0.24  # around the drawing, and a line of text
+_LONG_SIDE, _SHORT_SIDE = 6.0, 2.0  # longer side of the drawing [inches]
+_MARGIN, _LINE = 0.2, 0.24  # margin of the drawing, and height of a text line [inches]
 _TITLE, _SMALL = 12.0, 10.5  # font sizes in points
-_ROOM = 0.04  # of the drawn size, left free around everything
+_ROOM = 0.04  # margin as a fraction of the drawn size
 
 
 def film(
@@ -46,9 +46,9 @@ def film(
     rows : sequence of int
         Rows that were found.
     captions : sequence of str
-        What stands under the title in each.
+        The text under the title in each picture.
     turned : sequence of bool
-        Whether arrows of inputs point the other way in each.
+        Whether the arrows of inputs are reversed in each picture.
     dpi : float
         Pixels per inch; the longer side of the drawing is six inches.
     theme : Theme
@@ -56,7 +56,7 @@ def film(
     Yields
     ------
     array (height, width, 3), uint8
-        Red, green, blue; both sides are even, as films want them.
+        Red, green, blue; width and height are even, as film formats require.
     """
     with house_settings():
         page, ax, caption = _page(moving, theme, dpi)
@@ -104,7 +104,7 @@ def _page(moving: MovingScene, theme: Theme, dpi: float) -> tuple[Figure, Axes, 
 
 
 def _fit(ax: Axes, view: Box, width: float, height: float) -> None:
-    """Show a view in the middle of axes of a size in inches."""
+    """Centre a view in axes of a size in inches."""
     scale = max(view.width / (width - 2 * _MARGIN), view.height / (height - _MARGIN))
     (x, y), half, rise = view.centre, 0.5 * scale * width, 0.5 * scale * height
     ax.set_xlim(x - half, x + half)

@@ -1,4 +1,4 @@
-"""Stems of followers: from the point on a cam to the block that guides it."""
+"""Stems of followers: from the contact point on a cam to the guiding block."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ __all__ = ["stems"]
 
 
 def stems(pose: Pose, measures: Measures) -> dict[str, complex]:
-    """For every point of a slider that touches a cam: from it to the block, which is set back.
+    """For every slider point that touches a cam: the vector to its block, which is set back.
 
-    Nothing (0) if the slider has other points: the block is drawn at one of these.
+    0 if the slider has other points: the block is drawn at one of these.
     """
     found = {}
     for follower in pose.skeleton.of(Follower):
@@ -25,7 +25,7 @@ def stems(pose: Pose, measures: Measures) -> dict[str, complex]:
             outwards = math.copysign(1.0, (away * along.conjugate()).real)
             alone = all(guide.point == follower.point for guide in guides)
             travel = pose.displacement(guides[0])
-            # So long that the block's rail ends before the cam at its highest.
+            # Long enough that the rail ends before the cam at maximum lift.
             length = travel.high - travel.low + 9 * measures.pin
             found[follower.point] = length * outwards * along if alone else 0j
     return found

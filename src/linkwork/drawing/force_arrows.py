@@ -1,8 +1,8 @@
-"""Forces as arrows at the points they act on.
+"""Forces as arrows at their points of application.
 
-All have one scale: a round number of length units per unit of force, such that the largest is at
+All arrows have the same scale, a round number of length units per unit of force; the longest is at
 most :data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. Several forces at one point
-are drawn one by one.
+are drawn separately.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def force_arrows(
     Raises
     ------
     UnknownNameError
-        If there is no such point.
+        If a point does not exist.
     InputError
         If forces have different units.
     """

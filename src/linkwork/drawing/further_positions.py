@@ -1,4 +1,4 @@
-"""A motion in one picture: some of its positions, faint, and the limits that it meets, marked."""
+"""A motion in one picture: some faint further positions, and marks at its limits."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from linkwork.results.motion import LimitKind, Motion
 
 __all__ = ["Further", "driven_point", "faint_symbols", "further_positions", "limit_marks"]
 
-_FADE = 0.78  # of positions on the way
+_FADE = 0.78  # fading of further positions
 _FADE_OF_LIMITS = 0.4
 _LIMITS = {kind.word: kind for kind in (LimitKind.DEAD_POINT, LimitKind.CHANGE_POINT)}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Further:
-    """Another position of the motion: its row, its points, and the limit that it is, if any."""
+    """A further position of the motion: its row, its points, and its limit, if any."""
 
     row: int
     pose: Pose
@@ -36,11 +36,10 @@ class Further:
 
 
 def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
-    """All limits that the motion meets, and up to ``count`` of its other positions.
+    """All limits of the motion, and up to ``count`` of its other positions.
 
-    Each is the one furthest away from those taken before, by the point that is moved most, and
-    from the position of ``pose`` itself: so they are spread over all that is reached, and none
-    hides behind another (Gonzalez 1985).
+    Each position is the one furthest from ``pose`` and those chosen before, measured by the point
+    with the largest displacement, so that they are spread over the motion (Gonzalez 1985).
 
     References
     ----------
@@ -85,7 +84,7 @@ def further_positions(pose: Pose, motion: Motion, count: int) -> list[Further]:
 
 
 def faint_symbols(shown: Sequence[Further], measures: Measures) -> Iterator[Primitive]:
-    """Everything that moves, at every further position; limits stand out a little."""
+    """All moving parts at every further position; limits are less faint."""
     for further in shown:
         pose = further.pose
         found = tracks(pose, measures, tones(pose))
@@ -106,7 +105,7 @@ def faint_symbols(shown: Sequence[Further], measures: Measures) -> Iterator[Prim
 
 
 def driven_point(pose: Pose) -> str:
-    """The point that moves most directly with the first input, to mark its limits at."""
+    """The point driven most directly by the first input, for marks of its limits."""
     skeleton = pose.skeleton
     travel = {name: _travel(path) for name, path in pose.paths.items()}
     wanted: list[str] = []
@@ -130,7 +129,7 @@ def _travel(path: ComplexArray) -> float:
 def limit_marks(
     shown: Sequence[Further], motion: Motion | None, measures: Measures
 ) -> tuple[list[Primitive], list[Choice]]:
-    """A stop across the path at every dead point, a diamond at every change point; their names."""
+    """A stop across the path at every dead point, a diamond at every change point; and names."""
     marks: list[Primitive] = []
     names: list[Choice] = []
     for further in shown:
@@ -152,7 +151,7 @@ def limit_marks(
 
 
 def _direction(further: Further, name: str) -> complex:
-    """The unit vector along the path of a point where it is."""
+    """The unit tangent of a point's path at its current position."""
     path = further.pose.paths[name]
     rows = np.flatnonzero(np.isfinite(path))
     away = path[rows] - path[further.row]

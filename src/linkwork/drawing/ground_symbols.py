@@ -1,4 +1,4 @@
-"""What stands still: a hatched triangle under each pivot; the hatching of a line."""
+"""Ground symbols: a hatched triangle under each pivot; hatching of lines."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from linkwork.drawing.scene import Hatch, Polygon, Polyline, Primitive, Role, xy
 __all__ = ["DEPTH", "ground_symbols", "hatching"]
 
 _FLOOR = 3.1  # below the pivot, in radii of its pin
-DEPTH = _FLOOR + 1.4  #: To the lower end of the hatching.
+DEPTH = _FLOOR + 1.4  #: Distance to the lower end of the hatching.
 
 
 def ground_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """A triangle, a floor and its hatching under every point where a link meets the ground."""
+    """A triangle with a hatched base line under every pivot on ground."""
     skeleton = pose.skeleton
     carried = {point for bar in skeleton.bars for point in bar.points}
     carried |= {point for strut in skeleton.struts for point in strut.between}
     held = {point for figure in skeleton.figures for point in figure.ends}
-    carried |= held - {guide.point for guide in skeleton.guides}  # a slot's pin is held already
+    carried |= held - {guide.point for guide in skeleton.guides}  # on a guide already
     for name in skeleton.fixed:
         if name in carried:
             own = replace(measures, pin=pin_radius(pose, name, measures))
@@ -43,7 +43,7 @@ def hatching(start: complex, end: complex, away: complex, depth: float, of: str)
     """Strokes at 45° behind the line from start to end, on the side of the unit vector ``away``."""
     along = (end - start) / abs(end - start)
     length = abs(end - start)
-    # whole strokes from end to end, about as far apart as they are deep
+    # equally spaced strokes, with a distance of about their depth
     count = max(2, math.floor((length - depth) / depth + 1.5))
     step = (length - depth) / (count - 1)
     feet = [start + (depth + k * step) * along for k in range(count)]

@@ -1,4 +1,4 @@
-"""Sliders and slots: a block on a rail, a collar on a rod, a pin in a slot."""
+"""Symbols of sliders and slots: a block on a rail, a collar on a rod, a pin in a slot."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ __all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
 
 @dataclass(frozen=True, kw_only=True)
 class Track:
-    """A slider or slot as it is drawn.
+    """The drawn geometry of a slider or slot.
 
     Parameters
     ----------
     name, on : str
-        Of the slider or slot, and of the link that carries the line.
+        Names of the slider or slot, and of the link with the line.
     along, away : complex
-        Unit vectors of the line and of the side that a rail and its hatching lie on.
+        Unit vectors of the line and towards the side of the rail and its hatching.
     start, end : complex
-        The ends of the travel of the points on the line.
+        The ends of the travel along the line.
     places : tuple of complex
-        Where blocks or pins are now.
+        The current positions of blocks or pins.
     foot, tip : complex
-        The two points of the link that the line is laid through.
+        The two points of the link that define the line.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Track:
 
 
 def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[Track]:
-    """All sliders and slots. The points of one slider share a track."""
+    """The geometry of all sliders and slots; the points of one slider share it."""
     groups: dict[str, list[Guide]] = {}
     for guide in pose.skeleton.guides:
         groups.setdefault(guide.name, []).append(guide)
@@ -84,7 +84,7 @@ def _on_link(pose: Pose, rail: Rail, line: tuple[str, str], tone_of: Mapping[str
 
 
 def _rail_track(pose: Pose, measures: Measures, rail: Rail, tone_of: Mapping[str, int]) -> Track:
-    """A block on a line, where the sliding body is joined to another one."""
+    """A block on a line, at the joint of the sliding body with another one."""
     if rail.line is not None:
         return _on_link(pose, rail, rail.line, tone_of)
     carrying = [p for p in rail.points if p in pose.skeleton.pins] or list(rail.points[:1])
@@ -113,8 +113,8 @@ def _track(
     guide = guides[0]
     along = pose.direction(guide)
     fixed = pose.on_ground(guide)
-    # A block sits where the sliding link is joined to another one, or else at its first point;
-    # away from a cam that it follows.
+    # The block is at the joint of the sliding link with another one, or at its first point;
+    # it is set back from a cam that it follows.
     stem = stems(pose, measures)
     free = [g for g in guides if g.point not in stem] or guides
     carrying = [g for g in free if g.point in pose.skeleton.pins] or free[:1]
@@ -145,7 +145,7 @@ def _track(
 def _slot_without_motion(
     pose: Pose, guide: Guide, low: float, high: float, measures: Measures
 ) -> tuple[float, float]:
-    """The travel to draw if no motion tells it: most of the line if the pin is on it."""
+    """The default travel without a motion: most of the line if the pin is on it."""
     length = abs(pose.points[guide.line[1]] - pose.points[guide.line[0]])
     margin = 5 * measures.pin
     if margin < low < length - margin:
@@ -154,10 +154,10 @@ def _slot_without_motion(
 
 
 def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Measures) -> complex:
-    """The side of a fixed line that hatching lies on, the same in all positions of a motion.
+    """The hatched side of a fixed line, the same in all positions of a motion.
 
-    Below, as people draw the ground; above only if the links that move the slider always come
-    from below. Upright lines are hatched on the side away from these links.
+    Below by convention; above only if the links that move the slider are always below the line.
+    Upright lines are hatched on the side away from these links.
     """
     upright = abs(along.real) < 0.2
     below = along * -1j if along.real > 0 or upright else along * 1j
@@ -174,16 +174,16 @@ def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Meas
     ])  # fmt: skip
     depths = depths[np.isfinite(depths)]
     if upright:
-        # an upright line has no side below: hatching lies away from the links, on the average
+        # an upright line has no lower side: hatch the side away from the links on average
         return -below if np.mean(depths) > 0.01 * measures.size else below
-    # Without a motion a link must come steeply from below before the picture is turned over.
+    # Without a motion, hatch above only if a link is steeply below the line.
     clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
-    clear += 1e-6 * measures.size  # a link that comes level is not above
+    clear += 1e-6 * measures.size  # a level link does not count as above
     return -below if np.min(depths, initial=np.inf) > clear else below
 
 
 def track_gaps(found: list[Track], measures: Measures) -> dict[str, list[Gap]]:
-    """Where the bar of the carrying link is hidden, by the name of that link."""
+    """The hidden parts of the bars of carrying links, by link."""
     gaps: dict[str, list[Gap]] = {}
     for track in found:
         if track.block:
@@ -214,7 +214,7 @@ def _blocks(track: Track, measures: Measures) -> Iterator[Primitive]:
 
 
 def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
-    """A hatched line under the block, as long as its travel and some more."""
+    """A hatched line under the block, slightly longer than its travel."""
     half, height = measures.block
     reach, down = 1.6 * half * track.along, height * track.away
     start, end = track.start - reach + down, track.end + reach + down
@@ -223,7 +223,7 @@ def _rail(track: Track, measures: Measures) -> Iterator[Primitive]:
 
 
 def _rod(track: Track, measures: Measures) -> Iterator[Primitive]:
-    """The rod that a collar slides on, and its arm to the link if the line is offset."""
+    """The rod of a collar, and an arm to the link if the line is offset."""
     reach = 1.6 * measures.block[0]
     foot = track.foot
     arm = ((track.start - foot) * track.along.conjugate()).imag * track.along * 1j
@@ -243,14 +243,14 @@ def _bar(track: Track, start: complex, end: complex) -> Polyline:
 
 
 def _slot_end(measures: Measures) -> float:
-    """From the last place of the pin to the end of its slot."""
+    """The distance from the last position of the pin to the end of its slot."""
     return measures.slot + 0.8 * measures.pin
 
 
 def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
     """Two parallel lines with round ends around the travel of the pin."""
     width = measures.slot
-    # a fixed slot is drawn longer, as rails are
+    # a fixed slot is drawn longer, like rails
     reach = _slot_end(measures) + (3 * measures.pin if track.fixed else 0.0)
     over = (reach - width) * track.along
     start, end = track.start - over, track.end + over
@@ -263,7 +263,7 @@ def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
         yield hatching(start + down, end + down, track.away, measures.hatch, track.name)
         return
     yield Polygon(role=Role.SLOT, of=track.name, tone=track.tone, points=corners)
-    # A link whose points all lie beside the slot is joined to it.
+    # If all points of the link are off the slot, connect the link to it.
     length, low, high = (
         ((z - track.foot) * track.along.conjugate()).real
         for z in (track.tip, start - width * track.along, end + width * track.along)

@@ -1,7 +1,8 @@
-"""Scenes as SVG elements for HTML: their colours follow the page, light or dark.
+"""Scenes as SVG elements for HTML, with colours that follow the light or dark page.
 
-Colours stand in custom properties whose names tell both of them, ``--lw-0072B2-607AEA``: rules of
-several pictures on one page agree. No identifiers are used, no scripts, nothing is loaded.
+Colours are custom properties named by their light and dark values, ``--lw-0072B2-607AEA``, so
+several pictures on one page do not conflict. The elements use no identifiers, scripts or external
+files.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ from linkwork.drawing.theme import DARK, LIGHT
 __all__ = ["Inks", "inline_svg"]
 
 _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
-_DIGITS = 5  # of coordinates, counted from the size of the picture
-_MARGIN = 0.02  # of the size, around the drawing
+_DIGITS = 5  # digits of coordinates, relative to the size of the picture
+_MARGIN = 0.02  # margin as a fraction of the size
 
 
 class Inks:
-    """The colours of pictures that stand together, each as a light and a dark one."""
+    """The colours of the pictures on a page, each as a pair of light and dark."""
 
     def __init__(self) -> None:
         self._pairs: dict[str, tuple[str, str]] = {}
 
     def of(self, light: str, dark: str) -> str:
-        """A colour as CSS has it; ``none`` for an empty one."""
+        """A colour in CSS; ``none`` for an empty one."""
         if not light:
             return "none"
         name = f"--lw-{light[1:]}-{dark[1:]}"
@@ -45,9 +46,9 @@ class Inks:
         return f"var({name},{light})"
 
     def rules(self, scope: str) -> str:
-        """The style sheet that gives every colour its value inside elements of a class.
+        """The style sheet that defines all colours inside elements of a class.
 
-        The page's own word counts where it has one (Jupyter, VS Code, Colab), else the system's.
+        The theme of the page (Jupyter, VS Code, Colab) takes precedence over that of the system.
         """
         light, dark = (
             "".join(f"{name}:{pair[k]};" for name, pair in self._pairs.items()) for k in (0, 1)
@@ -75,11 +76,11 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
     Parameters
     ----------
     inks : Inks
-        Collects the colours: its rules belong beside the picture.
+        Collects the colours; its rules must be added to the page.
     longest : float
-        The longer side as it is shown, in CSS pixels; a narrow page makes it smaller.
+        The displayed longer side [CSS pixels]; narrower pages reduce it.
     view : Box, optional
-        The part of the plane that is shown; what the scene needs unless given.
+        The displayed part of the plane; by default the box of the scene.
     """
     shown = (view or scene.box).grown(_MARGIN * scene.measures.size)
     writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height))
@@ -95,14 +96,14 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
 
 
 class _Writer:
-    """Translates primitives into elements; y grows downwards there."""
+    """Translates primitives into elements, with the y axis pointing down."""
 
     def __init__(self, inks: Inks, stroke: float, size: float) -> None:
         self.inks, self.stroke, self.size = inks, stroke, size
         self.places = _DIGITS - floor(log10(size)) - 1
 
     def number(self, value: float) -> str:
-        """A length, as exactly as can be seen."""
+        """A length, rounded to visible digits."""
         rounded = round(value, self.places)
         return (
             f"{rounded:.{max(self.places, 0)}f}".rstrip("0").rstrip(".")
@@ -152,7 +153,7 @@ class _Writer:
         line = self.inks.of(LIGHT.line(primitive), DARK.line(primitive))
         if line == "none":
             return "stroke:none"
-        style = LIGHT.styles[primitive.role]  # lines are the same in every theme
+        style = LIGHT.styles[primitive.role]  # line styles are the same in every theme
         wide = style.width * width * self.stroke
         dashes = ",".join(self.number(part * wide) for part in style.dashes)
         return (

@@ -1,7 +1,7 @@
-"""What is driven: a curved arrow around a pivot, a straight one along a slider or cylinder.
+"""Arrows of inputs: curved around a pivot, straight along a slider or cylinder.
 
-An arrow may stand in several places beside what it drives; it takes the one where it covers least
-of what is drawn, the usual one where nothing is in its way.
+An arrow is placed near the driven part where it covers least of the drawing; if nothing is in the
+way, at its default position.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from linkwork.mechanism.skeleton import Bar, DrivenPart
 __all__ = ["input_arrows"]
 
 _SWEEP = math.radians(110)
-_LONGEST = 15.0  # radii of a pin: an arrow around a large ring
-_TURNED = 0.5  # what it costs to turn an arrow around its pivot away from the usual place [1/rad]
-_WIDER = (1.0, 1.4)  # times its usual radius
-_AROUND_PLATE = (1.0, 1.4, 1.9)  # a plate about the pivot may fill the usual place
-_WIDENED = 9.0  # what that costs [1/times]
-_OTHER_SIDE = 2.0  # what it costs to stand on the other side of a slider or cylinder
-_FURTHER = 2.0  # and further away from it
-_MOVED = 0.3  # and to be moved along it by a pin's radius
+_LONGEST = 15.0  # length of an arrow around a large ring, in pin radii
+_TURNED = 0.5  # penalty for rotating an arrow from its default position [1/rad]
+_WIDER = (1.0, 1.4)  # multiples of its default radius
+_AROUND_PLATE = (1.0, 1.4, 1.9)  # a plate around the pivot may cover the default position
+_WIDENED = 9.0  # penalty per multiple
+_OTHER_SIDE = 2.0  # penalty for the other side of a slider or cylinder
+_FURTHER = 2.0  # penalty for a larger distance from it
+_MOVED = 0.3  # penalty for a shift along it by a pin radius
 
 
 @dataclass(frozen=True)
 class _Place:
-    """An arrow where it may stand, and what it costs to stand there and not at the usual place."""
+    """A possible position of an arrow, and its penalty relative to the default."""
 
     arrow: Arc | Polyline
     cost: float
@@ -50,9 +50,9 @@ class _Place:
 def input_arrows(
     pose: Pose, found: list[Track], measures: Measures, sense: float, drawn: Sequence[Primitive]
 ) -> list[Primitive]:
-    """An arrow for every input, pointing where it grows, backwards if ``sense`` is negative.
+    """An arrow for every input in its positive direction, reversed if ``sense`` is negative.
 
-    ``drawn`` is what the arrows should not cover.
+    The arrows avoid covering ``drawn``.
     """
     guided = {track.name: track for track in found}
     struts = {strut.name: strut for strut in pose.skeleton.struts}
@@ -73,7 +73,7 @@ def input_arrows(
 
 
 def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> Primitive:
-    """The arrow that covers least; the first of several."""
+    """The arrow that covers least; the first among equals."""
     boxes = [[box.edges for box in _boxes(place.arrow, measures)] for place in places]
     # arrays need equal counts: shorter arrows repeat their last box
     most = max(map(len, boxes))
@@ -83,7 +83,7 @@ def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) 
 
 
 def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:
-    """Small boxes along an arrow that together cover it, with a little room."""
+    """Small boxes that cover an arrow, with a margin."""
     room = 0.45 * measures.pin
     places = [complex(*arrow.points[0])]
     for start, end in pairwise(complex(*point) for point in arrow.points):
@@ -94,7 +94,7 @@ def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:
 
 
 def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) -> Iterator[_Place]:
-    """Beside a block or slot: on the side away from its rail, or behind the rail's hatching."""
+    """Positions beside a block or slot: on the side away from its rail, or behind the hatching."""
     side = measures.block[1] if track.block else measures.slot
     behind = side + (measures.hatch if track.fixed else 0.0)
     gap = 1.7 * measures.pin
@@ -108,7 +108,7 @@ def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) 
 
 
 def _along_strut(pose: Pose, strut: Strut, measures: Measures, turn: int) -> Iterator[_Place]:
-    """Beside a cylinder: to the left of its barrel, elsewhere along it, or to the right."""
+    """Positions beside a cylinder: left of its barrel, elsewhere along it, or to the right."""
     base, tip = (pose.points[name] for name in strut.between)
     if base == tip:
         return
@@ -132,12 +132,12 @@ def _straight(of: str, middle: complex, along: complex, measures: Measures) -> P
 def _around_pivot(
     pose: Pose, part: DrivenPart, bar: Bar, measures: Measures, turn: int
 ) -> Iterator[_Place]:
-    """Around the pivot, usually ahead of the link."""
+    """Positions around the pivot, by default ahead of the link."""
     name = part.pivot or bar.points[0]
     pivot = pose.points[name]
     others = [pose.points[other] - pivot for other in bar.points if other != name]
     reach = max(others, key=abs, default=0j)
-    # A wheel of one point shows its angle by a mark; an arrow stands ahead of that.
+    # A one-point wheel shows its angle by a mark; the arrow is ahead of it.
     reach = reach or measures.size * cmath.exp(1j * pose.angle(bar.name))
     radius = max(2.2 * measures.pin, min(4.6 * measures.pin, 0.6 * abs(reach)))
     discs = [d for d in pose.skeleton.of(Disc) if (d.link, d.center) == (bar.name, name)]
@@ -163,7 +163,7 @@ def _around_pivot(
 
 
 def _around_wheel(discs: Sequence[Disc], measures: Measures) -> float:
-    """The radius of an arrow about a wheel: inside it if there is room, around a ring."""
+    """The radius of an arrow around a wheel: inside it if space permits; outside a ring."""
     most = max(discs, key=lambda disc: disc.radius)
     inside = min(4.6 * measures.pin, 0.6 * most.radius)
     if most.ring or inside < 2.8 * measures.pin:

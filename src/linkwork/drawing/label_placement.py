@@ -1,8 +1,8 @@
-"""Names of points and links, placed where they hide least.
+"""Placement of the names of points and links where they cover least.
 
-Every name may stand in 32 places around its point (eight directions, four distances), every link
-name in some more beside its bar. Each place has a penalty for what it would cover; names are placed
-one by one and moved until none can do better alone.
+A point's name has 32 possible positions (eight directions, four distances), a link's name some more
+along its bar. Each position has a penalty for the parts it covers; names are placed one by one and
+moved until no single move improves the result.
 """
 
 from __future__ import annotations
@@ -35,24 +35,24 @@ __all__ = [
     "point_names",
 ]
 
-_NAME_ON_NAME = 100.0  # penalty; more than any line costs: names must stay legible
-_FURTHER = 2.0  # penalty for each step further from the thing named
-_ACROSS = 13  # places for a text across an area, and as many up
-_CLEAR = 0.12  # left free around every name [em]: half a thick line and some air
-#: Right and above is where a name is looked for first.
+_NAME_ON_NAME = 100.0  # penalty, larger than for any line: names must stay legible
+_FURTHER = 2.0  # penalty for each step away from the named part
+_ACROSS = 13  # positions of a text across an area, and as many vertically
+_CLEAR = 0.12  # margin of every name [em]: half a thick line and some space
+#: The first position tried is above right.
 _PREFERENCE = {45: 0.0, 135: 0.3, 90: 0.5, 0: 0.6, 180: 0.7, 315: 0.8, 225: 0.9, 270: 1.0}
 
 
 @dataclass(frozen=True)
 class Choice:
-    """The places one name may take, with a penalty for each that knows no other name yet."""
+    """The possible positions of a name, with penalties that exclude other names."""
 
     places: tuple[Text, ...]
     cost: tuple[float, ...]
 
 
 def point_names(pose: Pose, measures: Measures) -> list[Choice]:
-    """Places for the name of every point that is drawn."""
+    """Positions for the names of all drawn points."""
     return [
         places_beside(Role.LABEL, name, printed_name(name), place, measures.text, measures)
         for name, place in pose.points.items()
@@ -69,7 +69,7 @@ def places_beside(
     measures: Measures,
     tone: int = 0,
 ) -> Choice:
-    """Places for a text beside a point: just outside circles around it."""
+    """Positions for a text near a point: just outside circles around it."""
     places, cost = [], []
     for further in range(4):
         gap = (1.6 + 1.3 * further) * measures.pin
@@ -97,7 +97,7 @@ def places_beside(
 
 
 def link_names(pose: Pose, measures: Measures) -> list[Choice]:
-    """Places for the name of every link: inside its plate, else beside its bar."""
+    """Positions for the names of all links: inside the plate, otherwise beside the bar."""
     tone = tones(pose)
     height = 0.85 * measures.text
     spans: dict[str, list[complex]] = {
@@ -130,7 +130,7 @@ def places_along(
     tone: int,
     measures: Measures,
 ) -> Choice:
-    """Places for a text beside a line."""
+    """Positions for a text beside a line."""
     height = 0.85 * measures.text
     spots = _beside_line(*line, text, height, measures)
     return places_at(role, of, text, tone, height, spots)
@@ -139,7 +139,7 @@ def places_along(
 def places_within(
     role: Role, of: str, text: str, corners: Sequence[complex], tone: int, measures: Measures
 ) -> Choice:
-    """Places for a text over an area and around it; best in the middle of the points given."""
+    """Positions for a text on and around an area; the best is the middle of the given points."""
     height = 0.85 * measures.text
     middle = sum(corners) / len(corners)
     box = Box.around(map(xy, corners))
@@ -157,7 +157,7 @@ def places_within(
 def places_at(
     role: Role, of: str, text: str, tone: int, height: float, spots: Sequence[tuple[complex, float]]
 ) -> Choice:
-    """Places for a text whose middle lies at one of some spots, each with its penalty."""
+    """Positions for a text with its middle at given points, each with its penalty."""
     places = tuple(
         Text(
             role=role,
@@ -188,7 +188,7 @@ def _rounds(pose: Pose, link: str) -> list[tuple[complex, float]]:
 def _about_round(
     rounds: list[tuple[complex, float]], name: str, height: float, measures: Measures
 ) -> Iterator[tuple[complex, float]]:
-    """Middles of the name inside the largest wheel or cam of a link, else just outside it."""
+    """Middles of the name inside the largest wheel or cam of a link, otherwise just outside."""
     centre, radius = rounds[0]
     half_width = text_width(printed_name(name), height) / 2
     for k in range(16):
@@ -196,7 +196,7 @@ def _about_round(
         for share in (0.6, 0.45, 0.75):
             if half_width < (1 - share) * radius or 1.2 * half_width < share * radius:
                 yield centre + share * radius * way, 0.1 * k
-        # how far a box reaches in a direction: its support function
+        # extent of a box in a direction: its support function
         clear = abs(way.real) * half_width + abs(way.imag) * 0.5 * height + 1.6 * measures.pin
         yield centre + (radius + clear) * way, _FURTHER + 0.1 * k
 
@@ -229,13 +229,12 @@ def _beside_line(
 
 
 def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
-    """The best place for every name over what is drawn already.
+    """The best position for every name, given the drawn parts.
 
     Notes
     -----
-    Each sweep gives every name, in order, the place that is best against the others where they
-    stand; it ends when nothing moves, which is a local optimum. Four sweeps are enough in
-    practice and bound the time.
+    Each sweep moves every name, in order, to its best position relative to the current others; it
+    ends when nothing moves, a local optimum. Four sweeps suffice in practice and bound the time.
     """
     if not choices:
         return []
@@ -248,13 +247,13 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
         np.array(c.cost) + obstacles.costs(e[:, None, :])
         for c, e in zip(choices, edges, strict=True)
     ]
-    # Most hemmed in first: they have the least choice.
+    # Names with the fewest free positions first.
     order = sorted(range(len(choices)), key=lambda k: -float(np.min(fixed[k])))
     taken: dict[int, int] = {}
     for _ in range(4):
         before = dict(taken)
         for k in order:
-            # in the first sweep only the names placed so far are in the way
+            # in the first sweep only names placed so far are obstacles
             others = np.array([edges[j][place] for j, place in taken.items() if j != k])
             cost = fixed[k] + _NAME_ON_NAME * _overlaps(edges[k], others.reshape(-1, 4))
             taken[k] = int(np.argmin(cost))
@@ -264,7 +263,7 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
 
 
 def _overlaps(boxes: Array, others: Array) -> Array:
-    """With how many others (k, 4) each box (n, 4) shares an area; left, bottom, right, top."""
+    """The number of other boxes (k, 4) that overlap each box (n, 4); left, bottom, right, top."""
     low = np.maximum(boxes[:, None, :2], others[None, :, :2])
     high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
     shared: Array = np.sum(np.all(high > low, axis=2), axis=1, dtype=float)

@@ -1,4 +1,4 @@
-"""Names of points that keep their place beside the point over a whole motion."""
+"""Names of points with constant positions relative to the points over a motion."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from linkwork.foundation.arrays import Array
 __all__ = ["labels_as_before", "lasting_labels"]
 
 _NAME_ON_NAME = 100.0
-_BELOW = 0.4  # the penalty for standing under the ground symbol
-_CLEAR = 0.12  # left free around every name [em]
-_WORST = 0.5  # share of the worst row in the penalty of a place, beside the mean of all
+_BELOW = 0.4  # penalty for a position under the ground symbol
+_CLEAR = 0.12  # margin of every name [em]
+_WORST = 0.5  # weight of the worst row in a penalty, relative to the mean of all
 
 
 def lasting_labels(
@@ -29,18 +29,18 @@ def lasting_labels(
     drawn: Sequence[Sequence[Primitive]],
     measures: Measures,
 ) -> list[Text]:
-    """The names in the first pose, each in the place that is best over all poses.
+    """The names in the first pose, each in its best position over all poses.
 
     Parameters
     ----------
     poses, drawn
-        Some rows of a motion, and what is drawn in each.
+        Some rows of a motion, and the drawn primitives of each.
 
     Notes
     -----
-    Names are placed one by one and moved until none can do better alone, as in
-    :func:`~linkwork.drawing.label_placement.placed`; the penalty of a place is the mean of its
-    penalties in all rows, and some of the worst.
+    Names are placed one by one and moved until no single move improves the result, as in
+    :func:`~linkwork.drawing.label_placement.placed`; the penalty of a position is the mean
+    of its penalties in all rows plus a share of the worst.
     """
     rows = [
         [_with_place_below(choice, pose, measures) for choice in point_names(pose, measures)]
@@ -57,7 +57,7 @@ def lasting_labels(
 
 
 def labels_as_before(pose: Pose, measures: Measures, before: Sequence[Text]) -> list[Text]:
-    """The names of a pose of the same mechanism, each in the direction that it had ``before``."""
+    """The names of another pose of the mechanism, each in its direction from ``before``."""
     height = measures.text
     return [
         replace(
@@ -82,7 +82,7 @@ def _boxes(choices: Sequence[Choice]) -> Array:
 
 
 def _with_place_below(choice: Choice, pose: Pose, measures: Measures) -> Choice:
-    """A pivot's name may stand under its ground symbol too, where a crank seldom comes by."""
+    """Add the position under a pivot's ground symbol, which a crank rarely covers."""
     text = choice.places[0]
     if text.of not in pose.skeleton.fixed:
         return choice
@@ -92,7 +92,7 @@ def _with_place_below(choice: Choice, pose: Pose, measures: Measures) -> Choice:
 
 
 def _covered(obstacles: Sequence[Obstacles], boxes: Array) -> Array:
-    """What the places of a name cover in every row: boxes (rows, places, 4), (rows, places)."""
+    """The penalties of a name's positions in every row: boxes (rows, places, 4), (rows, places)."""
     return np.array([o.costs(own[:, None, :]) for o, own in zip(obstacles, boxes, strict=True)])
 
 
@@ -102,7 +102,7 @@ def _over_rows(cost: Array) -> Array:
 
 
 def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
-    """The place of every name, against the others where they stand: a local optimum."""
+    """The position of every name given those of the others: a local optimum."""
     chosen: dict[int, int] = {}
     order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
     for _ in range(4):
@@ -119,7 +119,7 @@ def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
 
 
 def _overlapping(boxes: Array, others: Array) -> Array:
-    """Whether boxes (rows, places, 4) meet one box per row (rows, 4); shape (rows, places)."""
+    """Whether boxes (rows, places, 4) overlap one box per row (rows, 4); shape (rows, places)."""
     other = others[:, None, :]
     return np.asarray(
         (boxes[..., 0] < other[..., 2])

@@ -1,4 +1,4 @@
-"""Links: a bar between two points, a filled plate through three or more."""
+"""Symbols of links: a bar between two points, a filled plate through three or more."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ __all__ = [
     "uncovered",
 ]
 
-_IN_LINE = 1e-6  # a link is drawn as a bar if its points stray less, relative to its length
-_ON_SIDE = 1e-9  # twice the area of a triangle, relative to the length squared: its corner is none
+_IN_LINE = 1e-6  # relative deviation from a line below which a link is a bar
+_ON_SIDE = 1e-9  # relative double area of a triangle below which its corner is ignored
 
-#: A piece of a line hidden by a slot or block: position of its middle, vector to its end.
+#: A piece of a line hidden by a slot or block: its middle, and the vector to its end.
 Gap = tuple[complex, complex]
 
 
 def tones(pose: Pose) -> Mapping[str, int]:
-    """The tone of every link: 0 if it is driven, else its number."""
+    """The tone of every link: 0 if driven, otherwise its number."""
     driven = {part.name for part in pose.skeleton.driven}
     free = [bar.name for bar in pose.skeleton.bars if bar.name not in driven]
     return dict.fromkeys(driven, 0) | {name: k for k, name in enumerate(free, 1)}
 
 
 def link_symbols(pose: Pose, gaps: Mapping[str, list[Gap]]) -> Iterator[Primitive]:
-    """Every link; ``gaps`` say, link by link, where slots and blocks interrupt its bar."""
+    """The symbols of all links; ``gaps`` are the interruptions of bars by slots and blocks."""
     tone = tones(pose)
     for bar in pose.skeleton.bars:
         yield from _link(pose, bar, tone[bar.name], gaps.get(bar.name, []))
@@ -56,13 +56,13 @@ def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitiv
 
 
 def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
-    """The radius of a pin: smaller than usual in the middle of a small wheel."""
+    """The radius of a pin, reduced at the centre of a small wheel."""
     discs = pose.skeleton.of(Wheel)
     return min([measures.pin, *(0.4 * d.radius for d in discs if d.center == name)])
 
 
 def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """A circle at every pin, a dot at every other point that something is drawn at."""
+    """A circle at every pin, a dot at every other drawn point."""
     skeleton = pose.skeleton
     joined = set(skeleton.pins) | {p for strut in skeleton.struts for p in strut.between}
     for name, place in pose.points.items():
@@ -79,7 +79,7 @@ def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
 def convex_outline(points: Iterable[complex]) -> list[complex]:
     """The corners of the smallest convex polygon around points, counter-clockwise.
 
-    Of points in one line only the two ends are left.
+    Collinear points are reduced to the two ends.
 
     References
     ----------
@@ -87,11 +87,11 @@ def convex_outline(points: Iterable[complex]) -> list[complex]:
     Information Processing Letters 9 (1979) 216-219, doi:10.1016/0020-0190(79)90072-3.
     """
     ordered = sorted(set(points), key=lambda z: (z.real, z.imag))
-    # Sorting alone would not find the ends of an upright line whose x differ by rounding.
+    # Sorting alone fails for an upright line whose x values differ by rounding.
     ends = max(product(ordered, ordered), key=lambda pair: abs(pair[1] - pair[0]))
     if in_line([ends[0], *ordered, ends[1]]):
         return list(ends)
-    # Corners on a side, up to rounding, are left out in every position of a link.
+    # Corners on a side, up to rounding, are removed in every position of a link.
     flat = _ON_SIDE * abs(ends[1] - ends[0]) ** 2
     lower, upper = _half_outline(ordered, flat), _half_outline(ordered[::-1], flat)
     return lower[:-1] + upper[:-1]
@@ -112,14 +112,14 @@ def _left_of(a: complex, b: complex, z: complex) -> float:
 
 
 def in_line(points: list[complex]) -> bool:
-    """Whether points, the first and last being furthest apart, lie in one line."""
+    """Whether points are collinear; the first and last are furthest apart."""
     start, end = points[0], points[-1]
     length = abs(end - start)
     return all(abs(_left_of(start, end, z)) <= _IN_LINE * length * length for z in points)
 
 
 def uncovered(start: complex, end: complex, gaps: list[Gap]) -> Iterator[tuple[complex, complex]]:
-    """What is left of the line from start to end beside the gaps that lie on it."""
+    """The parts of the line from start to end without the gaps on it."""
     length = abs(end - start)
     if not length:
         return

@@ -1,4 +1,4 @@
-"""Matplotlib's own settings, whatever the user's are, while a picture is drawn."""
+"""Matplotlib's default settings while a picture is drawn, independent of the user's."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["house_settings"]
 
 @contextmanager
 def house_settings() -> Iterator[None]:
-    """Matplotlib's own defaults, whatever the user's settings are, while we draw."""
+    """Use Matplotlib's defaults instead of the user's settings."""
     try:
         import matplotlib
     except ImportError as error:
@@ -20,6 +20,6 @@ def house_settings() -> Iterator[None]:
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams["svg.hashsalt"] = "linkwork"
-        matplotlib.rcParams["path.simplify"] = False  # files show the scene's own coordinates
-        matplotlib.rcParams["pdf.fonttype"] = 42  # journals refuse PDF files with fonts of type 3
+        matplotlib.rcParams["path.simplify"] = False  # files show the coordinates of the scene
+        matplotlib.rcParams["pdf.fonttype"] = 42  # journals reject PDF files with Type 3 fonts
         yield

@@ -1,7 +1,7 @@
 """Scenes as PNG, SVG and PDF, and as Matplotlib figures for notebooks.
 
-Matplotlib is needed only here and for charts, and only when something is drawn. The
-object-oriented interface is used throughout: no window, no global figure.
+Matplotlib is needed only here and for charts, and is imported only for drawing. The object-oriented
+interface is used throughout: no window, no global figure.
 """
 
 from __future__ import annotations
@@ -42,12 +42,17 @@ __all__ = ["FORMATS", "Brush", "figure", "render", "write"]
 #: File formats by suffix.
 FORMATS = ("png", "svg", "pdf")
 
-_LONG_SIDE = 6.0  # of the drawing, in inches
-_SHORT_SIDE = 1.5  # at least, so that ticks and the title have room
-_LEFT, _RIGHT, _BELOW, _LINE = 0.75, 0.2, 0.6, 0.19  # around the drawing, and a title line
+_LONG_SIDE = 6.0  # longer side of the drawing [inches]
+_SHORT_SIDE = 1.5  # minimum, for ticks and title
+_LEFT, _RIGHT, _BELOW, _LINE = (
+    0.75,
+    0.2,
+    0.6,
+    0.19,
+)  # margins and title line [inches]
 _TITLE, _SMALL = 11.0, 9.0  # font sizes in points
-_TICK_EVERY = 1.0  # inch, about
-_MARGIN, _BETWEEN = 0.15, 0.15  # around and between pictures side by side, in inches
+_TICK_EVERY = 1.0  # approximate distance [inches]
+_MARGIN, _BETWEEN = 0.15, 0.15  # margins of pictures side by side [inches]
 _DATELESS: dict[str, dict[str, str | None]] = {
     "png": {"Software": "Linkwork"},
     "svg": {"Date": None, "Creator": "Linkwork"},
@@ -64,12 +69,12 @@ def write(
 ) -> Path:
     """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
 
-    The file appears whole or not at all, and the same scene gives the same bytes.
+    The file is written completely or not at all; the same scene gives the same bytes.
 
     Raises
     ------
     InputError
-        If the suffix names no known format, or the file cannot be written.
+        If the suffix is not a known format, or the file cannot be written.
     MissingPackageError
         If Matplotlib is not installed.
     """
@@ -102,7 +107,7 @@ def render(
     Raises
     ------
     InputError
-        For an unknown format, or a drawing in the colours of a chart.
+        If the format is unknown, or a drawing has a theme of charts.
     """
     if kind not in FORMATS:
         raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
@@ -121,13 +126,13 @@ def render(
 
 
 def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Figure:
-    """A scene as a Matplotlib figure of its own, or drawn into existing axes.
+    """A scene as a new Matplotlib figure, or drawn into existing axes.
 
     Returns
     -------
     Figure
-        The figure that holds the drawing. In axes of the caller, line widths and fonts suit the
-        size that the axes have now.
+        The figure with the drawing. In existing axes, line widths and fonts fit their current
+        size.
     """
     with house_settings():
         if ax is None:
@@ -144,7 +149,7 @@ def figure(scene: Scene, ax: Axes | None = None, *, theme: Theme = LIGHT) -> Fig
 
 
 def _sheet_figure(sheet: Sheet, theme: Theme) -> Figure:
-    """Scenes side by side in frames without ticks, all of one scale."""
+    """Scenes side by side in frames without ticks, with equal scale."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -190,14 +195,14 @@ def _name_lines(name: str, width: float) -> list[str]:
 
 
 def _heading(title: str, caption: str, width: float, theme: Theme) -> list[tuple[str, float, str]]:
-    """Lines of a title and a caption with their font sizes and colours; ``width`` in inches."""
+    """Lines of title and caption with their font sizes and colours; ``width`` in inches."""
     heading = [(line, _TITLE, theme.ink) for line in lines_within(title, width * 72 / _TITLE)]
     small = lines_within(caption, width * 72 / _SMALL)
     return heading + [(line, _SMALL, theme.faint) for line in small]
 
 
 def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: float) -> None:
-    """The lines of a heading below each other, ``left`` inches from the edge."""
+    """Write the lines of a heading, ``left`` inches from the edge."""
     width, height = page.get_size_inches()
     for k, (line, size, colour) in enumerate(heading):
         place = (left / width, 1 - (0.26 + k * _LINE) / height)
@@ -205,7 +210,7 @@ def _write_heading(page: Figure, heading: list[tuple[str, float, str]], left: fl
 
 
 def _page(scene: Scene, theme: Theme) -> Axes:
-    """New axes on a page that fits the drawing, its margins and its title."""
+    """Create axes on a page sized for the drawing, its margins and its title."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -229,7 +234,7 @@ def _page(scene: Scene, theme: Theme) -> Axes:
 
 
 def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
-    """Equal, quiet axes: two thin lines with few ticks and the length unit."""
+    """Style the axes: equal scales, two thin lines with few ticks and the length unit."""
     from matplotlib.ticker import MultipleLocator
 
     ax.set_facecolor(theme.background)
@@ -257,7 +262,7 @@ def _dress(ax: Axes, scene: Scene, theme: Theme, view: Box) -> None:
 
 
 def _points_per_unit(ax: Axes) -> float:
-    """How many points (1/72 inch) a length unit of the mechanism takes on paper."""
+    """Points (1/72 inch) per length unit of the mechanism."""
     (left, _), (right, _) = ax.transData.transform([(0.0, 0.0), (1.0, 0.0)])
     root = ax.get_figure(root=True)
     assert root is not None
@@ -265,13 +270,13 @@ def _points_per_unit(ax: Axes) -> float:
 
 
 def _round_step(wanted: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above 1.4 times ``wanted``."""
+    """The largest of 1, 2, 5 times a power of ten up to 1.4 times ``wanted``."""
     power: float = 10.0 ** math.floor(math.log10(1.4 * wanted))
     return max(step * power for step in (1, 2, 5) if step * power <= 1.4 * wanted)
 
 
 class Brush:
-    """Translates primitives into artists of one axes."""
+    """Translates primitives into artists of axes."""
 
     def __init__(self, ax: Axes, scene: Scene, theme: Theme) -> None:
         self.ax = ax
@@ -295,7 +300,7 @@ class Brush:
                 self._text(primitive)
 
     def _common(self, primitive: Primitive) -> dict[str, Any]:
-        # The group id names role and part in an SVG file, for whoever edits or tests it.
+        # The group id contains role and part, for editors and tests of SVG files.
         gid = f"{'faint-' if primitive.fade else ''}{primitive.role.name.lower()}:{primitive.of}"
         return {"zorder": 100 + primitive.layer, "gid": gid, "clip_on": False}
 

@@ -1,4 +1,4 @@
-"""The sizes of symbols: fractions of the drawn size, smaller where pins stand close together."""
+"""The sizes of symbols: fractions of the drawn size, reduced if pins are close together."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from linkwork.drawing.box import Box
 
 __all__ = ["COINCIDENT", "Measures"]
 
-#: Relative to the size of a drawing, or to its longest vector: places as near as this are one.
-#: Rounding moves solved places far less, and a reader sees no difference below 1e-4.
+#: Relative to the size of a drawing, or to its longest vector: nearer points coincide.
+#: Rounding errors are much smaller, and differences below 1e-4 are not visible.
 COINCIDENT = 1e-6
 
-_PIN_OF_SIZE = 0.0115  # pin radius over drawn size: 10 points of diameter on a six-inch figure
-_SMALLEST_OF_SIZE = 0.0055  # below this a pin is no longer seen as a circle
-_PIN_OF_GAP = 0.22  # pin radius over the distance of its nearest neighbour
+_PIN_OF_SIZE = 0.0115  # pin radius over drawn size: a diameter of 10 points in a six-inch figure
+_SMALLEST_OF_SIZE = 0.0055  # minimum for a visible circle
+_PIN_OF_GAP = 0.22  # pin radius over the distance to its nearest neighbour
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measures:
-    """Lengths of a drawing, all in the mechanism's length unit.
+    """Lengths of a drawing in the mechanism's length unit.
 
     Parameters
     ----------
     size : float
-        The larger side of what is drawn.
+        The larger side of the drawing.
     pin : float
-        The radius of a pin; every other symbol is a multiple of it.
+        The radius of a pin; other symbols are multiples of it.
     larger : float
-        How much larger than usual names are, for small pictures; symbols grow by its root.
+        Enlargement of names, for small pictures; symbols grow by its square root.
     """
 
     size: float
@@ -39,9 +39,9 @@ class Measures:
 
     @classmethod
     def of(cls, box: Box, gaps: Iterable[float], larger: float = 1.0) -> Measures:
-        """Measures for what fills a box, with gaps between pins that do not change in the motion.
+        """Measures for a drawing that fills a box, with constant distances between pins.
 
-        A mechanism of a single point counts as one unit long.
+        A mechanism with a single point counts as one unit long.
         """
         size = max(box.width, box.height) or 1.0
         # points at the same place have no gap
@@ -53,17 +53,17 @@ class Measures:
 
     @property
     def stroke(self) -> float:
-        """The width of a thin line; roles count their line widths in it."""
+        """The width of a thin line, the unit of line widths of roles."""
         return 0.22 * self.pin
 
     @property
     def dot(self) -> float:
-        """The radius of a point that is no pin."""
+        """The radius of a point that is not a pin."""
         return 0.5 * self.pin
 
     @property
     def text(self) -> float:
-        """The font size (one em) of names: readable however small the pins are."""
+        """The font size (one em) of names, independent of the size of pins."""
         return 0.0275 * self.larger * self.size
 
     @property
@@ -73,7 +73,7 @@ class Measures:
 
     @property
     def slot(self) -> float:
-        """Half the width of a slot: a pin and some play."""
+        """Half the width of a slot: a pin radius and some clearance."""
         return 1.55 * self.pin
 
     @property

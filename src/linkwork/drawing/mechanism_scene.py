@@ -1,4 +1,4 @@
-"""From a position to its picture. Nothing is solved here."""
+"""Scenes of positions, composed from symbols without solving."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from linkwork.results.position import Position
 
 __all__ = ["SceneOptions", "scene_of", "symbols", "traced"]
 
-_BEHIND = 0.62  # how faint the mechanism is behind its vectors
+_BEHIND = 0.62  # fading of the mechanism behind its vectors
 _FIRM = (Role.GROUND, Role.HATCH, Role.TRACE, Role.PIN, Role.POINT, Role.TRACED)
 
 
@@ -54,12 +54,11 @@ def scene_of(
     position : Position
         A position that was found.
     motion : Motion, optional
-        The motion it belongs to: tells the paths of points, and how long rails, slots and
-        cylinders are.
+        Its motion, for paths of points and the lengths of rails, slots and cylinders.
     labels : bool
         Write the names of points.
     traces : sequence of str, optional
-        The points whose paths are shown; those of the mechanism's ``[trace]`` unless given.
+        The points whose paths are shown; by default those of ``[trace]``.
     options : SceneOptions, optional
         Further choices.
 
@@ -67,13 +66,13 @@ def scene_of(
     ------
     InputError
         If the position was not found, the mechanism has no points, the motion is of another
-        mechanism, or traces are asked for without a motion.
+        mechanism, or traces are requested without a motion.
     UnknownNameError
-        If a trace names no point.
+        If a traced point does not exist.
 
     Notes
     -----
-    Colours and fonts are the writers' business, see :mod:`linkwork.drawing.theme`.
+    Writers choose colours and fonts, see :mod:`linkwork.drawing.theme`.
     """
     chosen = options or SceneOptions()
     pose = Pose.of(position, motion, bare=bool(chosen.vectors))
@@ -124,7 +123,7 @@ def _within(
     further: Sequence[Further],
     polygons: Iterable[Iterable[Edge]],
 ) -> Box:
-    """What the picture has to show: the mechanism in all its positions, and vectors."""
+    """The box of the picture: the mechanism in all its positions, and vectors."""
     vectors = [xy(end) for edges in polygons for edge in edges for end in (edge.tail, edge.tip)]
     if not pose.points:
         return Box.around(vectors)
@@ -133,12 +132,12 @@ def _within(
 
 
 def _faded(primitive: Primitive) -> Primitive:
-    """What moves, fainter, for vectors to stand out from."""
+    """The moving parts, faded as a background for vectors."""
     return primitive if primitive.role in _FIRM else replace(primitive, fade=_BEHIND)
 
 
 def _check_motion(chosen: SceneOptions, names: tuple[str, ...], motion: Motion | None) -> None:
-    """Refuse what only a motion tells."""
+    """Reject options that need a motion."""
     if motion is None and chosen.centrodes:
         raise InputError("centrodes cannot be drawn from one position: give the motion too")
     if motion is None and chosen.speed:
@@ -150,7 +149,7 @@ def _check_motion(chosen: SceneOptions, names: tuple[str, ...], motion: Motion |
 def symbols(
     pose: Pose, found: list[Track], names: tuple[str, ...], measures: Measures
 ) -> Iterator[Primitive]:
-    """One position from the ground up to its pins, with the paths of points."""
+    """All symbols of one position, from ground to pins, with the paths of points."""
     figures = pose.skeleton.figures
     yield from ground_symbols(pose, measures)
     yield from wheel_symbols(pose, measures)
@@ -164,14 +163,14 @@ def symbols(
 
 
 def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
-    """The points whose paths are shown: those wanted, else those of the mechanism's ``[trace]``.
+    """The points whose paths are shown: those given, otherwise those of ``[trace]``.
 
     Raises
     ------
     InputError
-        If a path is wanted without a motion.
+        If a path is requested without a motion.
     UnknownNameError
-        If there is no such point.
+        If a point does not exist.
     """
     if wanted is None:
         return pose.skeleton.traced if pose.paths else ()
@@ -189,6 +188,6 @@ def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def _caption(position: Position, motion: Motion | None) -> str:
-    """The input values with units, and where a motion is shown faintly: ``crank = 60°``."""
+    """The input values with units, and the range of faintly drawn positions: ``crank = 60°``."""
     here = inputs_caption(position.input, position.input_units, position.units)
     return here if motion is None else f"{here}; faint: {reached_caption(motion)}"

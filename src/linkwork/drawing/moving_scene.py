@@ -1,9 +1,9 @@
-"""A motion as a picture that moves: every primitive is carried by a frame, or has its own course.
+"""A motion as a moving picture: every primitive is attached to a frame, or has coordinates per row.
 
 The primitives are those of :func:`~linkwork.drawing.mechanism_scene.scene_of`. Most are rigid: they
-stand still on ground, or are carried by a link or a point. The others (pistons, rods that a collar
-hides a piece of, …) keep their coordinates row by row. Names and arrows keep one place for the
-whole motion, so that they do not jump. Nothing is solved here.
+are fixed to ground, a link or a point. Others (pistons, rods partly hidden by a collar, …) have
+coordinates for every row. Names and arrows keep their positions over the whole motion. Nothing is
+solved here.
 """
 
 from __future__ import annotations
@@ -48,24 +48,24 @@ from linkwork.results.motion import Motion
 __all__ = ["MovingScene", "moving_scene"]
 
 _SAMPLED = 9  # rows at which names must not collide
-_FEW = 4  # the same, for a picture that somebody waits for
-_TRIED = 25  # rows that tell what carries a shape
+_FEW = 4  # the same, for a quick picture
+_TRIED = 25  # rows used to find the frame of a shape
 
 
 @dataclass(frozen=True, kw_only=True)
 class MovingScene:
-    """A motion as it is drawn.
+    """A drawn motion.
 
     Parameters
     ----------
     scene : Scene
-        The picture in the reference row, names and arrows among it.
+        The picture in the reference row, with names and arrows.
     row : int
         The reference row.
     found : array (N,) of bool
         Rows that can be drawn.
     frames : Frames
-        Where everything is carried.
+        The frames over the motion.
     parts : tuple of Moving
         The primitives, bottom to top.
     """
@@ -77,7 +77,7 @@ class MovingScene:
     parts: tuple[Moving, ...]
 
     def at(self, row: int, *, turned: bool = False) -> Scene:
-        """The picture in a row that was found; ``turned``: with arrows of inputs the other way."""
+        """The picture in a found row; ``turned``: with reversed arrows of inputs."""
         if not self.found[row]:
             raise InputError(f"row {row} of the motion has no position to draw")
         shapes = tuple(filter(None, (self._placed(part, row) for part in self.parts)))
@@ -97,11 +97,11 @@ class MovingScene:
 
     @property
     def view(self) -> Box:
-        """What the picture needs over the whole motion."""
+        """The box of the picture over the whole motion."""
         box = self.scene.box
         rows = np.flatnonzero(self.found)
         for part in self.parts:
-            # names may be cut off at the edge: the picture must not jump for their sake
+            # names may be clipped at the edge, so that the picture does not jump
             if part.frame == STILL or isinstance(part.shape, Text):
                 continue
             if part.frame is None:
@@ -128,31 +128,31 @@ def moving_scene(
     like: MovingScene | None = None,
     sampled: bool = False,
 ) -> MovingScene:
-    """A motion as it is drawn.
+    """Draw a motion.
 
     Parameters
     ----------
     motion : Motion
-        A motion of which at least one position was found.
+        A motion with at least one position.
     traces : sequence of str, optional
-        The points whose paths are shown; those of the mechanism's ``[trace]`` unless given.
+        The points whose paths are shown; by default those of ``[trace]``.
     within : Box, optional
-        What sizes of symbols are measured by: give it to all motions that are shown in one
-        picture; :func:`~linkwork.drawing.drawn_box.reach_of` unless given.
+        The reference for sizes of symbols, the same for all motions of one picture; by default
+        :func:`~linkwork.drawing.drawn_box.reach_of`.
     like : MovingScene, optional
-        A motion of the same mechanism with other dimensions, drawn before: what carries each
-        shape, and where names stand, are taken over if the shapes are the same. This makes it
-        quick enough to be done while a dimension is dragged.
+        A drawn motion of the same mechanism with other dimensions: the frames of shapes and the
+        positions of names are reused if the shapes are equal. This is fast enough for use during
+        the drag of a dimension.
     sampled : bool
-        What carries each shape is found from some of the rows, many times faster, for a picture
-        that somebody waits for. A shape that is drawn in none of these rows is left out.
+        Find the frame of each shape from some of the rows, which is many times faster. A shape that
+        is drawn in none of these rows is omitted.
 
     Raises
     ------
     InputError
         If no position was found, or the mechanism has no points.
     UnknownNameError
-        If a trace names no point.
+        If a traced point does not exist.
     """
     box = reach_of(motion) if within is None else within
     rows = np.flatnonzero(motion.found)
@@ -161,7 +161,7 @@ def moving_scene(
     frames = Frames.of(motion, pose)
     shown = dict(keyed(drawn_symbols(pose, measures)))
     carried = None if like is None else _carried(like)
-    # other symbols than before: nothing corresponds
+    # different symbols: no correspondence
     if carried is None or carried.keys() != shown.keys():
         like = carried = None
     if carried is None and sampled:
@@ -175,7 +175,7 @@ def moving_scene(
     row = int(rows[0])
     if like is None:
         parts += _arrows(pose, measures, motion.speed, frames, parts)
-        # names come last: they avoid all that moves
+        # names come last, since they avoid all moving parts
         moving = MovingScene(
             scene=_scene(motion, parts, measures, box),
             row=row,
@@ -208,7 +208,7 @@ def _scene(motion: Motion, parts: Sequence[Moving], measures: Measures, within: 
 
 
 def _turned(shape: Primitive) -> Primitive:
-    """The arrow of an input the other way; everything else as it is."""
+    """The reversed arrow of an input; other primitives unchanged."""
     if shape.role is Role.INPUT and isinstance(shape, Arc):
         return replace(shape, start=shape.start + shape.sweep, sweep=-shape.sweep)
     if shape.role is Role.INPUT and isinstance(shape, Polyline):
@@ -217,14 +217,14 @@ def _turned(shape: Primitive) -> Primitive:
 
 
 def _some(rows: CountArray, count: int) -> CountArray:
-    """At most so many rows from the first to the last."""
+    """At most ``count`` rows from the first to the last."""
     spread = np.linspace(0, len(rows) - 1, count).round().astype(int)
     some: CountArray = rows[list(dict.fromkeys(spread.tolist()))]
     return some
 
 
 def _carried(scene: MovingScene) -> dict[Key, Moving]:
-    """What of a moving scene was drawn from its pose, by key; not traces, arrows, names."""
+    """The primitives of a moving scene by key, without traces, arrows and names."""
     drawn = [
         part
         for part in scene.parts
@@ -242,7 +242,7 @@ def _arrows(
     frames: Frames,
     parts: Sequence[Moving],
 ) -> Iterator[Moving]:
-    """An arrow for every input, carried by what is driven as in the reference row."""
+    """An arrow for every input, attached to the driven part as in the reference row."""
     sense = -1.0 if (speed or 0.0) < 0 else 1.0
     found = tracks(pose, measures, tones(pose))
     drawn = [part.shape for part in parts]
@@ -251,7 +251,7 @@ def _arrows(
 
 
 def _arrows_as_before(like: MovingScene, frames: Frames, row: int) -> Iterator[Moving]:
-    """The arrows of another motion, where they were on what is driven."""
+    """The arrows of another motion, at the same positions on the driven parts."""
     for part in like.parts:
         if part.shape.role is Role.INPUT and part.frame is not None:
             local = like.frames.local(part.frame, corners(part.shape)[None], np.array([like.row]))[
@@ -262,7 +262,7 @@ def _arrows_as_before(like: MovingScene, frames: Frames, row: int) -> Iterator[M
 
 
 def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
-    """What carries the arrow of an input: the link, the block or the cylinder that is driven."""
+    """The part with the arrow of an input: the driven link, block or cylinder."""
     skeleton = pose.skeleton
     for part in skeleton.driven:
         if part.name != arrow.of:
@@ -285,7 +285,7 @@ def _driving(pose: Pose, arrow: Primitive, frames: Frames) -> Frame:
 
 
 def _names(motion: Motion, pose: Pose, moving: MovingScene, rows: CountArray) -> Iterator[Moving]:
-    """The names of points, each in one direction from its point that is free in these rows."""
+    """The names of points, each in a direction that is free in these rows."""
     poses = [pose.moved_to(motion, int(row)) for row in rows]
     drawn = [moving.at(int(row)).primitives for row in rows]
     for text in lasting_labels(poses, drawn, moving.scene.measures):
@@ -293,7 +293,7 @@ def _names(motion: Motion, pose: Pose, moving: MovingScene, rows: CountArray) ->
 
 
 def _names_as_before(like: MovingScene, pose: Pose, measures: Measures) -> Iterator[Moving]:
-    """The names of points in the directions that they had in another motion."""
+    """The names of points in their directions from another motion."""
     before = [part.shape for part in like.parts if isinstance(part.shape, Text)]
     for text in labels_as_before(pose, measures, before):
         yield _name(text, pose)

@@ -1,4 +1,4 @@
-"""Primitives that move: the frame that carries each, or its own course row by row."""
+"""Moving primitives: attached to a frame, or with coordinates per row."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ from linkwork.results.motion import Motion
 
 __all__ = ["Key", "Moving", "attach_shapes", "drawn_symbols", "keyed", "take_over_frames"]
 
-_ARC_PIECES = 32  # of an arc that changes its sweep
-#: Kind, role and part of a primitive, and its number among those that agree in all of these.
+_ARC_PIECES = 32  # points of an arc with variable sweep
+#: Kind, role and part of a primitive, and its index among primitives equal in these.
 Key = tuple[type[Primitive], Role, str, int]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Moving:
-    """A primitive that moves.
+    """A moving primitive.
 
     Parameters
     ----------
     shape : Primitive
-        As it is in the reference row.
+        The primitive in the reference row.
     frame : Frame, optional
-        The frame that carries it; ``None`` if it changes its shape.
+        Its frame; ``None`` if it deforms.
     course : array (N, m), optional
-        Its corners x + iy row by row if no frame carries it; NaN in rows where it is not drawn.
+        Its corners x + iy in every row, if it has no frame; NaN in rows where it is not drawn.
     """
 
     shape: Primitive
@@ -57,7 +57,7 @@ def drawn_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:
 
 
 def keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
-    """Primitives with keys by which those of two poses correspond."""
+    """Primitives with keys that match those of another pose."""
     count: dict[tuple[type[Primitive], Role, str], int] = {}
     for primitive in primitives:
         kind = (type(primitive), primitive.role, primitive.of)
@@ -68,7 +68,7 @@ def keyed(primitives: Iterator[Primitive]) -> Iterator[tuple[Key, Primitive]]:
 def attach_shapes(
     motion: Motion, pose: Pose, measures: Measures, frames: Frames, rows: CountArray
 ) -> dict[Key, Moving]:
-    """Each primitive with the frame that carries it, found from its coordinates in these rows."""
+    """Each primitive with its frame, found from its coordinates in these rows."""
     first: dict[Key, Primitive] = {}
     course: dict[Key, dict[int, Primitive]] = {}
     for k, row in enumerate(rows):
@@ -90,7 +90,7 @@ def _one_attached(
     measures: Measures,
 ) -> Moving:
     found = [corners(one) for one in along.values()]
-    # a shape missing in some rows, or with other corners, cannot be rigid
+    # a shape missing in some rows, or with other corners, is not rigid
     alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
     if alike and same_sizes(along.values(), measures.size):
         frame = frames.holding(
@@ -106,8 +106,8 @@ def _one_attached(
 
 
 def _closed(shape: Primitive) -> bool:
-    """Whether it does not matter from which corner the corners are numbered."""
-    # a line of two ends is the same from either end; an arrow is not
+    """Whether the corners may start at any corner."""
+    # a line of two points may be reversed, an arrow may not
     line = isinstance(shape, Polyline) and len(shape.points) == 2 and not shape.head
     return line or isinstance(shape, Polygon)
 
@@ -115,7 +115,7 @@ def _closed(shape: Primitive) -> bool:
 def _own_course(
     shape: Primitive, along: Mapping[int, Primitive], rows: CountArray, count: int
 ) -> Moving:
-    """A primitive with its corners row by row; an arc becomes a line."""
+    """A primitive with its corners in every row; an arc becomes a line."""
     lines = {k: _as_line(one) for k, one in along.items()}
     most = max(len(line) for line in lines.values())
     course = np.full((count, most), complex(np.nan, np.nan))
@@ -145,7 +145,7 @@ def take_over_frames(
     carried: Mapping[Key, Moving],
     rows: CountArray,
 ) -> list[Moving]:
-    """The primitives of a pose, carried as they were with other dimensions."""
+    """The primitives of a pose with the frames found for other dimensions."""
     changing = [key for key, part in carried.items() if part.frame is None]
     course: dict[Key, dict[int, Primitive]] = {key: {} for key in changing}
     for k, row in enumerate(rows if changing else ()):

@@ -1,4 +1,4 @@
-"""What is drawn already, and what it would cost to cover it."""
+"""Drawn parts as obstacles for labels, with penalties for covering them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
 __all__ = ["Obstacles"]
 
-#: What it costs to cover a line or disc of a role; covering a pin is worst.
+#: Penalty for covering a line or disc of a role; highest for pins.
 _PENALTY = {
     Role.FRAME: 6.0, Role.WHEEL: 6.0, Role.PITCH: 1.5, Role.MARK: 8.0, Role.BELT: 14.0,
     Role.PLATE: 9.0, Role.HATCH: 6.0, Role.GROUND: 10.0, Role.TRACE: 2.5, Role.SLOT: 12.0,
@@ -25,8 +25,8 @@ _PENALTY = {
     Role.CENTRE: 30.0, Role.SPRING: 12.0,
 }  # fmt: skip
 _INSIDE_PLATE = 1.5
-_TEXT = 100.0  # to cover what is written
-_OPEN = (Role.FRAME, Role.WHEEL, Role.PITCH)  # discs that names and arrows may stand inside
+_TEXT = 100.0  # penalty for covering text
+_OPEN = (Role.FRAME, Role.WHEEL, Role.PITCH)  # discs inside which names and arrows may be placed
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Obstacles:
     """Line pieces (m, 4), discs (d, 3) and sides of plates (n, s, 4), with penalties for covering
     them.
 
-    ``levels`` (l,): the penalties of pieces; ``level`` (m,): which of them is a piece's own.
+    ``levels`` (l,): the penalties of pieces; ``level`` (m,): the index of each piece's penalty.
     """
 
     pieces: Array
@@ -46,7 +46,7 @@ class Obstacles:
 
     @classmethod
     def of(cls, drawn: Iterable[Primitive]) -> Obstacles:
-        """The obstacles that a drawing is made of."""
+        """The obstacles of a drawing."""
         pieces: list[tuple[float, float, float, float]] = []
         piece_cost: list[float] = []
         discs: list[tuple[float, float, float]] = []
@@ -54,7 +54,7 @@ class Obstacles:
         plates: list[tuple[XY, ...]] = []
         for p in drawn:
             found: list[tuple[XY, XY]] = []
-            # faded positions may be covered sooner than the present one
+            # covering a faded position has a smaller penalty
             penalty = _PENALTY.get(p.role, 0.0) * (1.0 - p.fade) ** 2
             if isinstance(p, Disc) and p.role in _OPEN:
                 found = list(pairwise(p.rim))
@@ -83,18 +83,18 @@ class Obstacles:
         )  # fmt: skip
 
     def cost(self, boxes: Sequence[Box]) -> float:
-        """The penalty for something that is made of these boxes."""
+        """The penalty of an object made of these boxes."""
         return float(self.costs(np.array([[box.edges for box in boxes]]))[0])
 
     def costs(self, boxes: Array) -> Array:
-        """The penalties (k,) for things that are made of b boxes each.
+        """The penalties (k,) of objects made of b boxes each.
 
         Parameters
         ----------
         boxes : array (k, b, 4)
             Left, bottom, right, top.
         """
-        # A trace of many short pieces counts once per role's penalty, not once per piece.
+        # A trace of many short pieces counts once per penalty, not once per piece.
         found = np.zeros(len(boxes))
         near = _near(self.pieces, boxes)
         crossed = _crosses(self.pieces[near], boxes)
@@ -107,14 +107,14 @@ class Obstacles:
 
 
 def _frame(box: Box) -> list[tuple[float, float]]:
-    """The corners of a box, around and back, and across."""
+    """The outline and the diagonals of a box."""
     (left, bottom), (right, top) = box.corners
     around = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
     return [*around, (right, top)]
 
 
 def _sides(plates: Sequence[Sequence[XY]]) -> Array:
-    """The sides of convex polygons, (n, s, 4); the last one stands again where there are fewer."""
+    """The sides of convex polygons, (n, s, 4), padded by repeating the last side."""
     most = max(map(len, plates), default=0)
     found = np.empty((len(plates), most, 4))
     for k, corners in enumerate(plates):
@@ -125,7 +125,7 @@ def _sides(plates: Sequence[Sequence[XY]]) -> Array:
 
 
 def _near(pieces: Array, boxes: Array) -> BoolArray:
-    """Which pieces (m, 4) have to be looked at, (m,): those that meet the box around all boxes."""
+    """Whether pieces (m, 4) intersect the bounding box of all boxes, (m,)."""
     edges = boxes.reshape(-1, 4)
     low, high = edges[:, :2].min(axis=0), edges[:, 2:].max(axis=0)
     start, end = pieces[:, :2], pieces[:, 2:]
@@ -135,7 +135,7 @@ def _near(pieces: Array, boxes: Array) -> BoolArray:
 
 
 def _covers(discs: Array, boxes: Array) -> BoolArray:
-    """Which discs (d, 3) are met by one of the boxes (k, b, 4), (k, d)."""
+    """Whether discs (d, 3) intersect one of the boxes (k, b, 4), (k, d)."""
     x, y, r = discs.T
     left, bottom, right, top = np.moveaxis(boxes, -1, 0)[..., None]
     dx = np.maximum(np.maximum(left - x, x - right), 0.0)
@@ -144,9 +144,9 @@ def _covers(discs: Array, boxes: Array) -> BoolArray:
 
 
 def _crosses(pieces: Array, boxes: Array) -> BoolArray:
-    """Which line pieces (m, 4) meet one of the boxes (k, b, 4), (k, m).
+    """Whether line pieces (m, 4) intersect one of the boxes (k, b, 4), (k, m).
 
-    They do unless an axis separates them: x, y, or the normal of the piece.
+    They do unless x, y or the normal of the piece is a separating axis.
     """
     half = 0.5 * (pieces[:, 2:] - pieces[:, :2]).T
     middle = 0.5 * (pieces[:, 2:] + pieces[:, :2]).T
@@ -161,7 +161,7 @@ def _crosses(pieces: Array, boxes: Array) -> BoolArray:
 
 
 def _inside(plates: Array, boxes: Array) -> BoolArray:
-    """In which convex plates (n, s, 4), counter-clockwise, a middle of the boxes lies, (k, n)."""
+    """Whether the middle of a box lies in convex plates (n, s, 4), counter-clockwise, (k, n)."""
     middle = 0.5 * (boxes[..., :2] + boxes[..., 2:])[:, :, None, None, :]  # (k, b, 1, 1, 2)
     side, away = plates[..., 2:] - plates[..., :2], middle - plates[..., :2]
     left = side[..., 0] * away[..., 1] - side[..., 1] * away[..., 0] >= 0

@@ -1,4 +1,4 @@
-"""Arrows at points, all of one scale, with their names."""
+"""Arrows at points with equal scale, and their names."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from linkwork.drawing.scene import Polyline, Primitive, Role, xy
 
 __all__ = ["LONGEST", "ArrowLook", "point_arrows", "scale_caption"]
 
-#: The longest arrow of a motion over the drawn size.
+#: Length of the longest arrow of a motion over the drawn size.
 LONGEST = 0.3
 
-_SHORTEST = 1.5  # radii of a pin: shorter arrows would be hidden by it
+_SHORTEST = 1.5  # in pin radii: shorter arrows would be hidden by the pin
 
 
 @dataclass(frozen=True, kw_only=True)
 class ArrowLook:
-    """Roles of a kind of arrow and of its names, and its letter: v for velocities."""
+    """Roles of a kind of arrow and of its names, and its letter, such as v for velocities."""
 
     role: Role
     name_role: Role
@@ -36,14 +36,14 @@ def point_arrows(
     look: ArrowLook,
     measures: Measures,
 ) -> tuple[Annotation, list[str]]:
-    """Arrows from points; the names of those that are too short to be drawn.
+    """Arrows from points, and the points whose arrows are too short to draw.
 
     Parameters
     ----------
     vectors : Mapping[str, complex]
         By point, x + iy.
     scale : float
-        Drawn length over a vector's.
+        Drawn length per magnitude.
     """
     drawn: list[Primitive] = []
     names: list[Choice] = []
@@ -68,13 +68,13 @@ def scale_caption(word: str, scale: float, length_unit: str, unit: str, size: fl
     Parameters
     ----------
     word : str
-        The quantity that the arrows show.
+        The quantity shown by the arrows.
     scale : float
-        Drawn length divided by the size of the quantity.
+        Drawn length per magnitude of the quantity.
     size : float
-        Of the drawing.
+        Size of the drawing.
     """
-    # Both numbers are short: the scale is a short number, the length a power of ten.
+    # Both numbers have few digits: the scale is a round number, the length a power of ten.
     length = 10.0 ** math.floor(math.log10(0.3 * size))
     shown = f"{length:g} {length_unit}".rstrip()
     return f"{word} scale: {shown} = {length / scale:.4g} {unit}".rstrip()

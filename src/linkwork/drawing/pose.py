@@ -1,4 +1,4 @@
-"""Where the points of a mechanism are drawn, and how far they travel."""
+"""Coordinates of the points of a drawing, and their travel over a motion."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ __all__ = ["Pose", "Travel", "no_points", "travel_along"]
 Path = ComplexArray
 Real = Array
 
-_STILL = 1e-6  # of the largest travel: points that move less stand still
+_STILL = 1e-6  # of the largest travel: points that move less are fixed
 
 
 @dataclass(frozen=True)
 class Travel:
-    """A length at this pose, and the smallest and largest it takes in the motion."""
+    """A length at this pose, and its minimum and maximum over the motion."""
 
     now: float
     low: float
@@ -37,10 +37,10 @@ class Travel:
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """Coordinates x + iy of every point now, and along the motion if there is one.
+    """Coordinates x + iy of all points in one position, and over the motion if given.
 
-    ``paths`` hold one entry per row of the motion, NaN where there is no position. ``angles`` are
-    those of the links now [rad].
+    ``paths`` have one entry per row of the motion, NaN without a position. ``angles`` are the
+    current angles of the links [rad].
     """
 
     skeleton: Skeleton
@@ -50,12 +50,12 @@ class Pose:
 
     @classmethod
     def of(cls, position: Position, motion: Motion | None, *, bare: bool = False) -> Pose:
-        """The pose of a position that was found; a ``bare`` one may be without points.
+        """The pose of a found position; a ``bare`` one may have no points.
 
         Raises
         ------
         InputError
-            If the position was not found, has no points, or the motion is of something else.
+            If the position was not found, has no points, or the motion is of another mechanism.
         """
         _check(position, motion, bare)
         points = {name: complex(*place) for name, place in position.points.items()}
@@ -66,29 +66,29 @@ class Pose:
 
     @classmethod
     def at_row(cls, motion: Motion, row: int) -> Pose:
-        """The pose of a row that was found, in the motion that it belongs to."""
+        """The pose of a found row of a motion."""
         paths = {name: _path(motion, name) for name in motion.points}
         return cls(skeleton=motion.skeleton, points={}, paths=paths).moved_to(motion, row)
 
     def moved_to(self, motion: Motion, row: int) -> Pose:
-        """The pose of another row of the same motion."""
+        """The pose of another row of the motion."""
         points = {name: complex(path[row]) for name, path in self.paths.items()}
         radians = motion.units.angle.radians
         angles = {name: float(series.value[row]) * radians for name, series in motion.links.items()}
         return replace(self, points=points, angles=angles)
 
     def angle(self, link: str) -> float:
-        """The angle of a link [rad]; ground has none."""
+        """The angle of a link [rad]; not for ground."""
         return 0.0 if link == GROUND else self.angles[link]
 
     def placed(self, contour: Contour) -> ComplexArray:
-        """The points of a cam's outline or of a curve, where they are now."""
+        """The points of a cam's outline or of a curve at the current position."""
         turned = cmath.exp(1j * self.angle(contour.link))
         points: ComplexArray = self.points[contour.center] + turned * np.array(contour.points)
         return points
 
     def moves(self, point: str) -> bool:
-        """Whether a point travels in the motion; never without one."""
+        """Whether a point moves over the motion; false without a motion."""
         return point in self.moving
 
     def direction(self, guide: Guide) -> complex:
@@ -97,7 +97,7 @@ class Pose:
         return along / abs(along)
 
     def displacement(self, guide: Guide) -> Travel:
-        """How far the point of a guide is from the first point of the line."""
+        """The displacement of a guide's point from the first point of the line."""
         return travel_along(self, guide.point, guide.line)
 
     def length(self, strut: Strut) -> Travel:
@@ -109,19 +109,19 @@ class Pose:
         return _travel(now, np.abs(self.paths[end] - self.paths[start]))
 
     def on_ground(self, guide: Guide) -> bool:
-        """Whether the line of a guide stands still."""
+        """Whether the line of a guide is fixed."""
         return guide.on == GROUND or set(guide.line) <= set(self.skeleton.fixed)
 
     @property
     def gaps(self) -> Iterator[float]:
-        """Distances between pins that no motion changes: within links and within ground."""
+        """Constant distances between pins: within links and within ground."""
         for names in (self.skeleton.fixed, *(bar.points for bar in self.skeleton.bars)):
             places = [self.points[name] for name in names if name not in self.construction]
             yield from (abs(a - b) for k, a in enumerate(places) for b in places[:k])
 
     @cached_property
     def construction(self) -> set[str]:
-        """Points that only say where a fixed line runs: nothing is drawn at them."""
+        """Points that only define a fixed line and are not drawn."""
         skeleton = self.skeleton
         used = {point for bar in skeleton.bars for point in bar.points}
         used |= {point for strut in skeleton.struts for point in strut.between}
@@ -134,7 +134,7 @@ class Pose:
 
     @cached_property
     def moving(self) -> set[str]:
-        """The points that travel in the motion."""
+        """The points that move over the motion."""
         travel = {
             name: float(np.nanmax(np.abs(path - self.points[name]), initial=0.0))
             for name, path in self.paths.items()
@@ -144,7 +144,7 @@ class Pose:
 
 
 def travel_along(pose: Pose, point: str, line: tuple[str, str]) -> Travel:
-    """How far a point is from the first point of a line, along it."""
+    """The displacement of a point along a line, from its first point."""
     start, end = line
     p, a, b = (pose.points[name] for name in (point, start, end))
     now = float(_along(*(np.array([z]) for z in (p, a, b)))[0])
@@ -154,7 +154,7 @@ def travel_along(pose: Pose, point: str, line: tuple[str, str]) -> Travel:
 
 
 def no_points(mechanism: str) -> InputError:
-    """What to say of a mechanism that is nothing but equations."""
+    """The message for a mechanism without points."""
     return InputError(
         f'"{mechanism}" has no points to draw: add [points] with the coordinates of its pins'
     )
@@ -205,7 +205,7 @@ def _path(motion: Motion, name: str) -> Path:
 
 
 def _along(p: Path, a: Path, b: Path) -> Real:
-    """How far p is from a in the direction of b, all of shape (N,)."""
+    """The displacement of p from a in the direction of b, all (N,)."""
     line = b - a
     far: Real = ((p - a) * np.conj(line)).real / np.abs(line)
     return far

@@ -1,10 +1,9 @@
 """Velocities and accelerations as arrows at points.
 
-All arrows of a picture have one scale, and so have all pictures of a motion: a round number of
-length units per unit of the rate, such that the longest arrow of the motion is at most
-:data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. Where rates grow without bound, as
-beside a dead point, the scale is that of all but the fastest rows, unless the position itself is
-one of these.
+All arrows of all pictures of a motion have the same scale, a round number of length units per unit
+of the rate; the longest arrow of the motion is at most
+:data:`~linkwork.drawing.point_arrows.LONGEST` of the drawn size. If rates are unbounded, as near a
+dead point, the fastest rows are ignored, unless the drawn position is one of these.
 """
 
 from __future__ import annotations
@@ -30,21 +29,21 @@ _LOOK = {
     1: ArrowLook(role=Role.VELOCITY, name_role=Role.VELOCITY_NAME, letter="v"),
     2: ArrowLook(role=Role.ACCELERATION, name_role=Role.ACCELERATION_NAME, letter="a"),
 }
-_FAST = 0.95  # of the rows are slower than the fastest ones
-_BEYOND = 3.0  # times as fast as the others are rows beside a dead point
+_FAST = 0.95  # share of the rows that are not counted as fastest
+_BEYOND = 3.0  # speed ratio to the others for rows near a dead point
 
 
 def rate_arrows(
     position: Position, motion: Motion | None, pose: Pose, measures: Measures, order: int
 ) -> Annotation:
-    """Arrows of the velocity (order 1) or acceleration (2) of every point that moves.
+    """Arrows of the velocity (order 1) or acceleration (2) of every moving point.
 
-    By time if the input has a speed, else by the input.
+    Derivatives are with respect to time if the input has a speed, otherwise to the input.
 
     Raises
     ------
     InputError
-        If the position has no such rates, as at a dead point.
+        If these rates do not exist, as at a dead point.
     """
     rates = _rates(position, pose, order)
     by_time = bool(position.velocity)
@@ -68,14 +67,14 @@ def rate_arrows(
 
 
 def rate_of(order: int, by_time: bool) -> Rate:
-    """The rate of that order by time or by the input."""
+    """The rate of this order with respect to time or the input."""
     if by_time:
         return Rate.VELOCITY if order == 1 else Rate.ACCELERATION
     return Rate.FIRST if order == 1 else Rate.SECOND
 
 
 def usual_most(sizes: np.ndarray) -> float:
-    """The largest of sizes (N,), rows beside a dead point left out; 0 of none."""
+    """The largest of sizes (N,), ignoring rows near a dead point; 0 if empty."""
     finite = sizes[np.isfinite(sizes)]
     if not len(finite):
         return 0.0
@@ -85,7 +84,7 @@ def usual_most(sizes: np.ndarray) -> float:
 
 
 def _rates(position: Position, pose: Pose, order: int) -> dict[str, complex]:
-    """The rates of all points that are drawn and do not stand still."""
+    """The rates of all drawn moving points."""
     by_time, by_input = (
         (position.velocity, position.first) if order == 1
         else (position.acceleration, position.second)

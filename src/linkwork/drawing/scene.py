@@ -1,6 +1,6 @@
 """A picture as plain data: primitives with roles, in the mechanism's length unit.
 
-Writers translate primitives one by one and decide nothing but colours and file formats.
+Writers translate primitives one by one and determine only colours and file formats.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ __all__ = [
 ]
 
 
-_COVERED = 0.7  # of an arrow head's length is where its line ends, so that its tip stays sharp
+_COVERED = 0.7  # fraction of the arrow head at which its line ends, for a sharp tip
 
 
 class Role(Enum):
-    """What a primitive stands for. Its style follows from it; later members lie on top."""
+    """The meaning of a primitive, which determines its style; later members are drawn on top."""
 
-    FRAME = "a wheel that stands still"
-    FRAME_BAND = "the rim of a ring that stands still"
+    FRAME = "a fixed wheel"
+    FRAME_BAND = "the rim of a fixed ring"
     BAND = "the rim of a ring"
     WHEEL = "a gear, pulley, wheel, roller, cam or rack"
     PITCH = "the pitch circle of a gear, the pitch line of a rack"
@@ -46,25 +46,25 @@ class Role(Enum):
     BELT = "a belt or chain"
     PLATE = "a link of three or more points"
     SCALE = "a step of a colour scale"
-    HATCH = "the hatching of what stands still"
-    GROUND = "what stands still: pivots and rails"
+    HATCH = "the hatching of ground"
+    GROUND = "ground: pivots and rails"
     TRACE = "the path of a point"
     SPEED_TRACE = "a piece of the path of a point, coloured by its speed there"
     FIXED_CENTRODE = "the path of a link's instant centre in the plane"
     MOVING_CENTRODE = "the path of a link's instant centre on the link"
-    EXTENSION = "a thin line from what is measured to its dimension"
+    EXTENSION = "an extension line of a dimension"
     DIMENSION = "a dimension line"
-    SLOT = "the slot a pin runs in"
+    SLOT = "the slot of a pin"
     SLIDER = "a sliding block"
     CYLINDER = "the barrel of a cylinder"
     SPRING = "a spring"
     LINK = "a link drawn as a bar"
     WELD = "a rigid joint of two links"
     PIN = "a pin joint"
-    POINT = "a named point that joins nothing"
+    POINT = "a named point without joint"
     TRACED = "a point whose path is shown"
-    LIMIT = "where a motion ends or branches cross"
-    INPUT = "the arrow of what is driven"
+    LIMIT = "a dead point or change point"
+    INPUT = "the arrow of an input"
     VECTOR = "a vector of a loop equation"
     VELOCITY = "the velocity of a point"
     ACCELERATION = "the acceleration of a point"
@@ -72,15 +72,15 @@ class Role(Enum):
     CENTRE = "an instant centre"
     LINK_NAME = "the name of a link"
     LABEL = "the name of a point"
-    LIMIT_NAME = "what a limit is, and where"
+    LIMIT_NAME = "kind and input of a limit"
     VECTOR_NAME = "the name of a vector of a loop equation"
     LOOP_NAME = "the name of a loop equation"
     VELOCITY_NAME = "the name of a velocity"
     ACCELERATION_NAME = "the name of an acceleration"
     FORCE_NAME = "the name of a force"
-    CENTRE_NAME = "which links an instant centre is of"
+    CENTRE_NAME = "the links of an instant centre"
     DIMENSION_NAME = "the number of a dimension"
-    SCALE_NAME = "what a colour scale means"
+    SCALE_NAME = "the legend of a colour scale"
 
     @property
     def layer(self) -> int:
@@ -93,13 +93,13 @@ _LAYERS = {role: layer for layer, role in enumerate(Role)}
 
 @dataclass(frozen=True, kw_only=True)
 class Primitive:
-    """What every primitive carries.
+    """The common fields of all primitives.
 
-    ``of`` names the part of the mechanism that is shown. ``tone`` tells links apart: 0 for what
-    is driven and for everything that has no colour of its own, 1, 2, … for the other links.
-    ``fade`` mixes its colours with the page, 0 not at all, 1 away: for further positions of a
-    motion, which lie below everything that is not faint. ``level`` is its place on the theme's
-    colour scale, 0 to 1, for roles that have their colour from it.
+    ``of`` names the part of the mechanism. ``tone`` is the colour number of a link: 0 for driven
+    links and parts without a link colour, 1, 2, … for other links. ``fade`` mixes the colours with
+    the page, from 0 (not at all) to 1 (invisible), for further positions of a motion, which are
+    drawn below all others. ``level`` is the position on the theme's colour scale, 0 to 1, for roles
+    coloured by it.
     """
 
     role: Role
@@ -110,12 +110,12 @@ class Primitive:
 
     @property
     def outline(self) -> tuple[XY, ...]:
-        """Points whose bounding box is that of the primitive (line widths left out)."""
+        """Points with the bounding box of the primitive (without line widths)."""
         raise NotImplementedError
 
     @property
     def layer(self) -> float:
-        """The height of the primitive in the stack: that of its role, or the fainter the lower."""
+        """The height of the primitive in the stack: that of its role; faint ones are lower."""
         return self.role.layer - (len(Role) * (1.0 + self.fade) if self.fade else 0.0)
 
 
@@ -132,7 +132,7 @@ class Polyline(Primitive):
 
     @property
     def shaft(self) -> tuple[XY, ...]:
-        """The line as it is drawn: with a head it ends inside it, not at its tip."""
+        """The drawn line; with a head it ends inside the head, not at its tip."""
         if not self.head:
             return self.points
         tip, before = complex(*self.points[-1]), complex(*self.points[-2])
@@ -178,7 +178,7 @@ class Disc(Primitive):
 
 @dataclass(frozen=True, kw_only=True)
 class Arc(Primitive):
-    """A circular arc from angle ``start`` over ``sweep`` [rad, counter-clockwise positive]."""
+    """A circular arc from angle ``start`` over ``sweep`` [rad, positive counter-clockwise]."""
 
     centre: XY
     radius: float
@@ -193,7 +193,7 @@ class Arc(Primitive):
 
     @property
     def shaft(self) -> tuple[XY, ...]:
-        """The line as it is drawn: with a head it ends inside it, not at its tip."""
+        """The drawn line; with a head it ends inside the head, not at its tip."""
         return self._pieces(
             self.sweep - math.copysign(_COVERED * self.head / self.radius, self.sweep)
         )
@@ -214,7 +214,7 @@ class Arc(Primitive):
         """The triangle of the head, its tip at the end of the arc; empty without one."""
         if not self.head:
             return ()
-        # The head is straight: it looks right if its back lies on the arc, not on the tangent.
+        # The head is straight; its base must lie on the arc, not on the tangent.
         back = self.start + self.sweep - math.copysign(self.head / self.radius, self.sweep)
         (x, y), r = self.centre, self.radius
         foot = (x + r * math.cos(back), y + r * math.sin(back))
@@ -234,7 +234,7 @@ class Hatch(Primitive):
 
 @dataclass(frozen=True, kw_only=True)
 class Text(Primitive):
-    """A line of text beside ``anchor``; ``height`` is the font size (one em).
+    """A line of text near ``anchor``; ``height`` is the font size (one em).
 
     The baseline passes through ``anchor + offset``, which is the left end (``align`` = -1), the
     middle (0) or the right end (1) of the text.
@@ -248,12 +248,12 @@ class Text(Primitive):
 
     @property
     def start(self) -> XY:
-        """The point of the baseline that ``align`` speaks of."""
+        """The point of the baseline selected by ``align``."""
         return self.anchor[0] + self.offset[0], self.anchor[1] + self.offset[1]
 
     @property
     def box(self) -> Box:
-        """The box of the text as printed, slightly generous since fonts differ."""
+        """The box of the printed text, slightly enlarged since fonts differ."""
         width = text_width(self.text, self.height)
         x, y = self.start
         left = x - width * (self.align + 1) / 2
@@ -278,7 +278,7 @@ class Scene:
     measures : Measures
         The sizes of symbols and lines.
     within : Box
-        What the picture shows at least; pictures of one motion share it.
+        The minimum extent of the picture; the same for all pictures of a motion.
     unit : str
         The length unit of every coordinate.
     title, caption : str

@@ -1,4 +1,4 @@
-"""What a picture shows besides the mechanism."""
+"""Optional contents of a picture."""
 
 from __future__ import annotations
 
@@ -13,27 +13,26 @@ __all__ = ["SceneOptions"]
 
 @dataclass(frozen=True, kw_only=True)
 class SceneOptions:
-    """What else a picture shows.
+    """Optional contents of a picture.
 
     Parameters
     ----------
     link_names : bool
-        Write the names of links beside them.
+        Write the names of links.
     arrows : bool
-        Show by arrows what is driven.
+        Draw arrows of the inputs.
     further : int
-        About how many more positions of the motion to show, faintly; if any, its dead points and
+        Approximate number of faint further positions of the motion; if positive, dead points and
         change points are marked.
     title : str, optional
-        Instead of the mechanism's name; an empty one leaves it out.
+        Replaces the mechanism's name; an empty title omits it.
     larger : float
-        How much larger than usual names are, for small pictures; symbols grow by its root.
+        Enlargement of names, for small pictures; symbols grow by its square root.
     vectors : tuple of VectorLoop
-        The loop equations as vectors, head to tail over the mechanism, which is drawn faintly: from
-        :func:`linkwork.motion.vector_loops`, for this position. Draws mechanisms without points
-        too.
+        The loop equations as vectors, head to tail over the faded mechanism, from
+        :func:`linkwork.motion.vector_loops` for this position. Also for mechanisms without points.
     velocities, accelerations : bool
-        Arrows at the points that move.
+        Arrows at moving points.
     forces : tuple of Force
         Arrows of these forces at their points.
     speed : bool
@@ -45,8 +44,8 @@ class SceneOptions:
     dimensions : bool
         Lengths of links, radii of wheels and the input as dimension lines.
     within : Box, optional
-        What the picture shows at least, and what the sizes of symbols are measured by: give all
-        pictures of one animation the same, from
+        The minimum extent of the picture, and the reference for sizes of symbols: use the same for
+        all pictures of an animation, from
         :func:`~linkwork.drawing.drawn_box.reach_of`.
     """
 

@@ -1,4 +1,4 @@
-"""Primitives by the points that say where they are."""
+"""The defining points of primitives."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["corners", "same_sizes", "with_corners"]
 
 
 def corners(shape: Primitive) -> ComplexArray:
-    """The points x + iy that say where a primitive is, shape (m,)."""
+    """The defining points x + iy of a primitive, shape (m,)."""
     match shape:
         case Polyline() | Polygon():
             places = shape.points
@@ -33,7 +33,7 @@ def corners(shape: Primitive) -> ComplexArray:
 
 
 def with_corners(shape: Primitive, places: ComplexArray) -> Primitive:
-    """The primitive with other :func:`corners`."""
+    """The primitive with new :func:`corners`."""
     found = tuple(map(xy, places))
     match shape:
         case Polyline() | Polygon():
@@ -52,7 +52,7 @@ def with_corners(shape: Primitive, places: ComplexArray) -> Primitive:
 
 
 def same_sizes(shapes: Iterable[Primitive], size: float) -> bool:
-    """Whether radii, sweeps and heads stay the same."""
+    """Whether radii, sweeps and heads are equal."""
     numbers = np.array([_sizes(shape) for shape in shapes])
     return bool(np.ptp(numbers, axis=0).max(initial=0.0) <= 1e-7 * size)
 

@@ -1,4 +1,4 @@
-"""Several pictures side by side, of one scale."""
+"""Several pictures side by side with equal scale."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from linkwork.results.configurations import Configurations
 __all__ = ["TALLEST", "Sheet", "configuration_sheet"]
 
 _WIDTH, _SMALLEST_CELL = 7.5, 2.2  # inches
-_USUAL = 5.2  # inches: in smaller pictures names and symbols are larger than usual
+_USUAL = 5.2  # inches: smaller pictures have enlarged names and symbols
 _LARGEST = 2.0
-_WHOLE = 6.0  # inches: in larger pictures, of a single configuration, names are smaller
+_WHOLE = 6.0  # inches: larger pictures, of a single configuration, have smaller names
 
-#: The height of a picture over its width, at most.
+#: The maximum height-to-width ratio of a picture.
 TALLEST = 1.6
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sheet:
-    """Scenes in rows; all show the same part of the plane."""
+    """Scenes in rows that show the same part of the plane."""
 
     title: str
     caption: str
@@ -32,17 +32,17 @@ class Sheet:
 
     @property
     def columns(self) -> int:
-        """How many scenes stand in a row."""
+        """The number of scenes in a row."""
         return _columns(len(self.scenes))
 
     @property
     def cell(self) -> float:
-        """The width of a scene in inches, with what is left free beside it."""
+        """The width of a scene including its margin [inches]."""
         return _cell(len(self.scenes))
 
     @property
     def view(self) -> Box:
-        """What every scene shows."""
+        """The part of the plane shown by every scene."""
         box = self.scenes[0].box
         for scene in self.scenes[1:]:
             box = box.with_box(scene.box)
@@ -61,7 +61,7 @@ def configuration_sheet(found: Configurations) -> Sheet:
         raise InputError(f'"{found.mechanism}" has no configuration to draw: {found.message}')
     within, *others = (scene_of(position).within for position in found)
     for other in others:
-        # one frame for all, so that sizes compare
+        # the same frame for all, so that sizes are comparable
         within = within.with_box(other)
     printed = _printed(within, _cell(len(found)))
     larger = min(max(_USUAL / printed, min(_WHOLE / printed, 1.0)), _LARGEST)
@@ -86,7 +86,7 @@ def configuration_sheet(found: Configurations) -> Sheet:
 
 
 def _printed(box: Box, cell: float) -> float:
-    """The longer side of a box in inches, where it fills a cell."""
+    """The longer side of a box that fills a cell [inches]."""
     width, height = max(box.width, 1e-9), max(box.height, 1e-9)
     return max(width, height) * min(cell / width, TALLEST * cell / height)
 

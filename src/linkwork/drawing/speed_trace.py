@@ -1,4 +1,4 @@
-"""The paths of points coloured by their speed, and the scale that tells the colours."""
+"""The paths of points coloured by speed, with a colour scale."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["colour_scale", "speed_traces"]
 
-_CLASSES = 32  # of colours: neighbours are not told apart
-_LONG = 0.34  # of the drawn size is the scale
+_CLASSES = 32  # number of colours: neighbours are indistinguishable
+_LONG = 0.34  # size of the scale as a fraction of the drawn size
 
 
 def speed_traces(
     pose: Pose, motion: Motion, names: Sequence[str], measures: Measures
 ) -> tuple[list[Primitive], float, bool]:
-    """The paths in pieces of one colour each, the fastest colour's speed, and whether some are
-    faster.
+    """The paths in pieces of one colour each, the speed of the last colour, and whether some parts
+    are faster.
     """
     rate = rate_of(1, motion.speed is not None).value
     speeds = {name: np.abs(motion.trace(f"{name}.{rate}")) for name in names}
@@ -41,7 +41,7 @@ def speed_traces(
 
 
 def _pieces(name: str, path: np.ndarray, share: Array) -> list[Primitive]:
-    """Runs of one colour: between two rows it is that of their mean speed."""
+    """Runs of one colour, given by the mean speed of two rows."""
     mean = np.where(np.isfinite(share), share, 1.0)
     mean = np.clip((mean[:-1] + mean[1:]) / 2, 0.0, 1.0)
     levels = np.minimum((mean * _CLASSES).astype(int), _CLASSES - 1)
@@ -63,7 +63,7 @@ def _pieces(name: str, path: np.ndarray, share: Array) -> list[Primitive]:
 def colour_scale(
     motion: Motion, names: Sequence[str], most: float, more: bool, below: Box, measures: Measures
 ) -> Annotation:
-    """A bar of all colours under what is drawn, from 0 to the fastest one's speed."""
+    """A bar of all colours under the drawing, from 0 to the speed of the last colour."""
     height, length = 0.6 * measures.text, _LONG * measures.size
     left = below.left
     top = below.bottom - 1.2 * measures.text

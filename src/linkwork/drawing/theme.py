@@ -1,7 +1,7 @@
 """Colours and line widths of roles, shared by all writers.
 
-Colours are those of Okabe and Ito on a light page, and chosen likewise on a dark one: told apart
-with every kind of colour blindness.
+Colours are those of Okabe and Ito on a light page, and similarly chosen on a dark page; they are
+distinguishable with every kind of colour blindness.
 
 References
 ----------
@@ -29,12 +29,12 @@ _VERMILLION, _PURPLE, _SKY = "#D55E00", "#CC79A7", "#56B4E9"
 
 @dataclass(frozen=True, kw_only=True)
 class Style:
-    """How a role is drawn.
+    """The style of a role.
 
     ``line`` and ``fill`` are a colour, ``tone`` (the colour of the link), ``level`` (from the
-    theme's colour scale) or nothing; ``width``
-    counts strokes (:attr:`linkwork.drawing.measures.Measures.stroke`), as do the lengths of
-    ``dashes`` and of the gaps between them, in widths of the line.
+    theme's colour scale) or empty; ``width`` is in strokes
+    (:attr:`linkwork.drawing.measures.Measures.stroke`), the lengths of ``dashes`` and their gaps
+    are in line widths.
     """
 
     line: str = ""
@@ -48,8 +48,8 @@ class Style:
 class Theme:
     """Colours of a page: background, ink of text, faint ink of axes, tones of links, styles.
 
-    ``scale`` are colours at equal steps from 0 to 1 of what is shown by colour, as speed; their
-    lightness goes one way.
+    ``scale`` are colours at equal steps from 0 to 1 of a quantity such as speed; their lightness is
+    monotonic.
     """
 
     background: str
@@ -77,18 +77,18 @@ class Theme:
         return self._mixed(colour, primitive.fade) if colour and primitive.fade else colour
 
     def at_level(self, level: float) -> str:
-        """The colour of the scale at a place from 0 to 1."""
+        """The colour of the scale at a level from 0 to 1."""
         place = min(max(level, 0.0), 1.0) * (len(self.scale) - 1)
         k = min(int(place), len(self.scale) - 2)
         return _between(self.scale[k], self.scale[k + 1], place - k)
 
     def _mixed(self, colour: str, fade: float) -> str:
-        """A colour with the page shining through: opaque, so that crossings stay faint."""
+        """A colour mixed with the page; opaque, so that crossings stay faint."""
         return _between(colour, self.background, fade)
 
 
 def _between(colour: str, other: str, share: float) -> str:
-    """A colour #RRGGBB on the way to another one."""
+    """A colour #RRGGBB interpolated to another one."""
     one, two = ([int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in (colour, other))
     mixed = (round((1.0 - share) * a + share * b) for a, b in zip(one, two, strict=True))
     return "#" + "".join(f"{part:02X}" for part in mixed)
@@ -96,7 +96,7 @@ def _between(colour: str, other: str, share: float) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class _Inks:
-    """The colours that styles are mixed from; ``page`` is also what covers what lies below."""
+    """The base colours of styles; ``page`` also hides lower parts."""
 
     ink: str
     grey: str
@@ -110,7 +110,7 @@ class _Inks:
 
 
 def _styles(c: _Inks) -> FrozenDict[Role, Style]:
-    """How every role is drawn: the same lines in every theme, in its colours."""
+    """The styles of all roles: equal lines in every theme, with its colours."""
     centrode = Style(line=c.velocity, width=1.6)
     return FrozenDict.of(
         {
@@ -184,7 +184,7 @@ LIGHT = Theme(
     ),
 )
 
-#: For dark pages and screens: lighter hues, as far apart with every kind of colour blindness.
+#: For dark pages: lighter hues, equally distinguishable with colour blindness.
 DARK = Theme(
     background="#15191E",
     ink="#ECEFF3",
@@ -207,17 +207,17 @@ DARK = Theme(
     ),
 )
 
-#: Every theme by the name it is asked for.
+#: Themes by name.
 THEMES: Mapping[str, Theme] = FrozenDict.of({"light": LIGHT, "dark": DARK})
 
 
 def theme_named(name: str, themes: Mapping[str, T]) -> T:
-    """The theme of a name among those of drawings, or of charts.
+    """The theme with a given name, of drawings or of charts.
 
     Raises
     ------
     UnknownNameError
-        With the names that exist.
+        Lists the existing names.
     """
     if name not in themes:
         raise UnknownNameError(f'there is no theme "{name}" {choices("themes", themes, name)}')

@@ -1,4 +1,4 @@
-"""The outline of a gear: involute teeth of 20° on its pitch circle."""
+"""Outlines of gears with involute teeth of 20° on their pitch circles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwork.mechanism.figures import Disc, Mesh
 
 __all__ = ["ADDENDUM", "DEDENDUM", "tooth_outline", "tooth_phases"]
 
-#: From the pitch circle to tips and roots, in modules (ISO 53).
+#: Distances of tips and roots from the pitch circle, in modules (ISO 53).
 ADDENDUM, DEDENDUM = 1.0, 1.25
 
 _PRESSURE = math.radians(20.0)
@@ -23,11 +23,11 @@ _FLANK = 4  # points along a flank
 def tooth_outline(disc: Disc) -> ComplexArray:
     """The outline of a gear about its centre, the first tooth on the real axis.
 
-    The outline of a ring is that of the gear which fills it: its first gap is on the real axis.
+    The outline of a ring is that of the gear that fills it: its first gap is on the real axis.
 
     Notes
     -----
-    At radius ρ half a tooth is π/(2z) + inv 20° - inv α wide, cos α = r cos 20°/ρ,
+    The half width of a tooth at radius ρ is π/(2z) + inv 20° - inv α, cos α = r cos 20°/ρ,
     inv α = tan α - α.
 
     References
@@ -36,7 +36,7 @@ def tooth_outline(disc: Disc) -> ComplexArray:
     """
     assert disc.teeth is not None
     module = 2.0 * disc.radius / disc.teeth
-    # a ring is the gap of its gear: tips and roots change places
+    # a ring is the complement of its gear: tips and roots are exchanged
     up, down = (DEDENDUM, ADDENDUM) if disc.ring else (ADDENDUM, DEDENDUM)
     root, tip = disc.radius - down * module, disc.radius + up * module
     base = disc.radius * math.cos(_PRESSURE)
@@ -44,7 +44,7 @@ def tooth_outline(disc: Disc) -> ComplexArray:
     half = math.pi / (2 * disc.teeth) + _involute(np.array(_PRESSURE))
     # flanks of few teeth would cross above the pointed tip
     half = np.maximum(half - _involute(np.arccos(base / radii)), 0.0)
-    # Below the base circle there is no involute: a flank goes on straight to the centre.
+    # Below the base circle there is no involute: the flank is straight towards the centre.
     if root < base:
         radii, half = np.append(root, radii), np.append(half[0], half)
     flank = radii * np.exp(1j * half)
@@ -60,15 +60,15 @@ def _involute(angle: Array) -> Array:
 
 
 def tooth_phases(pose: Pose) -> dict[Disc, float]:
-    """The direction [rad] of the first tooth (of a ring: gap) of every gear whose teeth are known.
+    """The direction [rad] of the first tooth (of a ring: gap) of every gear with known teeth.
 
-    The teeth of the first wheel of a train turn with its link; those of the next ones follow so
-    that they are in mesh. As the wheels roll off each other, they turn with their links too.
+    The teeth of the first wheel of a train rotate with its link; those of the following wheels are
+    placed in mesh. Since the wheels roll on each other, they rotate with their links too.
     """
     phases: dict[Disc, float] = {}
     meshes = [m.discs for m in pose.skeleton.of(Mesh) if all(d.teeth for d in m.discs)]
     while meshes:
-        # A mesh with a wheel that has its phase already, if there is one, goes first.
+        # Meshes with a wheel of known phase come first.
         one, other = min(meshes, key=lambda pair: not phases.keys() & set(pair))
         meshes.remove((one, other))
         if other in phases:
@@ -79,14 +79,14 @@ def tooth_phases(pose: Pose) -> dict[Disc, float]:
 
 
 def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
-    """The phase of a wheel that meshes with one of a known phase."""
+    """The phase of a wheel in mesh with one of known phase."""
     assert one.teeth is not None
     assert other.teeth is not None
     line = cmath.phase(pose.points[other.center] - pose.points[one.center])
     if one.ring or other.ring:
-        # The point of contact lies beyond the smaller wheel; its teeth stand in the ring's gaps.
+        # The point of contact lies beyond the smaller wheel; its teeth are in the ring's gaps.
         line = line if one.ring else line + math.pi
         return line - (line - phase) * one.teeth / other.teeth
     passed = (line - phase) * one.teeth / math.tau
-    # where one has a tooth at the point of contact, the other has a gap
+    # at the contact, one gear has a tooth and the other a gap
     return line + math.pi - (0.5 - passed) * math.tau / other.teeth

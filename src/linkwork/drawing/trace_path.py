@@ -1,4 +1,4 @@
-"""The paths of points: dotted lines, broken where there is no position."""
+"""The paths of points: dotted lines, broken at missing positions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["drawn_once", "thinned", "trace_symbols"]
 
 
 def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Iterator[Primitive]:
-    """The path of every named point; a lone position between failed ones is a dot."""
+    """The path of every named point; an isolated position is a dot."""
     width = measures.stroke / 2
     for name in names:
         for run in drawn_once(thinned(pose.paths[name], width), width):
@@ -26,9 +26,9 @@ def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Ite
 
 
 def thinned(path: Path, width: float) -> Path:
-    """A path (m,) without points that lie less than ``width`` along it behind the one before.
+    """A path (m,) without points less than ``width`` after the preceding one, along the path.
 
-    Ends are kept, also those beside NaN; a path of larger steps is kept as it is.
+    Ends are kept, also those next to NaN; a path of larger steps is unchanged.
     """
     finite = np.isfinite(path)
     along = np.concatenate(([0.0], np.cumsum(np.nan_to_num(np.abs(np.diff(path))))))
@@ -39,18 +39,18 @@ def thinned(path: Path, width: float) -> Path:
 
 
 def drawn_once(path: Path, width: float) -> list[Path]:
-    """The runs of a path (m,) without NaN, less the pieces that lie over earlier ones.
+    """The runs of a path (m,) without NaN and without pieces that overlap earlier ones.
 
-    The point of a rocker goes forth and back on one arc: drawn twice, dots would close to a line.
-    Pieces count as lying over each other within ``width``. A run of one point is a lone position.
+    The point of a rocker moves back and forth on one arc: dots drawn twice would merge to a line.
+    Pieces overlap if they are within ``width``. A run of one point is an isolated position.
     """
     finite = np.isfinite(path)
     length = np.abs(np.diff(path))
-    # Over a gap the way grows by enough to leave everything before it behind.
+    # At a gap, the path length increases enough to exclude all earlier pieces.
     reached = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(length), length, 9 * width))))
     covered = np.zeros(len(path), dtype=bool)
     point, piece = _near_each_other(path, width)
-    # Neighbours along the path are always near: only pieces left behind for a while count.
+    # Neighbours along the path are always near: only pieces some distance back count.
     behind = reached[point] - reached[piece + 1] > 4 * width
     point, piece = point[behind], piece[behind]
     step, offset = path[piece + 1] - path[piece], path[point] - path[piece]
@@ -66,10 +66,10 @@ def drawn_once(path: Path, width: float) -> list[Path]:
 
 
 def _near_each_other(path: Path, width: float) -> tuple[IndexArray, IndexArray]:
-    """Points and pieces among which are all that lie within ``width`` of each other.
+    """Candidate pairs of points and pieces, including all within ``width`` of each other.
 
-    The plane is cut into squares as wide as a piece is long at most: what is near has its middle
-    in the same square or in one of the eight around it.
+    The plane is divided into squares as wide as the longest piece: near objects have their middles
+    in the same or an adjacent square.
     """
     points, pieces = np.flatnonzero(np.isfinite(path)), np.flatnonzero(np.isfinite(np.diff(path)))
     if not len(pieces):
@@ -94,5 +94,5 @@ def _near_each_other(path: Path, width: float) -> tuple[IndexArray, IndexArray]:
 
 
 def _squares(places: ComplexArray) -> tuple[IndexArray, IndexArray]:
-    """Whole coordinates from 1 on, so that there are squares around."""
+    """Integer coordinates from 1, so that every square has neighbours."""
     return np.floor(places.real).astype(np.intp) + 1, np.floor(places.imag).astype(np.intp) + 1

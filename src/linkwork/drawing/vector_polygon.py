@@ -1,7 +1,7 @@
-"""Where the vectors of a loop equation lie: head to tail around a closed polygon.
+"""Positions of the vectors of a loop equation: head to tail around a closed polygon.
 
-The sum does not tell the order of its terms. Drawn in the order in which most of them end at points
-of the mechanism, they lie over its links.
+A sum has no order of terms. The order in which most vectors end at points of the mechanism places
+them over its links.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from linkwork.results.vector_loop import LoopVector, VectorLoop
 
 __all__ = ["Edge", "polygon"]
 
-_NAMED = 0.1  # more than at any point it counts to end at one that the loop's name has
-_IN_TURN = 0.05  # and more if it is that one's turn
-_MOST = 10  # vectors whose orders are compared: 2^10 partial sums from every point
+_NAMED = 0.1  # additional value for an end at a point in the loop's name
+_IN_TURN = 0.05  # additional value if this point is next in the name
+_MOST = 10  # maximum number of vectors to reorder: 2^10 partial sums from every point
 
 
 @dataclass(frozen=True)
 class Edge:
-    """A vector where it is drawn: its arrow's tail and tip."""
+    """A drawn vector: tail and tip of its arrow."""
 
     vector: LoopVector
     tail: complex
@@ -31,7 +31,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class _Step:
-    """A vector as the polygon runs through it; ``against`` the way that its arrow points."""
+    """A vector as a step of the polygon; ``against``: opposite to its arrow."""
 
     vector: LoopVector
     way: complex
@@ -39,10 +39,10 @@ class _Step:
 
 
 def polygon(loop: VectorLoop, pose: Pose) -> list[Edge]:
-    """The closed polygon of a loop equation, over the mechanism as far as it can be.
+    """The closed polygon of a loop equation, over the mechanism as far as possible.
 
-    Left-hand vectors are run through forwards, right-hand ones backwards. Loops of more than ten
-    vectors stay in the order in which they are written.
+    Left-hand vectors are traversed forwards, right-hand ones backwards. Loops of more than ten
+    vectors keep their written order.
     """
     steps = _written(loop)
     size = max((abs(step.way) for step in steps), default=0.0)
@@ -64,14 +64,14 @@ def polygon(loop: VectorLoop, pose: Pose) -> list[Edge]:
 
 
 def _written(loop: VectorLoop) -> list[_Step]:
-    """Around the loop as it is written: the left side, then the right one from its end."""
+    """The written order around the loop: the left side, then the right side reversed."""
     left = [_Step(v, v.value, v.backwards) for v in loop.left]
     right = [_Step(v, -v.value, not v.backwards) for v in reversed(loop.right)]
     return left + right
 
 
 def _starts(loop: VectorLoop, pose: Pose) -> list[complex]:
-    """Where the polygon may begin, the likeliest first."""
+    """Possible starts of the polygon, the most likely first."""
     named = [pose.points[word] for word in loop.label.split() if word in pose.points]
     fixed = [pose.points[name] for name in pose.skeleton.fixed]
     return list(dict.fromkeys([*named[:1], *fixed, 0j, *pose.points.values()]))
@@ -80,10 +80,10 @@ def _starts(loop: VectorLoop, pose: Pose) -> list[complex]:
 def _ordered(
     steps: Sequence[_Step], start: complex, loop: VectorLoop, pose: Pose, near: float
 ) -> tuple[float, list[_Step]]:
-    """The order that is worth most from a start, and what it is worth; of equals, as written.
+    """The order with the highest value from a start, and this value; among equals, as written.
 
-    A partial sum depends on which vectors it has, not on their order: so the best order of a set
-    follows from those of the sets with one vector less (Held and Karp 1962).
+    A partial sum does not depend on the order of its vectors, so the best order of a set follows
+    from those of the sets with one vector less (Held and Karp 1962).
 
     References
     ----------
@@ -108,7 +108,7 @@ def _ordered(
     best = {0: (0.0, -1)}
     for chosen in range(1, 2**count):
         place = start + sum(steps[i].way for i in range(count) if chosen >> i & 1)
-        # Of equals the last one written comes last.
+        # Among equals, the last one written comes last.
         before, last = max((best[chosen ^ (1 << i)][0], i) for i in range(count) if chosen >> i & 1)
         best[chosen] = (round(before + worth(place, chosen.bit_count()), 9), last)
     order, left = [], 2**count - 1

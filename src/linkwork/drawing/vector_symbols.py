@@ -1,7 +1,7 @@
-"""The vector diagram: every loop equation's vectors head to tail, in a colour of its own.
+"""The vector diagram: the vectors of every loop equation head to tail, with one colour per loop.
 
-An arrow points the way its vector does, whether the equation adds it or takes it off. Where several
-loops use one vector, their arrows lie side by side.
+An arrow has the direction of its vector, whether the equation adds or subtracts it. If several
+loops share a vector, their arrows are drawn side by side.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from linkwork.results.vector_loop import LoopVector, VectorLoop
 
 __all__ = ["vector_edges", "vector_symbols"]
 
-_BESIDE = 1.3  # radii of a pin between arrows side by side
+_BESIDE = 1.3  # distance of arrows side by side, in pin radii
 _LONGEST_HEAD = 0.4  # of an arrow
 
 
 @dataclass(frozen=True)
 class _Arrow:
-    """A vector in its place: where it begins and ends as drawn, and the number of its loop."""
+    """A drawn vector: its ends, and the number of its loop."""
 
     vector: LoopVector
     tail: complex
@@ -34,7 +34,7 @@ class _Arrow:
 
 
 def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
-    """Every loop's polygon; vectors of no length, which nothing shows, left out."""
+    """The polygons of all loops, without vectors of length zero."""
     found = [polygon(loop, pose) for loop in loops]
     longest = max((abs(e.tip - e.tail) for edges in found for e in edges), default=0.0)
     return [[e for e in edges if abs(e.tip - e.tail) > COINCIDENT * longest] for edges in found]
@@ -43,7 +43,7 @@ def vector_edges(loops: Sequence[VectorLoop], pose: Pose) -> list[list[Edge]]:
 def vector_symbols(
     loops: Sequence[VectorLoop], polygons: Sequence[Sequence[Edge]], measures: Measures
 ) -> tuple[list[Primitive], list[Choice]]:
-    """The arrows of every loop, and places for their names and the loops' own."""
+    """The arrows of all loops, and positions for the names of vectors and loops."""
     arrows = [
         _Arrow(edge.vector, edge.tail, edge.tip, number)
         for number, edges in enumerate(polygons, 1)
@@ -78,7 +78,7 @@ def vector_symbols(
 
 
 def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
-    """Whether two arrows would cover each other: both lie in one line and share a stretch of it."""
+    """Whether two arrows overlap: both lie on the same line and share a part of it."""
     near = COINCIDENT * measures.size
     length = abs(one.tip - one.tail)
     along = (one.tip - one.tail) / length
@@ -90,7 +90,7 @@ def _same_line(one: _Arrow, other: _Arrow, measures: Measures) -> bool:
 
 
 def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, complex]:
-    """Where an arrow is drawn with so many others on its line: on this side or that of them."""
+    """The arrow shifted sideways, given the number of others on its line."""
     along = (arrow.tip - arrow.tail) / abs(arrow.tip - arrow.tail)
     if (along.real, along.imag) < (0.0, 0.0):
         along = -along
@@ -100,7 +100,7 @@ def _moved(arrow: _Arrow, before: int, measures: Measures) -> tuple[complex, com
 
 
 def _loop_name(loop: VectorLoop, arrows: list[_Arrow], number: int, measures: Measures) -> Choice:
-    """Places for a loop's name about its middle."""
+    """Positions for a loop's name near its middle."""
     ends = [end for arrow in arrows for end in (arrow.tail, arrow.tip)]
     text = f"loop {printed_formula(loop.label)}"
     return places_within(Role.LOOP_NAME, loop.label, text, ends, number, measures)

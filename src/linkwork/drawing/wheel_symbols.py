@@ -1,6 +1,6 @@
-"""Gears, pulleys, wheels and rollers: circles, with teeth where they are known and can be seen.
+"""Symbols of gears, pulleys, wheels and rollers: circles, with teeth if known and visible.
 
-Every wheel bears a mark in the direction of its link, so that it is seen to turn.
+Every wheel has a mark in the direction of its link, which shows its rotation.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from linkwork.mechanism.figures import Disc
 
 __all__ = ["addendum_of", "outer_radius", "wheel_symbols"]
 
-_FEWEST = 6  # teeth that are drawn: fewer are no gear with involute flanks
-_SMOOTH = 120  # points of a circle that is drawn as a line
+_FEWEST = 6  # minimum number of teeth: fewer have no involute flanks
+_SMOOTH = 120  # points of a circle drawn as a line
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Wheel:
-    """A wheel where it is drawn; ``phase`` is that of its teeth, nothing if it is drawn plain."""
+    """A drawn wheel; ``phase`` is that of its teeth, ``None`` if drawn without teeth."""
 
     disc: Disc
     centre: complex
@@ -61,12 +61,12 @@ def wheel_symbols(pose: Pose, measures: Measures, *, moving: bool = False) -> It
 
 
 def addendum_of(disc_radius: float, measures: Measures) -> float:
-    """How far a gear without known teeth reaches beyond its pitch circle."""
+    """The addendum of a gear without known teeth."""
     return min(1.1 * measures.pin, 0.12 * disc_radius)
 
 
 def outer_radius(disc: Disc, measures: Measures) -> float:
-    """The radius of everything that is drawn of a wheel."""
+    """The outer radius of a drawn wheel."""
     if disc.kind != "gear":
         return disc.radius + (_rim(measures) if disc.ring else 0.0)
     if _seen(disc, measures):
@@ -84,15 +84,15 @@ def _rim(measures: Measures) -> float:
 
 
 def _seen(disc: Disc, measures: Measures) -> bool:
-    """Whether teeth are known and so far apart that they can be seen."""
+    """Whether teeth are known and large enough to be visible."""
     if disc.teeth is None or disc.teeth < _FEWEST:
         return False
-    # the pitch against the pin: smaller teeth run together in print
+    # pitch relative to the pin: smaller teeth merge in print
     return math.tau * disc.radius / disc.teeth >= 1.2 * measures.pin
 
 
 def _bar_from_center(pose: Pose, disc: Disc) -> bool:
-    """Whether the wheel's link is drawn as a bar or plate from its centre: that shows its angle."""
+    """Whether a bar or plate from the wheel's centre already shows its angle."""
     return not disc.ring and any(
         bar.name == disc.link and disc.center in bar.points and len(set(bar.points)) > 1
         for bar in pose.skeleton.bars
@@ -110,7 +110,7 @@ def _wheel(wheel: _Wheel, measures: Measures) -> Iterator[Primitive]:
 
 
 def _edge(wheel: _Wheel, measures: Measures) -> ComplexArray:
-    """Where a wheel touches another one: its teeth or a circle, closed."""
+    """The contact outline of a wheel: its teeth or a circle, closed."""
     if wheel.phase is not None:
         turned = tooth_outline(wheel.disc) * cmath.exp(1j * wheel.phase)
         return np.append(wheel.centre + turned, wheel.centre + turned[:1])
@@ -118,7 +118,7 @@ def _edge(wheel: _Wheel, measures: Measures) -> ComplexArray:
 
 
 def _plain_radius(disc: Disc, measures: Measures) -> float:
-    """The circle of a wheel that is drawn without teeth: of a gear, that of their tips."""
+    """The radius of a wheel drawn without teeth; for a gear, the tip circle."""
     if disc.kind != "gear":
         return disc.radius
     beyond = addendum_of(disc.radius, measures)
@@ -148,12 +148,12 @@ def _solid(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Pr
 
 
 def _ring(wheel: _Wheel, edge: ComplexArray, measures: Measures) -> Iterator[Primitive]:
-    """What is between the edge of a ring and its outer circle."""
+    """The area between the inner edge of a ring and its outer circle."""
     disc = wheel.disc
     fixed = disc.link == GROUND
     outside = outer_radius(disc, measures)
     outer = _circle(wheel.centre, outside)
-    # Out along the edge, back along the outer circle: the area between them.
+    # Along the edge and back along the outer circle encloses the area between them.
     band = tuple(map(xy, np.concatenate((edge, outer[::-1]))))
     yield Polygon(
         role=Role.FRAME_BAND if fixed else Role.BAND, of=disc.link, tone=wheel.tone, points=band

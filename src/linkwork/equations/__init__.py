@@ -1,4 +1,4 @@
-"""Loop-closure equations: written from a mechanism or read from a person, shown, compiled."""
+"""Loop-closure equations: derived from a mechanism or read from a file, displayed, compiled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Followers of cams that are given by the follower's motion: where they are over the cam's turn."""
+"""Followers of cams given by the follower's motion: position over the cam's angle."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ __all__ = ["Follower", "follower_of", "program_of"]
 class Follower:
     """``length`` + Σ weight · angle of body + ``constant`` = ``sign`` · motion(cam's angle).
 
-    ``frame`` is the link on which cam and follower move; ``path`` how the follower goes around the
-    cam.
+    ``frame`` is the link on which cam and follower move; ``path`` the motion of the follower around
+    the cam.
     """
 
     path: FollowerPath
@@ -49,7 +49,7 @@ def program_of(cam: Cam, linkage: Linkage) -> Piecewise:
 
 
 def follower_of(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
-    """The follower of a cam, or why the base circle does not fit."""
+    """The follower of a cam; raises an error if the base circle does not fit."""
     if cam.slider is None:
         return _swinging(cam, frames, motion)
     guide = guide_named(frames.linkage, cam.slider)
@@ -79,7 +79,7 @@ def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> F
     deepest = float(motion(motion.breaks).min())
     if low + deepest <= 0.0:
         return (
-            f"is too small: the segments lead the follower {-deepest:.6g} towards the cam's "
+            f"is too small: the segments move the follower {-deepest:.6g} towards the cam's "
             f"centre, which is only {low:.6g} away"
         )
 
@@ -123,11 +123,11 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
         )
     low = math.asin(base / d) if flat else math.acos(cosine)
     swing = low + motion(motion.breaks)
-    # across the line of centres the same angle would belong to the mirrored follower
+    # across the line of centres the angle would be that of the mirrored follower
     if swing.min() <= 0.0 or swing.max() >= math.pi:
         unit = linkage.angle
         return (
-            f"does not fit: on it the arm stands {unit.from_radians(low):.6g} {unit.value} beside "
+            f"does not fit: there the arm is at {unit.from_radians(low):.6g} {unit.value} from "
             "the line from the pivot to the cam's centre, and the segments swing it across that "
             "line"
         )

@@ -1,4 +1,4 @@
-"""The motion of a cam's follower over one turn of the cam, and the outline that makes it so."""
+"""The motion of a cam's follower over one turn of the cam, and the resulting outline."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from linkwork.mechanism.motion_laws import pieces_of
 
 __all__ = ["FollowerPath", "Undercut", "program"]
 
-_SAMPLES = 1440  # positions of the cam at which its outline is drawn
-_PARTS = 16  # of every piece of the motion, at which the outline is looked at besides
+_SAMPLES = 1440  # points of the drawn outline
+_PARTS = 16  # additional checks of the outline per piece of the motion
 
 
 def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
     """The follower's motion as a function of the cam's angle from 0 to 2π.
 
-    ``segments``: law, angle of the cam [rad] and lift, one after the other. Angles are stretched to
-    one turn altogether and the last lift brings the follower back, so that the function is smooth
-    where it repeats itself; what was given has to agree with that nearly.
+    ``segments``: law, angle of the cam [rad] and lift, in order. Angles are scaled to a total of
+    one turn and the last lift is adjusted to return the follower, so that the function is periodic;
+    the given numbers must nearly satisfy this.
     """
     breaks, powers, sines, height = [0.0], [], [], 0.0
     stretch = 2.0 * math.pi / sum(over for _, over, _ in segments)
     last = max((k for k, (_, _, lift) in enumerate(segments) if lift), default=-1)
     for number, (law, given, rise) in enumerate(segments):
-        # the last rise closes the motion: sums of given lifts are rounded
+        # the last rise closes the motion, since sums of given lifts are rounded
         over, lift = given * stretch, -height if number == last else rise
         begin = breaks[-1]
         done = 0.0
@@ -50,7 +50,7 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
 
 
 class Undercut(Exception):
-    """The outline would cut into itself; ``where`` [rad] of the cam's turn."""
+    """The outline would intersect itself at the cam angle ``where`` [rad]."""
 
     def __init__(self, where: float) -> None:
         super().__init__(where)
@@ -59,15 +59,15 @@ class Undercut(Exception):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FollowerPath:
-    """How a follower moves around a cam that turns by φ, seen from the cam's centre on the frame.
+    """The motion of a follower around a cam turned by φ, relative to the cam's centre on the frame.
 
     Parameters
     ----------
     motion : Piecewise
         The follower's displacement or angle over the cam's turn.
     place : callable
-        From motion, its first and second derivative by φ (K,): point w and its derivatives w', w''
-        (K,), for a flat face also its direction and that one's derivative.
+        Maps the motion and its first and second derivative with respect to φ (K,) to the point w
+        and its derivatives w', w'' (K,), for a flat face also to its direction and the derivative.
     roller : float
         Radius of the roller, 0 for a knife edge.
     flat : bool
@@ -79,17 +79,16 @@ class FollowerPath:
     flat: bool = False
 
     def outline(self) -> ComplexArray:
-        """The cam's outline in its own frame about its centre, as it stands at φ = 0, (K,).
+        """The cam's outline in its frame about its centre, at φ = 0, (K,).
 
         Raises
         ------
         Undercut
-            If no outline makes the follower move like that.
+            If no outline produces this motion.
 
-        Notes
-        -----
-        Looked for at samples, every quarter of a degree of the cam's turn and sixteen times in
-        every piece of the motion: an undercut between them is not seen. Nothing is proved.
+        Notes ----- Undercut is checked at every quarter of a degree of the cam's angle and sixteen
+        times in every piece of the motion; between these samples it is not detected. Nothing is
+        proved.
         """
         drawn = np.linspace(0.0, 2.0 * np.pi, _SAMPLES, endpoint=False)
         pieces = np.diff(self.motion.breaks)[:, None] * (np.arange(_PARTS) + 0.5) / _PARTS
@@ -98,12 +97,12 @@ class FollowerPath:
         return surface[np.isin(phi, drawn)]
 
     def _beside(self, phi: Array) -> ComplexArray:
-        """What a knife edge or a roller leaves: a parallel to the path of its centre."""
+        """The outline for a knife edge or roller: a parallel curve to the path of its centre."""
         back = np.exp(-1j * phi)
         w, w1, w2 = self.place(*self.motion.jet(phi))
         z, z1 = w * back, (w1 - 1j * w) * back
         z2 = (w2 - 2j * w1 - w) * back
-        # the path runs clockwise around the centre: it is convex where it bends clockwise
+        # the path is clockwise around the centre, so it is convex where it bends clockwise
         bend = -(z1.conj() * z2).imag / np.abs(z1) ** 3
         if self.roller:
             worst = int(bend.argmax())
@@ -113,18 +112,18 @@ class FollowerPath:
         return surface
 
     def _face(self, phi: Array) -> ComplexArray:
-        """What a straight face leaves uncut: its envelope."""
+        """The outline for a flat face: its envelope."""
         back = np.exp(-1j * phi)
         w, w1, _, d, d1 = self.place(*self.motion.jet(phi))
         z1 = w1 - 1j * w
-        turned = (d.conj() * (d1 - 1j * d)).imag  # how fast the face turns against the cam
+        turned = (d.conj() * (d1 - 1j * d)).imag  # angular rate of the face relative to the cam
         still = np.flatnonzero(turned >= 0.0)
         if len(still):
             raise Undercut(float(phi[still[0]]))
         surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back  # eq. (67)
         ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
-        # the contact runs along the face in one direction, but where it turns back the envelope is
-        # cut
+        # the contact moves along the face in one direction; where it reverses, the envelope is
+        # undercut
         majority = np.sign(np.median(ways))
         wrong = np.flatnonzero(ways * majority <= 0.0)
         if len(wrong):

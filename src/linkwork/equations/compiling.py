@@ -24,7 +24,7 @@ __all__ = ["Compiled", "compile_equations"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Compiled:
-    """Equations ready to be solved: ``table`` whole, ``solver`` in blocks, ``points``."""
+    """Compiled equations: the whole ``table``, a ``solver`` by blocks, ``points``."""
 
     equations: LoopEquations
     table: LoopTable
@@ -63,11 +63,11 @@ class PointTable:
         )
 
     def jet(self, v: Array, first: Array, second: Array) -> tuple[ComplexArray, ...]:
-        """Positions x + iy with first and second derivative along a path, (B, points) each."""
+        """Positions x + iy with first and second derivatives along a path, (B, points) each."""
         parts = self.rows.jet(v, first, second)
         for child, parent in self.levels:
             for part in parts:
-                # level by level: the parents are whole already
+                # level by level: the parents are complete
                 part[:, child] += part[:, parent]
         return parts
 
@@ -98,7 +98,7 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
     Raises
     ------
     MechanismError
-        If equations and unknowns do not match: which unknowns stay free, which equations conflict.
+        If equations and unknowns do not match; names free unknowns and conflicting equations.
     """
     index = {v.symbol: k for k, v in enumerate(equations.variables)}
     table = _table(equations, index)
@@ -131,13 +131,13 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
 
 
 def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> tuple[Array, Array]:
-    """Sizes of plain equations and of their variables, from the guess.
+    """Scales of plain equations and of their variables, from the guess.
 
-    A variable is measured by its guess, an equation by what its terms change when every variable
-    changes by its own size; 1 where the guess tells nothing.
+    The scale of a variable is its guess; that of an equation is the change of its terms when every
+    variable changes by its scale; 1 if the guess gives none.
     """
     variables = np.abs(equations.start)
-    # a guess of zero says nothing about the size of a variable
+    # a guess of zero gives no scale of a variable
     variables[variables == 0.0] = 1.0
     sizes = []
     for row in functions:
@@ -217,7 +217,7 @@ def _formula_row(
 
 
 def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
-    """What to say when equations and unknowns do not match."""
+    """The message if equations and unknowns do not match."""
     names = [v.name for v in equations.unknowns]
     labels = equations.labels
     table = "equations" if equations.real else "loops"
@@ -246,5 +246,5 @@ def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
 
 
 def coordinate_name(point: str, axis: str) -> str:
-    """How a coordinate stands in a formula."""
+    """The name of a coordinate in formulas."""
     return canonical(f"{point}.{axis}")

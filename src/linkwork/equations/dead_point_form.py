@@ -1,4 +1,4 @@
-"""Blocks with all they depend on, the input among the unknowns: where can they lock?"""
+"""Dead points of blocks as polynomial systems with the input as an unknown."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ class DeadPointForm:
     Parameters
     ----------
     form : DirectionForm
-        Of the block and all it depends on; the leading input is the last unknown.
+        Form of the block and all blocks it depends on; the leading input is the last unknown.
     system : DeadPointSystem
     variables : (n,) int
-        The form's unknowns as variables of the whole.
+        Indices of the form's unknowns among the variables of the mechanism.
     poles : tuple of float, optional
-        Directions e^{iφ} of the input, as angles φ, at which lengths of the block run to infinity
-        while those it depends on stay finite; ``None`` if that is not known.
+        Input angles φ at which lengths of the block run to infinity while those it depends on stay
+        finite; ``None`` if unknown.
     """
 
     form: DirectionForm
@@ -55,12 +55,12 @@ class DeadPointForm:
         return self.form.unknowns(x[:, : 2 * self.system.size], known, near[self.variables])
 
     def lead(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """The leading input at a solution x (n,) as U and as V have it, and the slopes of both.
+        """The leading input at a solution x (n,), in terms of U and of V, and both gradients.
 
         Returns
         -------
         value, slope : (2,), (2, n)
-            e^{iθ} but for a constant factor, or a length; conjugates of each other where real.
+            e^{iθ} up to a constant factor, or a length; conjugates of each other if real.
         """
         form, m = self.form, self.system.size
         number = form.table.unknowns - 1
@@ -91,7 +91,7 @@ def dead_point_form(
     Raises
     ------
     NoDirectionForm
-        If the equations have no such form.
+        If this form does not exist.
     """
     members = closure_of(solver, number)
     blocks = [solver.blocks[k] for k in members]
@@ -99,13 +99,13 @@ def dead_point_form(
     table = own.system
     used = {int(k) for block in blocks for k in block.variables[len(block.unknowns) :]}
     n = solver.unknowns
-    # without a moving input the block keeps its place
+    # without a varying input the block is constant
     inputs = [k - n for k in sorted(used) if k >= n and path.rate[k - n]]
     if not isinstance(table, LoopTable) or not table.loops.rows or not inputs:
         return None
     lead = leads.parameter
     others = [n + j for j in inputs if n + j != lead]
-    # the lines that tie the other inputs to the leading one stand behind the table's own ones
+    # linear rows for the other inputs follow those of the table
     whole = leads.table
     waiting = [j for j in range(len(path.rate)) if n + j != lead]
     lines = len(whole.pattern()) - len(whole.functions) - len(waiting)
@@ -136,7 +136,7 @@ def dead_point_form(
 
 
 def _slots(form: DirectionForm, own: list[int], loops: int) -> tuple[Slot, ...]:
-    """The terms of the rates of the own unknowns, all others standing still."""
+    """The terms of the rates of the block's unknowns, with all others constant."""
     count, size = form.directions, form.rows.shape[1]
     still = [k for k, j in enumerate(form.turning.tolist()) if j not in own]
     turns = _null_space(form.angles[still])  # of the directions
@@ -156,7 +156,7 @@ def _slots(form: DirectionForm, own: list[int], loops: int) -> tuple[Slot, ...]:
 
 
 def _null_space(rows: Array) -> Array:
-    """A basis (D, K) of the null space of whole numbers (R, D), by elimination."""
+    """A basis (D, K) of the null space of an integer matrix (R, D), by elimination."""
     rows = rows.copy()
     pivots: list[int] = []
     for column in range(rows.shape[1]):
@@ -183,15 +183,15 @@ def _null_space(rows: Array) -> Array:
 
 
 def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple[float, ...] | None:
-    """Where own lengths can outgrow all else in the own closures (l, M + 1)."""
+    """Input angles at which lengths of the block's closures (l, M + 1) can run to infinity."""
     lengths = [k for k, j in enumerate(form.sliding.tolist()) if j in own]
     along = [form.along[k] for k in lengths]
     columns = closures[:, [form.directions + k for k in lengths]]
-    # far larger lengths cannot close the loop: they stay finite
+    # much larger lengths cannot close the loop, so they stay finite
     if not lengths or _closed_by_nothing(columns, along):
         return ()
     if len(columns) == 1 and len(lengths) == 2 and form.directions == 1 and sum(along) == -1:
-        # one along the input, one along a line: they are parallel twice a turn
+        # one along the input, one along a fixed line: parallel twice per turn
         turning = along.index(0)
         ratio = complex(columns[0, 1 - turning] / columns[0, turning])
         angle = cmath.phase(ratio)
@@ -201,7 +201,7 @@ def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple
 
 
 def _closed_by_nothing(columns: ComplexArray, along: list[int]) -> bool:
-    """Whether lengths far larger than all else would break a closure, whatever the directions."""
+    """Whether lengths much larger than all others violate a closure for all directions."""
     real = []
     for column, a in zip(columns.T, along, strict=True):
         real.append(np.concatenate([column.real, column.imag]))

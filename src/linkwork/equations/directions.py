@@ -1,9 +1,9 @@
 """Blocks of loop equations as bilinear systems: unknown directions e^{iθ} instead of angles.
 
-Every term c s e^{i(Σ w θ + known)} of a block must stand along one unknown direction, or none.
-Linear rows between angles are solved first; then the sums of angles that occur in the terms become
-the unknown directions themselves, which works as long as there are as many of them as angles left
-and angles follow from them without fractions. Otherwise the block leaves this form, and says why.
+Every term c s e^{i(Σ w θ + known)} of a block must have one unknown direction, or none. Linear rows
+between angles are solved first; then the sums of angles in the terms become the unknown directions.
+This requires as many sums as remaining angles, and angles that follow from them with integer
+weights. Otherwise the block has no such form, and the error gives the reason.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from linkwork.numerics.homotopy.bilinear import BilinearSystem
 
 __all__ = ["DirectionForm", "NoDirectionForm", "check_independent", "direction_form"]
 
-_MOST_LOOPS = 6  # C(12, 6) = 924 paths to a random system
+_MOST_LOOPS = 6  # C(12, 6) = 924 paths for a random system
 _DEPENDENT = 1e-12  # smallest singular value of a closure matrix, relative to the largest
-_WHOLE = 1e-12  # how far a weight may be from a whole number
+_WHOLE = 1e-12  # tolerance of integer weights
 
 
 class NoDirectionForm(Exception):
-    """A block has no such form; the message says why, in words that follow "its equations"."""
+    """A block has no such form; the message continues a sentence after "its equations"."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DirectionForm:
-    """A block over M unknown directions and lengths, for any values of what it takes as known.
+    """A block over M unknown directions and lengths, for any values of its known variables.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class DirectionForm:
         Unknown angles = ``angles`` · directions + ``shift`` · (known variables, 1).
     shift : (A, p + 1)
     tied : (A, D)
-        How the angles follow, by linear rows, when ``free`` (D,) ones of them turn.
+        Turns of the angles per turn of the ``free`` (D,) ones, by linear rows.
     along : tuple of int
         The direction of each unknown length, -1 if it is known.
     """
@@ -74,12 +74,12 @@ class DirectionForm:
         return np.flatnonzero(~self.table.is_angle[: self.table.unknowns])
 
     def closures(self, known: Array, spread: Array) -> tuple[ComplexArray, Array]:
-        """``left`` of the bilinear systems, (B, L, M + 1), and how far its numbers may be off.
+        """``left`` of the bilinear systems, (B, L, M + 1), and bounds of its errors.
 
         Parameters
         ----------
         known, spread : (B, p)
-            Values of the known variables and how far each may be from its true value.
+            Values of the known variables and bounds of their errors.
         """
         table, loops = self.table, self.table.loops
         n, scale = table.unknowns, table.variable_scale
@@ -118,7 +118,7 @@ class DirectionForm:
         Raises
         ------
         NoDirectionForm
-            If the loops say the same twice.
+            If the loops are not independent.
         """
         check_independent(left)
         return BilinearSystem(left=left, right=left.conj(), rows=self.rows)
@@ -126,7 +126,7 @@ class DirectionForm:
     def unknowns(self, x: ComplexArray, known: Array, near: Array) -> Array:
         """The block's unknowns (R, n) of real solutions (U, V) (R, 2M) for known values (R, p).
 
-        Angles are those within half a turn of ``near`` (n,), unless a linear row forbids.
+        Angles are within half a turn of ``near`` (n,) unless a linear row prevents it.
         """
         count, m = self.directions, self.rows.shape[1]
         # the mean of e^{iθ} from U and from V
@@ -134,7 +134,7 @@ class DirectionForm:
         ones = np.ones((len(x), 1))
         angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
         away = angles[:, self.free] - near[self.turning][self.free]
-        # whole turns of the free angles; the tied ones turn with them
+        # whole turns of the free angles; dependent ones follow
         turns = np.floor((away + np.pi) / (2.0 * np.pi))
         found = np.zeros((len(x), self.table.unknowns))
         found[:, self.turning] = angles - 2.0 * np.pi * (turns @ self.tied.T)
@@ -146,30 +146,30 @@ class DirectionForm:
 
 
 def check_independent(left: ComplexArray) -> None:
-    """Refuse closures (L, M + 1) that are not independent.
+    """Reject closures (L, M + 1) that are not independent.
 
     Raises
     ------
     NoDirectionForm
-        If the loops say the same twice.
+        If the loops are not independent.
     """
     sizes = np.linalg.svd(left, compute_uv=False)
     if sizes[-1] <= _DEPENDENT * sizes[0]:
-        raise NoDirectionForm("do not say different things: one follows from the others")
+        raise NoDirectionForm("are not independent: one follows from the others")
 
 
 def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
-    """The form of a block, or of several with ``free`` unknowns more than their loops determine.
+    """The form of a block, or of several blocks with ``free`` undetermined unknowns.
 
     Raises
     ------
     NoDirectionForm
-        If it has none.
+        If the block has no such form.
     """
     if table.functions:
         cams = table.has_curvature_bound
         raise NoDirectionForm(
-            "contain a law, as cams and curves do" if cams else "are plain equations, not loops"
+            "contain a law of a cam or curve" if cams else "are plain equations, not loops"
         )
     n, loops = table.unknowns, table.loops
     turning = np.flatnonzero(table.is_angle[:n])
@@ -178,14 +178,14 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     phases = np.zeros((len(loops.row), table.variables))
     np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
     if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
-        raise NoDirectionForm("turn by a length, as racks and rolling do")
+        raise NoDirectionForm("relate an angle to a length, as racks and rolling wheels do")
     sums = phases[:, turning] @ reduce
     directions, number = _directions(sums)
     angles = reduce @ _inverse(directions, reduce.shape[1])
     along = _along(table, number, sliding)
     if loops.rows > _MOST_LOOPS:
         raise NoDirectionForm(
-            f"are {loops.rows} coupled loops, more than the {_MOST_LOOPS} whose paths are followed"
+            f"are {loops.rows} coupled loops; paths are followed for at most {_MOST_LOOPS}"
         )
     size = len(directions) + len(sliding)
     if size != 2 * loops.rows + free:
@@ -215,7 +215,7 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
 def _solve_lines(
     table: LoopTable, turning: IndexArray, sliding: IndexArray
 ) -> tuple[Array, Array, list[int]]:
-    """Angles = first · (angles left) + second · (known, 1), from linear rows; which are left."""
+    """Solve linear rows: angles = first · (remaining angles) + second · (known, 1)."""
     n, lines = table.unknowns, table.linear
     rows = np.zeros((len(lines.constant), table.variables + 1))
     np.add.at(rows, (lines.row, lines.variable), lines.weight)
@@ -241,21 +241,21 @@ def _check_lengths_untied(rows: Array, turning: IndexArray, sliding: IndexArray)
         return
     lengths_only = (rows[np.ix_(tied, turning)] == 0.0).all()
     if lengths_only and ((rows[np.ix_(tied, sliding)] != 0.0).sum(axis=1) > 1).all():
-        raise NoDirectionForm("tie one length to another, as inputs driven in lock-step do")
-    raise NoDirectionForm("tie an angle to a length, as racks and rolling do")
+        raise NoDirectionForm("relate two lengths, as inputs driven together do")
+    raise NoDirectionForm("relate an angle to a length, as racks and rolling wheels do")
 
 
 def _eliminate(own: Array, rest: Array) -> list[int]:
-    """Solve lines own · angles + rest · known = 0 in place, each for one angle; which those are.
+    """Solve lines own · angles + rest · known = 0 in place, each for one angle; returns these.
 
-    An angle that lines determine altogether may have any ratio to what is known. Otherwise a turn
-    of one angle has to be a whole number of turns of the other.
+    An angle that depends on known variables only may have any ratio. Otherwise a turn of one angle
+    must be an integer number of turns of the other.
     """
     pivots: list[int] = []
     for k in range(len(own)):
         j = int(np.argmax(np.abs(own[k])))
         if abs(own[k, j]) <= _WHOLE:
-            raise NoDirectionForm("tie the same angles twice")
+            raise NoDirectionForm("relate the same angles twice")
         pivots.append(j)
         _solve_for(own, rest, k, j)
     for k, j in enumerate(pivots):
@@ -268,12 +268,12 @@ def _eliminate(own: Array, rest: Array) -> list[int]:
                 break
         else:
             if others:
-                raise NoDirectionForm("tie angles by ratios other than 1, as gears do")
+                raise NoDirectionForm("relate angles with ratios other than 1, as gears do")
     return pivots
 
 
 def _solve_for(own: Array, rest: Array, row: int, angle: int) -> None:
-    """Make one angle appear in one row only, with weight 1."""
+    """Eliminate one angle from all rows but one, where its weight is 1."""
     own[row], rest[row] = own[row] / own[row, angle], rest[row] / own[row, angle]
     for other in range(len(own)):
         if other != row and own[other, angle]:
@@ -283,12 +283,12 @@ def _solve_for(own: Array, rest: Array, row: int, angle: int) -> None:
 
 
 def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
-    """The different sums of angles in the terms, and the number of each term's, -1 for none."""
+    """The distinct sums of angles in the terms, and each term's index, -1 for none."""
     rows = [tuple(row) for row in sums.tolist()]
-    # in the order of the angles, whatever the order of the terms
+    # in the order of the angles, independent of the order of the terms
     found = sorted({row for row in rows if any(row)}, reverse=True)
     place = {row: k for k, row in enumerate(found)}
-    # its direction would be needed as U and as V
+    # its direction would be needed in U and V
     if any(tuple(-w for w in row) in place for row in found):
         raise NoDirectionForm("contain an angle both forwards and backwards")
     number = np.array([place.get(row, -1) for row in rows], dtype=np.intp)
@@ -296,13 +296,13 @@ def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
 
 
 def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
-    """Angles by directions: an inverse of whole numbers."""
+    """Angles in terms of directions: an integer inverse."""
     if len(directions) > angles:
         raise NoDirectionForm("contain more sums of angles than angles, as gears do")
     if len(directions) < angles:
-        raise NoDirectionForm("leave an angle open")
+        raise NoDirectionForm("do not determine an angle")
     matrix = np.array(directions, dtype=float).reshape(angles, angles)
-    # only a unimodular matrix has an inverse of whole numbers
+    # only a unimodular matrix has an integer inverse
     if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     inverse = np.linalg.inv(matrix)

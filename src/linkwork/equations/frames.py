@@ -1,7 +1,9 @@
-"""Bodies, what turns together, and where points sit in the frame of each body.
+"""Bodies, groups of bodies with equal rotation, and coordinates of points in the frame of each
+body.
 
-Links that slide on each other without turning share one angle variable. A point's place in a body
-is a sum of terms: a fixed vector, and for slots and sliders a variable length along their line.
+Links that slide on each other without rotation share one angle variable. A point's position in a
+body is a sum of terms: a fixed vector, and for slots and sliders a variable length along their
+line.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ __all__ = ["Frames", "Place"]
 
 @dataclass(frozen=True)
 class Place:
-    """Where a point sits in a body: a fixed vector from the body's origin, and sliding terms."""
+    """A point's position in a body: a fixed vector from the body's origin, and sliding terms."""
 
     fixed: complex
     sliding: tuple[Term, ...] = ()
@@ -40,10 +42,10 @@ class Place:
 
 @dataclass
 class Frames:
-    """All bodies of a linkage with the places of their points.
+    """All bodies of a linkage with the positions of their points.
 
-    ``bodies`` in the file's order, ground first. ``angle[body]`` tells its variable and constant.
-    ``places[body][point]``. ``symbols`` collects the named lengths that were used.
+    ``bodies`` in the file's order, ground first. ``angle[body]`` is its variable and constant.
+    ``places[body][point]``. ``symbols`` collects the named lengths in use.
     """
 
     linkage: Linkage
@@ -57,7 +59,7 @@ class Frames:
 
     @classmethod
     def of(cls, linkage: Linkage, problems: Problems) -> Frames:
-        """Bodies, shared angles and places; contradictions are added to ``problems``."""
+        """Bodies, shared angles and positions; contradictions are added to ``problems``."""
         frames = cls(linkage)
         frames.bodies = [GROUND, *[b for b in linkage.links if b != GROUND]]
         groups = _Orientation(linkage, problems)
@@ -77,7 +79,7 @@ class Frames:
         offset: float = 0.0,
         symbol: str = "",
     ) -> None:
-        """The place of a guided point in the body that carries the line.
+        """Add the position of a guided point in the body with the line.
 
         ``guide``: the displacement's name, the body, two points of its line.
         """
@@ -99,7 +101,7 @@ class Frames:
     def add_rod(
         self, name: str, between: tuple[str, str], length: float | None = None, angle: str = ""
     ) -> None:
-        """A body between two points: of that length, or of a variable one that has its name."""
+        """Add a body between two points, of a given length or a variable length with its name."""
         a, b = between
         turning = angle or name
         self.bodies.append(name)
@@ -117,7 +119,7 @@ class Frames:
         self.places[name] = {a: Place(0j, base=a), b: Place(0j, (rod,), base=a)}
 
     def release(self, link: str, a: str, b: str) -> None:
-        """Let the distance between two points of a link be an unknown."""
+        """Make the distance between two points of a link an unknown."""
         name = f"{link}_length"
         first = self.places[link][a].fixed
         span = self.places[link][b].fixed - first
@@ -162,7 +164,7 @@ class Frames:
         return terms
 
     def _distance(self, body: str, a: str, b: str) -> Node:
-        """How the distance between two points is called in formulas."""
+        """The name of the distance between two points in formulas."""
         order = self.linkage.links[body]
         if order.index(a) > order.index(b):
             a, b = b, a
@@ -179,7 +181,7 @@ class Frames:
 
 
 class _Orientation:
-    """Groups of links that keep their relative orientation because they only slide."""
+    """Groups of links with constant relative orientation, joined by slides and welds."""
 
     def __init__(self, linkage: Linkage, problems: Problems) -> None:
         self.linkage = linkage
@@ -191,7 +193,7 @@ class _Orientation:
                 problems.add(
                     key,
                     f'"{kept[0]}" cannot keep its angle relative to "{kept[1]}": '
-                    f"other {part.holders} turn it by {degrees(gap):.6g}° from there",
+                    f"other {part.holders} change it by {degrees(gap):.6g}°",
                 )
         driven = {w.link for w in linkage.inputs if w.link}
         self._name: dict[str, str] = {}
@@ -200,7 +202,7 @@ class _Orientation:
             named = self._name.get(root)
             if body == GROUND or not self._turns(body):
                 continue
-            # the input has to be a variable of its own
+            # the input must be a separate variable
             if named is None or (body in driven and named not in driven):
                 self._name[root] = body
         self._ground = self.root(GROUND)
@@ -218,12 +220,12 @@ class _Orientation:
         return self._find(body)[0]
 
     def _turns(self, body: str) -> bool:
-        """Whether a link has a direction of its own, or is a wheel."""
+        """Whether a link has a direction or is a wheel."""
         several = len(self.linkage.links[body]) > 1
         return several or body in self.linkage.turning_on_one_point
 
     def _join(self, link: str, on: str, constant: float) -> float:
-        """θ_link = θ_on + constant; by how much that contradicts what is known already [rad]."""
+        """Set θ_link = θ_on + constant; returns the contradiction to known angles [rad]."""
         a, offset_a = self._find(link)
         b, offset_b = self._find(on)
         if a == b:
@@ -234,7 +236,7 @@ class _Orientation:
         return 0.0
 
     def angle_of(self, body: str) -> LinkAngle:
-        """The body's angle: its group's variable plus a constant; ground stands at zero."""
+        """The body's angle: its group's variable plus a constant; zero for ground."""
         root, offset = self._find(body)
         if root == self._ground:
             return LinkAngle(variable=None, constant=_tidy(offset - self._find(GROUND)[1]))
@@ -243,8 +245,8 @@ class _Orientation:
 
 
 def _tidy(angle: float) -> float:
-    """Into (-π, π], with rounding next to a multiple of a right angle removed."""
+    """The angle in (-π, π], rounded to a multiple of a right angle if very near."""
     reduced = remainder(angle, 2 * math.pi)
     square = round(reduced / (math.pi / 2)) * math.pi / 2
-    # a right angle that is off by a rounding would leave a tiny term in every equation
+    # a right angle with rounding error would leave a tiny term in every equation
     return choose(abs(reduced - square) < 1e-15, square, reduced)

@@ -1,4 +1,4 @@
-"""Writing the loop equations of a mechanism that is given by its points and links."""
+"""Derivation of the loop equations of a mechanism given by points and links."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def write_loops(linkage: Linkage) -> LoopEquations:
     Raises
     ------
     MechanismError
-        If inputs contradict each other, or do not determine the motion: with the links that
-        stay free or the parts that conflict.
+        If inputs contradict each other or do not determine the motion; names the free links or the
+        conflicting parts.
     """
     writer = _LoopWriter(linkage)
     return writer.write()
@@ -58,7 +58,7 @@ class _LoopWriter:
     base: dict[str, str | None] = field(default_factory=dict)
 
     def write(self) -> LoopEquations:
-        """Everything, in order."""
+        """Derive all equations."""
         linkage = self.linkage
         where = f'mechanism "{linkage.name}"'
         self.frames = frames = Frames.of(linkage, self.problems)
@@ -80,7 +80,7 @@ class _LoopWriter:
         self._check_connected(structure)
         self.problems.raise_any(where)
         self._check_determined(structure)
-        # only once: links that are released already did not help
+        # only once: further releases would not help
         if self.problems and not self.released:
             without = self._without_surplus(structure, {v.symbol for v in unknowns})
             if without is not None:
@@ -116,7 +116,7 @@ class _LoopWriter:
         )
 
     def _angle_of(self, body: str) -> str:
-        """The angle variable a body would name itself."""
+        """The name of a body's angle variable."""
         cylinder = {c.name: c.angle_name for c in self.linkage.of(Cylinder)}
         return cylinder.get(body, body)
 
@@ -127,7 +127,7 @@ class _LoopWriter:
         return named + lengths + released + self.contacts.variables
 
     def _drive(self, which: Input, key: tuple[str | int, ...]) -> None:
-        """Turn an input into a variable: an angle, a relative angle or a length."""
+        """The variable of an input: an angle, a relative angle or a length."""
         kind, name = which.drives
         if kind in ("slider", "cylinder"):
             self.inputs.append(_variable(name, "length"))
@@ -167,7 +167,7 @@ class _LoopWriter:
                 value += sign * self.frames.start[part.variable]
         # the input within half a turn, as sketched; the constant takes the whole turns
         wrapped = phase(cis(value))
-        constant = angle.constant - base.constant + wrapped - value  # off by whole turns
+        constant = angle.constant - base.constant + wrapped - value  # differs by whole turns
         self.linear.append(
             LinearEquation(label=f"{link} against {against}", terms=tuple(terms), constant=constant)
         )
@@ -205,7 +205,7 @@ class _LoopWriter:
         return Structure(incidences, variables, relations, GROUND)
 
     def _check_connected(self, structure: Structure) -> None:
-        """A body that shares no point with another one is in no equation."""
+        """Report bodies that share no point with another body."""
         joined = {body for body, _ in structure.incidences}
         for link in self.linkage.links:
             if link != GROUND and link not in joined:
@@ -237,7 +237,7 @@ class _LoopWriter:
             )
 
     def _without_surplus(self, structure: Structure, unknown: set[str]) -> LoopEquations | None:
-        """The equations with the lengths of some links released, if that makes them square."""
+        """The equations with the lengths of some links released, if this makes them square."""
         form, _ = structure.form()
         if form.missing or not form.surplus:
             return None
@@ -251,7 +251,7 @@ class _LoopWriter:
             return None
 
     def _order(self, walk: tuple[Node, ...]) -> list[int]:
-        """Loops of one block are shown in the order in which the file names their links."""
+        """Sort the loops of a block by the order of their links in the file."""
         return sorted(self.rank[name] for kind, name in walk if kind == "body")
 
     def _loop(self, walk: tuple[Node, ...]) -> LoopEquation:
@@ -304,7 +304,7 @@ def _names_of(term: Term) -> tuple[str, ...]:
 
 
 def _variable(name: str, kind: str) -> Variable:
-    """A link's angle is shown as θ with the link's name, unless that is Greek already."""
+    """A link's angle, displayed as θ with the link's name unless the name is Greek."""
     symbol = canonical(name)
     stem = symbol.removesuffix("_angle")
     if kind != "angle" or pretty(stem) != stem:
@@ -321,7 +321,7 @@ def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[s
         if node[0] == "body"
     ]
     lowest = min(range(len(found)), key=lambda k: order[found[k][1]])
-    # ground closes the loop: textbooks end it there
+    # ground closes the loop, as in textbooks
     found = found[lowest + 1 :] + found[: lowest + 1]
     if len(found) > 2 and order[found[0][1]] > order[found[-2][1]]:
         backwards = [(end, body, start) for start, body, end in reversed(found)]
@@ -330,7 +330,7 @@ def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[s
 
 
 def _subjects(columns: Iterable[str]) -> list[str]:
-    """The bodies, else whatever there is, behind column labels."""
+    """The bodies among column labels, or otherwise all subjects."""
     labels = [label.split() for label in columns]
     bodies = dict.fromkeys(parts[1] for parts in labels if parts[0] == "body")
     if bodies:

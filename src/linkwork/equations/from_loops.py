@@ -1,4 +1,4 @@
-"""Reading forms B and C: loop equations in textbook notation, and plain equations."""
+"""Reader of forms B and C: loop equations in textbook notation, and plain equations."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def read_loops(mechanism: Loops) -> LoopEquations:
     Raises
     ------
     MechanismError
-        With every formula that cannot be read and every unknown that no loop contains.
+        Lists all formulas that cannot be read and all unknowns that occur in no loop.
     """
     problems = Problems()
     spelling = {canonical(name): name for name in mechanism.guess}
@@ -108,7 +108,7 @@ def _term(m: Monomial, text: str) -> Term:
     if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
-            # a factor i is shown as a right angle
+            # a factor i is displayed as a right angle
             shown, turn = rest, math.pi / 2
     return Term(
         value=m.value,
@@ -121,7 +121,7 @@ def _term(m: Monomial, text: str) -> Term:
 
 
 def _without_i(node: Node) -> tuple[bool, Node | None]:
-    """A product with its factor i taken out, if it has exactly that."""
+    """A product without its factor i, if it has exactly one."""
     match node:
         case Name("i"):
             return True, None
@@ -141,7 +141,7 @@ def _without_i(node: Node) -> tuple[bool, Node | None]:
 def _read_points(
     mechanism: Loops, reader: PhasorReader, problems: Problems
 ) -> dict[str, PointPath]:
-    """Points may refer to each other in any order; a circle of references is an error."""
+    """Read points, which may refer to each other in any order; circular references are errors."""
     texts = {canonical(name): text for name, text in mechanism.points.items()}
     spelling = {canonical(name): name for name in mechanism.points}
     done: dict[str, PointPath] = {}
@@ -151,7 +151,7 @@ def _read_points(
         if name in state:
             if state[name] == "open":
                 circle = " → ".join(spelling[n] for n in (*chain[chain.index(name) :], name))
-                problems.add(("points", spelling[name]), f"is defined by itself: {circle}")
+                problems.add(("points", spelling[name]), f"is defined in terms of itself: {circle}")
                 state[name] = "done"
             return
         state[name] = "open"
@@ -162,7 +162,7 @@ def _read_points(
                 if node.name in texts:
                     resolve(node.name, (*chain, name))
             missing = any(n.name in texts and n.name not in reader.points for n in names_in(tree))
-            if state[name] == "open" and not missing:  # else the other point is reported
+            if state[name] == "open" and not missing:  # otherwise the other point is reported
                 monomials = reader.read(tree, text)
                 reader.points[name] = monomials
                 terms = tuple(_term(m, text) for m in monomials if is_structurally_nonzero(m.value))
@@ -180,7 +180,7 @@ def _read_points(
 def _kinds(
     loops: list[LoopEquation], spelling: Mapping[str, str], problems: Problems
 ) -> dict[str, str]:
-    """What every variable measures, from where it stands."""
+    """The kind of every variable, from its place in the equations."""
     kinds: dict[str, str] = {}
     for loop in loops:
         for term in loop.terms:
@@ -203,7 +203,7 @@ def _kinds(
 def _check_ranges(
     mechanism: Loops | PlainEquations, kinds: Mapping[str, str], problems: Problems
 ) -> None:
-    """Only an angle has a natural range."""
+    """Report inputs without a range unless they are angles."""
     for k, which in enumerate(mechanism.inputs):
         if kinds[canonical(which.drives[1])] == "angle":
             continue
@@ -240,7 +240,7 @@ def read_plain_equations(mechanism: PlainEquations) -> LoopEquations:
     Raises
     ------
     MechanismError
-        With every formula that cannot be read and every unknown that occurs nowhere.
+        Lists all formulas that cannot be read and all unknowns that occur nowhere.
     """
     problems = Problems()
     spelling = {canonical(name): name for name in mechanism.guess}

@@ -1,4 +1,4 @@
-"""A third notation: MathML, which browsers set without any help."""
+"""MathML notation, which browsers display directly."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _INVISIBLE_TIMES, _APPLY, _MINUS = "\u2062", "\u2061", "\u2212"
 
 @dataclass(frozen=True)
 class Markup:
-    """Elements of MathML in a row; ``loose``: a product has to hold them together."""
+    """A sequence of MathML elements; ``loose``: needs parentheses or grouping in a product."""
 
     xml: str
     loose: bool = False
 
     def element(self) -> str:
-        """The row as an equation of a page."""
+        """The sequence as a displayed equation."""
         return f'<math display="block">{self.xml}</math>'
 
 
@@ -57,7 +57,7 @@ class MathML:
         return Markup(f"{sign}<mn>{digits}</mn>", loose=True)
 
     def formula(self, node: Node) -> Markup:
-        """A formula on its own."""
+        """A complete formula."""
         match node:
             case Number():
                 return self.number(number_text(node.value))

@@ -1,4 +1,4 @@
-"""The closure equations of a mechanism as symbols: what is shown and what is compiled."""
+"""The closure equations of a mechanism in symbolic form, for display and compilation."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ __all__ = [
 class Variable:
     """An unknown or input.
 
-    ``symbol`` is the canonical name under which formulas and terms refer to it; ``shown`` is the
-    name it has in printed equations (a link's angle is shown as θ with the link's name).
+    ``symbol`` is its canonical name in formulas and terms; ``shown`` its name in printed equations
+    (θ with the link's name for a link's angle).
     """
 
     name: str
@@ -53,7 +53,7 @@ class Variable:
 class Term:
     """``sign · magnitude · s · exp(i (Σ weight θ + turn))``.
 
-    ``value`` is sign · magnitude · exp(i turn) as a number; ``magnitude`` is what is shown,
+    ``value`` is sign · magnitude · exp(i turn) as a number; ``magnitude`` is the displayed form,
     ``None`` for 1. ``length`` names a variable length, ``phase`` variable angles with weights.
     """
 
@@ -83,7 +83,7 @@ class Term:
         length: str | None = None,
         phase: tuple[tuple[str, float], ...] = (),
     ) -> Term:
-        """A fixed vector in a turning frame: modulus shown by ``shown``, direction as turn."""
+        """A fixed vector in a rotating frame: modulus displayed as ``shown``, direction as turn."""
         seen = display_value(z)
         turn = cmath.phase(seen) if seen else 0.0
         sign = 1
@@ -112,7 +112,7 @@ class LoopEquation:
 class LinearEquation:
     """Σ weight · variable + constant = 0; angles in radians.
 
-    ``kind`` tells whether its residual is an angle or a length.
+    ``kind`` of its residual: angle or length.
     """
 
     label: str
@@ -125,9 +125,8 @@ class LinearEquation:
 class LawEquation:
     """Σ weight · variable + constant - f(Σ weight · variable + offset) = 0; angles in radians.
 
-    ``shown`` is how the function is called in printed equations, ``primes`` of how manyth
-    derivative it is and ``meaning`` what it is in words; ``kind`` tells whether the equation is one
-    of lengths or angles.
+    ``shown`` is the name of the function in printed equations, ``primes`` the order of its
+    derivative, ``meaning`` its description; ``kind`` of the residual: length or angle.
     """
 
     label: str
@@ -169,9 +168,9 @@ class LinkAngle:
 
 @dataclass(frozen=True, kw_only=True)
 class Redundant:
-    """A condition more than needed: a link's length is an unknown and has to come out as given.
+    """A redundant condition: a link's length is an unknown and must equal its given value.
 
-    ``variable`` names the unknown, ``length`` is what was given for the distance of two points.
+    ``variable`` names the unknown, ``length`` is the given distance of the two points.
     """
 
     variable: str
@@ -182,7 +181,7 @@ class Redundant:
 
 @dataclass(frozen=True, kw_only=True)
 class Output:
-    """A named formula; ``kind`` tells whether its value is an angle, a length or a number."""
+    """A named formula; ``kind`` of its value: angle, length or number."""
 
     formula: Node
     kind: str
@@ -190,7 +189,7 @@ class Output:
 
 @dataclass(frozen=True, kw_only=True)
 class LoopEquations:
-    """Every equation of a mechanism, with what its solution means.
+    """All equations of a mechanism, and the definitions of its results.
 
     Parameters
     ----------
@@ -198,11 +197,11 @@ class LoopEquations:
     loops, linear, real, laws : equations
         Complex loops; linear relations; plain real equations; laws of cams and curves.
     symbols : Mapping[str, float]
-        Values of the fixed lengths and dimensions that occur, by canonical name.
+        Values of the fixed lengths and dimensions in use, by canonical name.
     dimensions : Mapping[str, float]
         All named dimensions, for outputs.
     start : (N,)
-        Guess of the unknowns, then the input values it belongs to; angles in radians.
+        Guess of the unknowns, then its input values; angles in radians.
     points : Mapping[str, PointPath]
         Parents come before their children.
     links : Mapping[str, LinkAngle]
@@ -210,13 +209,13 @@ class LoopEquations:
         Name of slider, slot or cylinder → variable.
     outputs : Mapping[str, Output]
     redundant : tuple of Redundant
-        Conditions that the others have to imply; ``surplus`` says that there are too many.
+        Conditions that the others must imply, if there are too many (``surplus``).
     outlines : Mapping[str, (body, point, (K,) complex)]
         Cams and curves by name: points about a point of a body, in that body's frame.
     fixed : tuple of str
-        Points that stand still.
+        Points on ground.
     length_scale : float
-        The longest link: what lengths are measured against.
+        The longest link, the reference for relative lengths.
     """
 
     angle: AngleUnit

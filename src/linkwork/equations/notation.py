@@ -26,7 +26,7 @@ class Signed(Generic[S_co]):
 
 
 class Notation(Protocol[T]):
-    """How names, phasors, products and sums are written; an angle is given as its terms."""
+    """The notation of names, phasors, products and sums; an angle is given by its terms."""
 
     imaginary: T
 
@@ -40,7 +40,7 @@ class Notation(Protocol[T]):
         """A formula as one factor of a product."""
 
     def formula(self, node: Node) -> T:
-        """A formula on its own."""
+        """A complete formula."""
 
     def degrees(self, radians: float) -> T:
         """A fixed angle."""
@@ -71,7 +71,7 @@ class Notation(Protocol[T]):
 
 
 class _Text:
-    """What plain text and LaTeX have in common."""
+    """The common base of plain text and LaTeX."""
 
     imaginary = "i"
     times = ""
@@ -127,7 +127,7 @@ class PlainText(_Text):
         return pretty(name)
 
     def formula(self, node: Node) -> str:
-        """A formula on its own."""
+        """A complete formula."""
         return writing.text(node, lambda n: pretty(n.spelling or n.name)).replace("*", "·")
 
     def node(self, node: Node) -> str:
@@ -163,7 +163,7 @@ class Latex(_Text):
         return latex_name(name)
 
     def formula(self, node: Node) -> str:
-        """A formula on its own."""
+        """A complete formula."""
         return writing.latex(node)
 
     def node(self, node: Node) -> str:

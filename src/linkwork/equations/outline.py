@@ -1,4 +1,4 @@
-"""Smooth curves through given points: cubic splines by the length of their chords."""
+"""Smooth curves through given points: cubic splines parametrised by chord length."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from linkwork.kernels.piecewise import Piecewise
 
 __all__ = ["Outline", "spline"]
 
-_SAMPLES = 16  # of every piece, among which the nearest place is sought
-_FINE = 64  # of every piece, among which the least rounded place is sought
+_SAMPLES = 16  # samples per piece for the nearest point
+_FINE = 64  # samples per piece for the smallest curvature
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Outline:
-    """x(u) and y(u); u is an angle from 0 to 2π if the curve is closed, else its chords' length."""
+    """x(u) and y(u); u is an angle from 0 to 2π if the curve is closed, else chord length."""
 
     x: Piecewise
     y: Piecewise
 
     @classmethod
     def through(cls, points: Sequence[complex], *, closed: bool) -> Outline:
-        """The curve through points in their order.
+        """The curve through points in order.
 
-        A closed one has two continuous derivatives everywhere and runs counter-clockwise; an open
-        one is straight at its ends and goes on straight beyond them ("natural" spline).
+        A closed curve has two continuous derivatives everywhere and is counter-clockwise; an open
+        curve has no curvature at its ends and continues straight ("natural" spline).
         """
         z = np.array(points)
         if closed:
@@ -49,7 +49,7 @@ class Outline:
         return z
 
     def samples(self, count: int = 0) -> Array:
-        """Places along the whole curve, both ends included."""
+        """Parameters along the whole curve, both ends included."""
         breaks = self.x.breaks
         return np.linspace(breaks[0], breaks[-1], count or _SAMPLES * (len(breaks) - 1) + 1)
 
@@ -61,9 +61,9 @@ class Outline:
         return bend
 
     def deepest(self) -> tuple[complex, float]:
-        """Where a closed curve is most hollow, or else least rounded, and its curvature there.
+        """Parameter of the smallest (most concave) curvature of a closed curve, and this curvature.
 
-        The least of 64 samples of every piece between given points, which is not proved.
+        The minimum of 64 samples per piece; it is not proved.
         """
         u = self.samples(_FINE * (len(self.x.breaks) - 1) + 1)
         bend = self.bend(u)
@@ -71,7 +71,7 @@ class Outline:
         return complex(self.at(u[k : k + 1])[0]), float(bend[k])
 
     def nearest(self, point: complex) -> float:
-        """The place of a sample that lies nearest to a point."""
+        """The parameter of the sample nearest to a point."""
         u = self.samples()
         return float(u[np.abs(self.at(u) - point).argmin()])
 
@@ -104,7 +104,7 @@ def spline(u: Array, values: Array, closed: bool) -> Piecewise:
 def _solve_tridiagonal(low: Array, middle: Array, high: Array, right: Array) -> Array:
     """x (K, R) of low_k x_{k-1} + middle_k x_k + high_k x_{k+1} = right_k, (K, R).
 
-    Elimination without exchange of rows: the middle outweighs its neighbours.
+    Elimination without pivoting, since the matrix is diagonally dominant.
     """
     middle, right = middle.copy(), right.copy()
     for k in range(1, len(middle)):
@@ -119,7 +119,7 @@ def _solve_tridiagonal(low: Array, middle: Array, high: Array, right: Array) -> 
 
 
 def _solve_cyclic(low: Array, middle: Array, high: Array, right: Array) -> Array:
-    """The same where the first and the last are neighbours: x (K,), by the last one's influence."""
+    """Solve the cyclic system, in which the first and the last unknown are neighbours: x (K,)."""
     corner = np.zeros(len(middle) - 1)
     corner[0], corner[-1] = low[0], corner[-1] + high[-2]
     inner = np.stack([right[:-1], corner], axis=1)

@@ -1,4 +1,4 @@
-"""Named outputs: formulas of unknowns, dimensions and point coordinates, and what they measure."""
+"""Named outputs: formulas of unknowns, dimensions and point coordinates, and their kinds."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ def read_outputs(
     dimensions: Mapping[str, float],
     problems: Problems,
 ) -> dict[str, Output]:
-    """The outputs as trees.
+    """Parse the outputs.
 
     Parameters
     ----------
     kinds : Mapping[str, str]
-        What every usable name measures, by canonical name.
+        The kind of every usable name, by canonical name.
     points : Mapping
-        Points by their name; ``A.x`` and ``A.y`` are usable too.
+        Points by name; ``A.x`` and ``A.y`` can be used too.
 
     Notes
     -----
-    Names such as ``B.transmission`` are taken by their last part: whether B has that is known when
-    the mechanism is complete.
+    Names such as ``B.transmission`` are recognised by their last part; whether B has this quantity
+    is checked when the mechanism is complete.
     """
     coordinates = {canonical(f"{p}.{axis}"): "length" for p in points for axis in "xy"}
     known = {**dict.fromkeys(dimensions, "number"), **kinds, **coordinates}
@@ -99,7 +99,7 @@ def _check_real(tree: Node, text: str) -> None:
 
 
 def _kind(tree: Node, kind_of: Callable[[str], str]) -> str:
-    """Angle, length or number, as far as the formula tells."""
+    """Angle, length or number, as far as the formula determines it."""
     match tree:
         case Number():
             return "number"

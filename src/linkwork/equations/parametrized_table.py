@@ -1,8 +1,8 @@
-"""The same equations driven by another variable.
+"""The closure equations with another variable as parameter (local parametrization).
 
-Near a dead point the input can no longer lead the motion, but a link that moves fast there can. The
-equations stay what they are; the input becomes an unknown and the leading variable becomes known,
-and the block-triangular form follows anew.
+Near a dead point the input is no suitable parameter, but a fast-moving link is. The equations do
+not change: the input becomes an unknown, the parameter becomes known, and the block-triangular form
+is recomputed.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ __all__ = ["ParametrizedTable"]
 
 
 class ParametrizedTable:
-    """A table along a path of inputs, solvable with any variable in the lead.
+    """A table along a path of inputs, solvable with any variable as parameter.
 
     Parameters
     ----------
     table : LoopTable
         n unknowns and p inputs.
     path : InputPath
-        How the inputs move in lock-step.
+        The common motion of the inputs.
     parameter : int
-        Number of the input that the path is measured by (0 … p-1).
+        Index of the input that parametrises the path (0 … p-1).
     """
 
     def __init__(self, table: LoopTable, path: InputPath, parameter: int) -> None:
@@ -46,7 +46,7 @@ class ParametrizedTable:
 
     def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""
-        # a curve changes its leader many times, but between few variables
+        # a curve changes its parameter many times, but among few variables
         if lead not in self._leads:
             self._leads[lead] = self._parametrize(lead)
         return self._leads[lead]
@@ -79,7 +79,7 @@ class ParametrizedTable:
         return Parametrization(lead=lead, solver=solver, order=order)
 
     def jacobian(self, v: Array) -> Array:
-        """The scaled Jacobian by all variables but the path's parameter, (B, m, m)."""
+        """The scaled Jacobian with respect to all variables but the path parameter, (B, m, m)."""
         table = self.table
         slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
         return np.delete(slope, self.parameter, axis=2)
@@ -88,7 +88,7 @@ class ParametrizedTable:
         """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
 
         dσ = uᵀ dJ w with the singular vectors u and w (Golub & Van Loan, Matrix Computations, 8.6),
-        and dJ w is the mixed second derivative of the equations by w and by ``rates`` (N,).
+        and dJ w is the mixed second derivative of the equations along w and ``rates`` (N,).
         """
         table = self.table
         left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])

@@ -1,4 +1,4 @@
-"""The rows that parts add to the equations of a linkage, while they are written."""
+"""The rows that parts add to the equations of a linkage."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["PartRows"]
 
 @dataclass
 class PartRows:
-    """What parts add to a linkage whose frames are known; frames get their places and rods.
+    """Collects the rows of parts; their positions and rods are added to the frames.
 
-    ``variables`` are unknowns besides angles of bodies and lengths of slides, (name, kind);
+    ``variables`` are unknowns other than body angles and slide lengths, (name, kind);
     ``outlines`` are for pictures: name → (body, centre, points about it in the body's frame).
     """
 
@@ -32,27 +32,27 @@ class PartRows:
     outlines: dict[str, tuple[str, str, ComplexArray]] = field(default_factory=dict)
 
     def held(self, link: str, frame: str, key: Key) -> None:
-        """Report an angle that cannot change."""
+        """Report a fixed angle."""
         self.problems.add(
             key, f'"{link}" cannot turn relative to "{frame}": a slider or a weld holds its angle'
         )
 
     def put(self, body: str, point: str, place: Place, key: Key) -> None:
-        """Lead a point in a body that does not lead it yet."""
+        """Add the position of a point in a body that does not guide it yet."""
         if point in self.frames.places[body]:
             self.problems.add(key, f'point "{point}" is already guided by "{body}"')
             return
         self.frames.places[body][point] = place
 
     def sketched_in(self, body: str, origin: str, point: str) -> complex:
-        """Where the sketch has a point in a body's frame, about a point of it."""
+        """The sketched position of a point in a body's frame, relative to a point of the body."""
         frames = self.frames
         turned = frames.angle[body].constant + frames.now(frames.angle[body])
         linkage = frames.linkage
         return (linkage.sketched(point) - linkage.sketched(origin)) * cmath.exp(-1j * turned)
 
     def unknown(self, name: str, kind: str, start: float) -> str:
-        """Another unknown; its symbol."""
+        """Add an unknown; returns its symbol."""
         self.variables.append((name, kind))
         self.frames.start[name] = start
         return canonical(name)
@@ -64,7 +64,7 @@ class PartRows:
         length: tuple[str, float] | None = None,
         total: float | None = None,
     ) -> None:
-        """Σ weight · angle of body (+ weight · length) = total, as it is in the sketch if open."""
+        """Add Σ weight · angle of body (+ weight · length) = total, by default as sketched."""
         frames = self.frames
         weights, constant = frames.angles_of(
             (body, uniform_value(weight)) for body, weight in turns
@@ -73,7 +73,7 @@ class PartRows:
         if length is not None:
             weights[length[0]] = length[1]
             now += length[1] * frames.start[length[0]]
-        # an open total is that of the sketch: gears can be meshed at any tooth
+        # by default the total of the sketch: gears can mesh at any tooth
         constant = -now if total is None else constant - total
         self.linear.append(
             LinearEquation(
@@ -85,7 +85,7 @@ class PartRows:
         )
 
     def side(self, body: str, line: tuple[str, str], point: str, key: Key) -> float:
-        """On which side of a body's line the sketch has a point: 1 for left, -1 for right."""
+        """The side of a body's line on which a point is sketched: 1 for left, -1 for right."""
         linkage = self.frames.linkage
         a, b, p = (linkage.sketched(q) for q in (*line, point))
         away = ((p - a) * (b - a).conjugate()).imag / abs(b - a)

@@ -1,8 +1,8 @@
-"""Multiplying out a complex formula into phasor terms.
+"""Expansion of a complex formula into phasor terms.
 
 A formula such as ``-d1 - i*a1 + (a4 - b4)*e^(i*θ14)`` becomes a sum of monomials: a complex
-constant times at most one variable length times ``exp(i · linear combination of angles)``. What is
-an angle and what a length follows from where a name stands.
+constant times at most one variable length times ``exp(i · linear combination of angles)``. The
+place of a name determines whether it is an angle or a length.
 """
 
 from __future__ import annotations
@@ -61,14 +61,14 @@ def _product(left: Node | None, right: Node | None) -> Node | None:
 
 @dataclass
 class PhasorReader:
-    """Reads formulas over known numbers, known points and, for the rest, variables.
+    """Expands formulas of known numbers, known points and variables.
 
     Parameters
     ----------
     numbers : Mapping[str, float]
         Dimensions by canonical name.
     variables : Callable
-        Tells whether a canonical name may be a variable.
+        Whether a canonical name may be a variable.
     points : Mapping[str, sum of monomials]
         Points that formulas may refer to.
     """
@@ -81,12 +81,12 @@ class PhasorReader:
     text: str = ""
 
     def read(self, node: Node, text: str) -> list[Monomial]:
-        """The sum of monomials, like ones joined.
+        """The sum of monomials, with like terms combined.
 
         Raises
         ------
         ExpressionError
-            Where the formula is not of this shape, with the column.
+            If the formula does not have this form; with the column.
         """
         self.text = text
         return _join_like_terms(self._sum(node))
@@ -141,7 +141,7 @@ class PhasorReader:
 
     def _multiply(self, node: Binary) -> list[Monomial]:
         left, right = self._sum(node.left), self._sum(node.right)
-        # a constant sum in brackets stays one factor, as it was written
+        # a constant sum in parentheses remains one factor, as written
         if all(m.constant for m in left) and len(left) > 1:
             left = [_whole(left, node.left)]
         if all(m.constant for m in right) and len(right) > 1:
@@ -175,7 +175,7 @@ class PhasorReader:
         if not all(m.constant for m in (*base, *exponent)):
             raise self._error(
                 node,
-                "a power of an unknown has no place in a loop equation: "
+                "a loop equation cannot contain a power of an unknown: "
                 "write products of one length and e^(i*angle), or use [equations]",
             )
         b, p = sum(m.value for m in base), sum(m.value for m in exponent)
@@ -198,7 +198,7 @@ class PhasorReader:
         if self.unit is AngleUnit.DEGREE and any(n.name == "pi" for n in names_in(shown)):
             raise self._error(
                 node,
-                'angles are in degrees here, so pi is out of place: write 180, or angle = "rad"',
+                'angles are in degrees here: write 180 instead of pi, or set angle = "rad"',
             )
         weights: dict[str, float] = {}
         turn = 0.0
@@ -228,8 +228,8 @@ class PhasorReader:
             if used.name not in self.numbers and self.variables(used.name):
                 raise self._error(
                     node,
-                    f"{node.function} of the unknown {used.spelling} has no place in a loop "
-                    f"equation: write e^(i*{used.spelling}), or use [equations]",
+                    f"a loop equation cannot contain {node.function} of the unknown "
+                    f"{used.spelling}: write e^(i*{used.spelling}), or use [equations]",
                 )
         number = value(node, self.numbers, self.unit, self.text)
         return [Monomial(vector(number, 0.0), node)]
@@ -246,12 +246,12 @@ def _negate(m: Monomial) -> Monomial:
 
 
 def _whole(terms: list[Monomial], node: Node) -> Monomial:
-    """A constant sum kept in one piece, as it was written."""
+    """A constant sum, kept as written."""
     return Monomial(sum(m.value for m in terms), node)
 
 
 def _join_like_terms(terms: list[Monomial]) -> list[Monomial]:
-    """Sums of like monomials; constants without a variable stay apart, as written."""
+    """Combine like monomials; constants without variables stay separate, as written."""
     found: dict[tuple[object, ...], Monomial] = {}
     for k, m in enumerate(terms):
         key: tuple[object, ...] = (

@@ -41,7 +41,7 @@ class FormulaRow:
         return Jet(*(np.broadcast_to(part, len(v)) for part in (jet.v, jet.d1, jet.d2)))
 
     def value_and_gradient(self, v: Array) -> tuple[Array, Array]:
-        """Value (B,) and derivatives by ``variables`` (B, k)."""
+        """Value (B,) and derivatives with respect to ``variables`` (B, k)."""
         gradient = np.zeros((len(v), len(self.variables)))
         value = np.zeros(len(v))
         for column, k in enumerate(self.variables):
@@ -57,5 +57,5 @@ class FormulaRow:
         return self._jet(v, d).d2
 
     def repeats_after(self, turns: Array) -> bool:
-        """Of a formula that whole turns (k,) do not touch: more is not known of it."""
+        """Whether the formula is unaffected by whole turns (k,), as far as known."""
         return not turns.any()

@@ -1,9 +1,9 @@
-"""Which links may be released where a linkage has more conditions than freedoms.
+"""Selection of links to release in overconstrained linkages.
 
-An overconstrained linkage that moves nevertheless (parallel cranks, Dixon's mechanisms) satisfies
-some of its conditions by itself. Releasing the length of a link takes one condition away; it makes
-a difference only if the link carries force in a self-stress, which is a left null vector of the
-Jacobian of all joint conditions.
+In an overconstrained linkage that can move (parallel cranks, Dixon's mechanisms), some conditions
+follow from the others. Releasing the length of a link removes one condition; this has an effect
+only if the link carries force in a self-stress, a left null vector of the Jacobian of all joint
+conditions.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from linkwork.foundation.rounding import RANK_TOLERANCE
 
 __all__ = ["Bar", "released_links"]
 
-#: A link, and the two of its points that are joints.
+#: A link and its two joint points.
 Bar = tuple[str, str, str]
 
-_STRESSED = 1e-6  # of the largest: a link with less carries no force
-_ALIKE = 0.5  # of the largest: among such links the last one named is released
+_STRESSED = 1e-6  # relative to the largest: smaller forces count as zero
+_ALIKE = 0.5  # relative to the largest: among such links the last in the file is released
 
 
 def released_links(
@@ -35,12 +35,12 @@ def released_links(
     unknown: set[str],
     count: int,
 ) -> tuple[Bar, ...]:
-    """Links of two joints whose distance to release, at most ``count``.
+    """The links with two joints whose lengths are released, at most ``count``.
 
     Parameters
     ----------
     incidences : sequence of (body, point)
-        Every place where a body carries a point that another one needs.
+        All pairs of a body and a point on it that another body uses.
     unknown : set of str
         Symbols of the unknowns; inputs are not among them.
     """
@@ -61,7 +61,7 @@ def released_links(
         size = np.linalg.norm(stress, axis=0)
         if size.max() <= _STRESSED * largest:
             break
-        # links that are loaded much alike: the one named last is the one added to the others
+        # among links with similar force, the last in the file is the redundant one
         chosen = int(np.flatnonzero(size >= _ALIKE * size.max())[-1])
         found.append(bars[chosen])
         direction = stress[:, chosen] / size[chosen]
@@ -77,7 +77,7 @@ def _stresses(
     unknown: set[str],
     bars: Sequence[Bar],
 ) -> Array:
-    """How every self-stress loads each bar, (stresses, bars)."""
+    """The force of every self-stress in each bar, (stresses, bars)."""
     ends = {(link, end): k for k, (link, _, end) in enumerate(bars)}
     columns: dict[str, int] = {}
     entries: list[tuple[int, str, complex]] = []
@@ -123,7 +123,7 @@ def _fixed(frames: Frames) -> list[list[complex]]:
 
 
 def _slopes(frames: Frames, body: str, point: str, scale: float) -> dict[str, complex]:
-    """Derivatives of a point's place in a body by its variables, lengths measured by ``scale``."""
+    """Derivatives of a point's position in a body, lengths relative to ``scale``."""
     place, angle = frames.places[body][point], frames.angle[body]
     found: dict[str, complex] = {}
 

@@ -1,9 +1,9 @@
-"""The structure of a linkage: in which order its bodies are determined, and which loops to write.
+"""The structure of a linkage: the solving order of its bodies, and the loops to write.
 
-Bodies and points form a graph. The finest order in which bodies can be determined follows from
-the block-triangular form of the full set of joint conditions, which does not depend on any choice
-of loops. Inside each block the loops are a minimum cycle basis, everything determined before
-counting as one rigid frame, so that the written loops decompose as finely as the mechanism does.
+Bodies and points form a graph. The finest solving order follows from the block-triangular form of
+all joint conditions, which does not depend on the choice of loops. In each block the loops are a
+minimum cycle basis in which all bodies of earlier blocks count as one rigid frame, so the loop
+equations have the same blocks as the mechanism.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["Node", "Structure", "StructureBlock"]
 Node = tuple[str, str]
 Edge = tuple[Node, Node]
 _ROOT: Node = ("root", "")
-_LARGE = 60  # nodes in a block beyond which only one candidate cycle per edge is considered
+_LARGE = 60  # nodes of a block above which only one candidate cycle per edge is considered
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,14 @@ class Structure:
     Parameters
     ----------
     incidences : sequence of (body, point)
-        Every place where a body carries or guides a point that another body needs.
+        All pairs of a body and a point on or guided by it that another body uses.
     variables : Mapping[(body, point), tuple of str]
         The unknown angles and lengths in each incidence.
     relations : sequence of tuple of str
-        Unknowns tied by one further real equation each.
+        Unknowns of each further real equation.
     ground : str
 
-    ``neighbours`` holds the part of the graph that is determined already.
+    ``neighbours`` is the part of the graph determined so far.
     """
 
     incidences: Sequence[tuple[str, str]]
@@ -56,7 +56,7 @@ class Structure:
     neighbours: dict[Node, list[Node]] = field(default_factory=dict)
 
     def form(self) -> tuple[BlockForm, list[str]]:
-        """Block form of all joint conditions; and the names of its columns."""
+        """Block form of all joint conditions, and the names of its columns."""
         names: dict[str, int] = {}
 
         def columns(labels: Iterable[str]) -> list[int]:
@@ -112,7 +112,7 @@ class Structure:
         return StructureBlock(tuple(graph.new), tuple(tree), tuple(loops))
 
     def _close_walk(self, cycle: tuple[Edge, ...], known: set[Node]) -> tuple[Node, ...]:
-        """The walk around a cycle of block edges, closed through known bodies where it leaves."""
+        """The walk around a cycle of block edges, closed through known bodies outside the block."""
         walk: list[Node] = []
         steps = _orient_cycle(cycle, known)
         for k, (here, there) in enumerate(steps):
@@ -124,7 +124,7 @@ class Structure:
 
 
 class _BlockGraph:
-    """One block's edges with everything known drawn together into a root."""
+    """One block's edges, with all known bodies merged into a root."""
 
     def __init__(self, edges: list[Edge], known: set[Node]) -> None:
         self.known = known
@@ -158,7 +158,7 @@ class _BlockGraph:
         ]
 
     def candidates(self, tree: list[tuple[Node, Node]]) -> list[tuple[Edge, ...]]:
-        """Cycles among which a minimum basis lies (Horton 1987), shortest paths from each node."""
+        """Candidate cycles of a minimum basis (Horton 1987), from shortest paths of each node."""
         sources = list(self.at) if len(self.at) <= _LARGE else [_ROOT]
         found: dict[frozenset[Edge], tuple[Edge, ...]] = {}
         for source in sources:
@@ -170,7 +170,7 @@ class _BlockGraph:
                         continue
                     left = _climb(here, parent)
                     right = _climb(there, parent)
-                    # the two ways share an edge: no simple cycle
+                    # the two paths share an edge: not a simple cycle
                     if set(left) & set(right):
                         continue
                     cycle = (*reversed(left), edge, *right)
@@ -195,7 +195,7 @@ class _IndependentSet:
         self.pivots: dict[int, int] = {}
 
     def add(self, cycle: Iterable[Edge]) -> bool:
-        """Add a cycle unless it is a sum of those already in."""
+        """Add a cycle unless it depends on the others."""
         bits = 0
         for edge in cycle:
             bits ^= 1 << self.number[edge]
@@ -209,9 +209,9 @@ class _IndependentSet:
 
 
 def _orient_cycle(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
-    """The edges of a cycle, each turned so that it leads on to the next.
+    """The edges of a cycle, oriented so that each leads to the next.
 
-    Known nodes are one place: the cycle may leave it at another node than it came in.
+    Known nodes count as one: the cycle may enter and leave it at different nodes.
     """
 
     def place(node: Node) -> Node:
@@ -235,11 +235,11 @@ def _orient_cycle(cycle: tuple[Edge, ...], known: set[Node]) -> list[Edge]:
 
 
 def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list[Node]:
-    """Shortest path through what is determined, from both sides, cheaper side first."""
+    """Shortest path through known nodes, searched from both ends, cheaper end first."""
     parents: tuple[dict[Node, Node | None], dict[Node, Node | None]] = ({start: None}, {end: None})
     edge: list[list[Node]] = [[start], [end]]
     while edge[0] and edge[1]:
-        # the side with fewer edges ahead grows: ground has very many
+        # expand the side with fewer edges: ground has very many
         cost = [sum(len(neighbours[n]) for n in side) for side in edge]
         side = 0 if cost[0] <= cost[1] else 1
         mine, other = parents[side], parents[1 - side]
@@ -253,7 +253,7 @@ def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list
                     return _back(parents[0], there)[::-1] + _back(parents[1], there)[1:]
                 following.append(there)
         edge[side] = following
-    raise AssertionError("what is determined is connected")
+    raise AssertionError("the known nodes are connected")
 
 
 def _back(parent: Mapping[Node, Node | None], node: Node) -> list[Node]:

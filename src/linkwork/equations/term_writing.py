@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class TermWriter(Generic[T]):
-    """Writes terms and their derivatives; ``names`` maps symbols to what is shown."""
+    """Writes terms and their derivatives; ``names`` maps symbols to displayed names."""
 
     notation: Notation[T]
     names: Mapping[str, str]
@@ -89,7 +89,7 @@ class TermWriter(Generic[T]):
     def real_form(
         self, term: Term, *, imaginary: bool, length: bool = True, weight: float | None = None
     ) -> list[Signed[T]]:
-        """Real or imaginary part of the term; with ``weight`` of its derivative by an angle."""
+        """Real or imaginary part of the term, or with ``weight`` of its derivative by an angle."""
         wanted = "sin" if imaginary else "cos"
         sign = term.sign
         factors = []

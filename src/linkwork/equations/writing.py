@@ -1,4 +1,4 @@
-"""Showing the equations: loops, real form, and the Jacobian in complex and in real form."""
+"""Display of the equations: loops, real form, and the Jacobian in complex and real form."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class EquationSheet:
-    """The closure equations of a mechanism, ready to be shown."""
+    """The closure equations of a mechanism for display."""
 
     equations: LoopEquations
 
@@ -36,7 +36,7 @@ class EquationSheet:
     def _writer(self, notation: Notation[T]) -> TermWriter[T]:
         return TermWriter(notation, self._names)
 
-    # What is shown, in one notation
+    # Equations in one notation
 
     def loop(self, loop: LoopEquation, notation: Notation[T]) -> T:
         """``a2·e^(iθ12) + … = …``."""
@@ -103,7 +103,7 @@ class EquationSheet:
         return notation.sum(parts)
 
     def complex_jacobian(self, notation: Notation[str]) -> Matrix:
-        """Loops, then their conjugates, by the unknowns."""
+        """Derivatives of the loops, then of their conjugates, with respect to the unknowns."""
         write = self._writer(notation)
         rows = []
         for conjugate in (False, True):
@@ -174,7 +174,7 @@ class EquationSheet:
     # Plain text
 
     def text(self, width: int = 80) -> str:
-        """Everything for a terminal of the given width."""
+        """All equations as text of the given width."""
         return "\n".join(self._text_lines(width)) + "\n"
 
     def _text_lines(self, width: int) -> Iterator[str]:
@@ -304,7 +304,7 @@ def _wrap(head: str, body: str, width: int, indent: str = "") -> list[str]:
 def _matrix_lines(
     matrix: Matrix, labels: Sequence[str], columns: Sequence[str], width: int
 ) -> Iterator[str]:
-    """A matrix if it fits the width, else its entries that are not zero, one to a line."""
+    """A matrix if it fits the width, otherwise its nonzero entries, one per line."""
     table = [[*columns], *matrix]
     widths = [max(len(row[k]) for row in table) for k in range(len(columns))]
     label_width = max(map(len, labels), default=0)

@@ -1,4 +1,4 @@
-"""Export of results to files of other programs."""
+"""Export of results to file formats of other programs."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ __all__ = ["csv_lines", "csv_text"]
 
 
 def csv_lines(table: Table) -> Iterator[str]:
-    """The table line by line, header first, each ending in a newline."""
+    """The lines of the table, header first, each with a newline."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
 

@@ -9,8 +9,8 @@
     power    = atom [ "^" unary ]
     atom     = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
 
-Accepted besides ASCII: ``· × − √ ² ³ …``, Greek letters and subscripts in names, and ``iθ12``
-for ``i*θ12``. ``**`` is ``^``. Multiplication is written, never guessed.
+Accepted in addition to ASCII: ``· × − √ ² ³ …``, Greek letters and subscripts in names, and
+``iθ12`` for ``i*θ12``. ``**`` is ``^``. Multiplication signs are required.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from linkwork.foundation.names import GREEK, canonical
 
 __all__ = ["CONSTANTS", "FUNCTIONS", "RESERVED", "parse", "parse_equation"]
 
-#: Functions and how many arguments they take (least, most).
+#: Functions and their numbers of arguments (minimum, maximum).
 FUNCTIONS = {
     "sin": (1, 1), "cos": (1, 1), "tan": (1, 1), "asin": (1, 1), "acos": (1, 1),
     "atan": (1, 1), "atan2": (2, 2), "sqrt": (1, 1), "exp": (1, 1), "ln": (1, 1),
@@ -33,7 +33,7 @@ FUNCTIONS = {
     "cis": (1, 1),
 }  # fmt: skip
 CONSTANTS = {"pi": math.pi, "e": math.e}
-#: Names that mean something in every formula and so cannot name a dimension or unknown.
+#: Reserved names, which cannot name a dimension or unknown.
 RESERVED = frozenset({*FUNCTIONS, *CONSTANTS, "i"})
 
 _SUPERSCRIPT = {c: str(d) for d, c in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
@@ -42,7 +42,7 @@ _OPERATORS = {
     "/": "/", "^": "^", "(": "(", ")": ")", ",": ",", "=": "=",
 }  # fmt: skip
 _LONGEST = 10_000  # characters
-_MOST_TOKENS = 400  # a sum of n terms is a tree n deep: keeps recursion far from Python's limit
+_MOST_TOKENS = 400  # a sum of n terms has depth n: keeps recursion below Python's limit
 _DEEPEST = 60
 
 
@@ -62,7 +62,7 @@ def _is_name_part(c: str) -> bool:
 
 
 def _number_end(text: str, start: int) -> int:
-    """Index behind the number that begins at ``start``."""
+    """Index after the number that begins at ``start``."""
     end = start
     while end < len(text) and text[end] in "0123456789.":
         end += 1
@@ -96,7 +96,7 @@ def _tokens(text: str) -> list[_Token]:
         c, column = text[k], k + 1
         if c.isspace():
             k += 1
-        # a point alone begins no number
+        # a single point does not begin a number
         elif c in "0123456789." and text[k : k + 2].strip("."):
             end = _number_end(text, k)
             found.append(_Token("number", text[k:end], column))
@@ -134,7 +134,7 @@ def _tokens(text: str) -> list[_Token]:
 
 
 class _Reader:
-    """Walks the tokens of one formula."""
+    """Reads the tokens of one formula."""
 
     def __init__(self, text: str) -> None:
         if len(text) > _LONGEST:
@@ -297,7 +297,7 @@ def parse(text: str) -> Node:
     Raises
     ------
     ExpressionError
-        With the column and what was expected.
+        With the column and the expected token.
     """
     reader = _Reader(text)
     node = reader.sum()
@@ -311,7 +311,7 @@ def parse_equation(text: str) -> tuple[Node, Node]:
     Raises
     ------
     ExpressionError
-        Also when there is no or more than one equals sign.
+        Also if the number of equals signs is not one.
     """
     reader = _Reader(text)
     left = reader.sum()

@@ -186,7 +186,7 @@ _TO_ANGLE: dict[str, Callable[..., Jet]] = {
 
 
 def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
-    """The jet of a formula; every name in it must be in ``names`` (checked when it was read).
+    """The jet of a formula; all its names must be in ``names`` (checked by the reader).
 
     Outside a function's domain the entries are NaN: a solver turns that into a status.
     """

@@ -1,4 +1,4 @@
-"""The functions of formulas for numbers of many designs, with the exceptions of ``math``."""
+"""Functions of formulas on arrays of many designs, with the exceptions of ``math``."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ __all__ = ["FUNCTIONS", "applied"]
 
 
 def least(*numbers: Any) -> Any:
-    """The smallest of numbers, element by element."""
+    """The minimum, element by element."""
     return reduce(np.minimum, numbers)
 
 
 def most(*numbers: Any) -> Any:
-    """The largest of numbers, element by element."""
+    """The maximum, element by element."""
     return reduce(np.maximum, numbers)
 
 
@@ -35,12 +35,12 @@ _PARTIAL = ("sqrt", "exp", "ln", "log10", "asin", "acos")
 
 
 def applied(name: str, arguments: Sequence[float]) -> float:
-    """A function of numbers of which some are lanes; angles in radians.
+    """Apply a function to numbers and lanes; angles in radians.
 
     Raises
     ------
     ValueError, OverflowError
-        Where ``math`` raises them: outside the domain; for a value that is too large.
+        As in ``math``: outside the domain; if the value is too large.
     """
     given: list[object] = list(arguments)
     first = next(number for number in given if isinstance(number, Lanes))

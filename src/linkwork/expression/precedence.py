@@ -1,4 +1,4 @@
-"""The precedence of operators, which decides where parentheses are needed."""
+"""The precedence of operators, which determines the parentheses."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ATOM = 5
 
 
 def strength(node: Node) -> int:
-    """The strength of what a formula does last; a negative number is written with a sign."""
+    """The precedence of a formula's outermost operation; negative numbers count as signed."""
     match node:
         case Binary():
             return STRENGTH[node.operator]

@@ -18,7 +18,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Name:
-    """A name in its canonical form; ``spelling`` is what the person wrote."""
+    """A name in its canonical form; ``spelling`` is as written."""
 
     name: str
     spelling: str = field(default="", compare=False)
@@ -27,7 +27,7 @@ class Name:
 
 @dataclass(frozen=True)
 class Negative:
-    """A minus sign before something."""
+    """A negated expression."""
 
     operand: Node
     column: int = field(default=1, compare=False)
@@ -56,7 +56,7 @@ Node = Number | Name | Negative | Binary | Call
 
 
 def names_in(node: Node) -> Iterator[Name]:
-    """Every name that occurs, in reading order, repeats included."""
+    """All names in reading order, repetitions included."""
     match node:
         case Name():
             yield node

@@ -77,7 +77,7 @@ def _named(node: Name, names: Mapping[str, float], text: str) -> float:
     if node.name in CONSTANTS:
         return CONSTANTS[node.name]
     if node.name == "i":
-        message = "the imaginary unit i has no place in a real number"
+        message = "a real number cannot contain the imaginary unit i"
     else:
         message = f'"{node.spelling}" is not defined {choices("dimensions", names, node.name)}'
     raise ExpressionError(f"column {node.column}: {message}", text, node.column)
@@ -120,5 +120,5 @@ def _applied(node: Call, arguments: list[float], unit: AngleUnit, text: str) -> 
         shown = ", ".join(f"{a:g}" for a in arguments)
         message = f"{name}({shown}) is not a real number"
     else:
-        message = f"{name} has no place in a real number"
+        message = f"{name} is not allowed in a real number"
     raise ExpressionError(f"column {node.column}: {message}", text, node.column)

@@ -12,7 +12,7 @@ __all__ = ["latex", "number_text", "text"]
 
 
 def number_text(value: float) -> str:
-    """A number without needless zeros; short, and exact to 12 digits."""
+    """A short number without trailing zeros, exact to 12 digits."""
     shown = f"{value:.12g}"
     return shown[:-2] if shown.endswith(".0") else shown
 

@@ -1,1 +1,1 @@
-"""What is asked: a mechanism as plain immutable data, in one of three forms."""
+"""Descriptions of mechanisms as plain immutable data, in one of three forms."""

@@ -1,4 +1,4 @@
-"""Points, the rigid links that carry them, and the shapes of links: what parts are joined to."""
+"""Points, rigid links and the shapes of links."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Bodies(Description):
     lengths: Mapping[str, Number] = FrozenDict()
     angles: Mapping[str, Number] = FrozenDict()
     sketch: bool = False
-    #: The exact shape of every link, as local coordinates, and what was measured.
+    #: The exact shape of every link in local coordinates, and the measured dimensions.
     shapes: Shapes = field(init=False, repr=False, compare=False)
 
     @property

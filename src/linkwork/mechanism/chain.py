@@ -1,4 +1,4 @@
-"""The kinematic chain of a linkage: its links and joints, without any length."""
+"""The kinematic chain of a linkage: its links and joints, without dimensions."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Chain:
     links : tuple of str
         In the file's order. A cylinder has two, its ``barrel`` and its ``rod``.
     blocks : frozenset of str
-        Links without extent that stand for pins in slots; see :meth:`with_blocks`.
+        Links without extent that replace pins in slots; see :meth:`with_blocks`.
     united : Mapping[str, str]
-        Links that are welded to another one, and that one; see :meth:`welded`.
+        Welded links and the link to which each is welded; see :meth:`welded`.
     """
 
     links: tuple[str, ...]
@@ -36,7 +36,7 @@ class Chain:
 
     @classmethod
     def of(cls, linkage: Linkage) -> Chain:
-        """The chain of a linkage, whatever is driven."""
+        """The chain of a linkage, independent of its inputs."""
         links = [*linkage.links, *(end for part in linkage.parts for end in part.ends)]
         joints = [joint for part in linkage.parts if (joint := part.joint(linkage)) is not None]
         joints.sort(key=lambda joint: not joint.kind.lower)
@@ -52,7 +52,7 @@ class Chain:
 
     @property
     def simple(self) -> bool:
-        """Whether no pin joins more than two links and no links have two joints in common."""
+        """Whether every pin joins two links and no two links share two joints."""
         pairs = [frozenset(joint.links) for joint in self.joints]
         return len(set(pairs)) == len(pairs) and all(len(pair) == 2 for pair in pairs)
 
@@ -61,13 +61,13 @@ class Chain:
         return [joint for joint in self.joints if link in joint.links]
 
     def joined(self, first: str, second: str) -> Joint | None:
-        """The joint of two links, if they have one."""
+        """The joint between two links, if it exists."""
         return next((j for j in self.joints if first in j.links and second in j.links), None)
 
     def with_blocks(self) -> Chain:
         """The chain of lower pairs only: a pin in a slot becomes a block, pinned and sliding.
 
-        The motion is the same, and so is the mobility: three freedoms more and three fewer.
+        Motion and mobility do not change: the block adds three freedoms and removes three.
         """
         links, joints = list(self.links), []
         pins = {joint.name: joint for joint in self.joints if joint.kind is JointKind.REVOLUTE}
@@ -98,18 +98,18 @@ class Chain:
         return self.united.get(link, link)
 
     def members(self, link: str) -> tuple[str, ...]:
-        """A link of the chain with all that are welded to it."""
+        """A link of the chain and all links welded to it."""
         return (link, *(other for other, one in self.united.items() if one == link))
 
     def welded(self, pairs: Iterable[tuple[str, str]]) -> Chain:
-        """The chain in which the links of each pair are one.
+        """The chain in which the two links of each pair are merged.
 
-        They take the name of the ground if it is among them, else of the first in order.
+        The name is that of the ground if it is one of them, otherwise of the first in order.
         """
         became = {link: link for link in self.links} | dict(self.united)
         for first, second in pairs:
             one, other = became[first], became[second]
-            # the ground keeps its name; otherwise the link that comes first does
+            # the merged link has the name of the ground, otherwise of the first link
             if other == self.ground or (
                 one != self.ground and self.links.index(other) < self.links.index(one)
             ):
@@ -129,9 +129,9 @@ class Chain:
         )
 
     def loop_through(self, joint: Joint, first: str, second: str) -> list[tuple[Joint, ...]]:
-        """Every closed loop of four links through a joint: its joints, beginning with that one.
+        """The joints of every closed loop of four links through a joint, which comes first.
 
-        The loop leaves ``first`` over ``joint`` to ``second`` and comes back to ``first``.
+        The loop goes from ``first`` through ``joint`` to ``second`` and returns to ``first``.
         """
         found: list[tuple[Joint, ...]] = []
         for to_third in self.at(second):
@@ -151,7 +151,7 @@ class Chain:
 
 
 def _pins(linkage: Linkage) -> Iterator[Joint]:
-    """A pin wherever links share a point; a cylinder's barrel is at its first point."""
+    """A pin at every shared point; a cylinder's barrel is at its first point."""
     # a cylinder is a body of the sketch and two links of the chain, one at each end
     ends = {part.label: dict(zip(part.body, part.ends, strict=True)) for part in linkage.parts}
     for point, bodies in linkage.carriers().items():

@@ -1,4 +1,4 @@
-"""Which chains are the same: graph isomorphism, by networkx."""
+"""Comparison of chains by graph isomorphism (networkx)."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from linkwork.mechanism.chain import Chain
 
 __all__ = ["contours", "orbits", "same_graph", "same_inversion"]
 
-Graph = Any  # of networkx, which has no types of its own
+Graph = Any  # networkx has no type hints
 
 
 def _networkx() -> Any:
-    """On first use: it takes longer to load than everything else together."""
+    """Import on first use: it takes longer to load than the rest of the package."""
     import networkx
 
     return networkx
@@ -32,7 +32,7 @@ def _link_graph(chain: Chain) -> Graph:
 
 
 def _coloured(chain: Chain, ground: str) -> Graph:
-    """Links and joints as vertices with their kinds; multiple pins stay what they are."""
+    """Links and joints as vertices with their kinds; multiple pins are kept."""
     graph = _networkx().Graph()
     for link in chain.links:
         graph.add_node(("link", link), kind="ground" if link == ground else "link")
@@ -44,7 +44,7 @@ def _coloured(chain: Chain, ground: str) -> Graph:
 
 
 def same_graph(chain: Chain, graph6: str) -> bool:
-    """Whether a chain without multiple joints has the graph of a graph6 text.
+    """Whether a chain without multiple joints has the graph given in graph6 format.
 
     References
     ----------
@@ -54,7 +54,7 @@ def same_graph(chain: Chain, graph6: str) -> bool:
 
 
 def same_inversion(chain: Chain, ground: str, other: Chain, other_ground: str) -> bool:
-    """Whether two chains are the same, with the same kinds of joints and the same link fixed."""
+    """Whether two chains have the same graph, kinds of joints and fixed link."""
 
     def same(one: dict[str, str], another: dict[str, str]) -> bool:
         return one["kind"] == another["kind"]
@@ -67,7 +67,7 @@ def same_inversion(chain: Chain, ground: str, other: Chain, other_ground: str) -
 
 
 def orbits(chain: Chain) -> list[list[str]]:
-    """The links in classes: fixing any link of one class gives the same inversion."""
+    """Equivalence classes of links: fixing any link of a class gives the same inversion."""
     found: list[list[str]] = []
     for link in chain.links:
         alike = (known for known in found if same_inversion(chain, known[0], chain, link))
@@ -80,7 +80,7 @@ def orbits(chain: Chain) -> list[list[str]]:
 
 
 def contours(incidences: Iterable[tuple[str, str]]) -> list[int]:
-    """The numbers of joints in the independent closed contours of (link, joint) incidences.
+    """Numbers of joints of the independent closed contours, from (link, joint) incidences.
 
     A minimum cycle basis (Horton 1987).
     """

@@ -1,4 +1,4 @@
-"""What a kinematic chain is called, and its inversion with a given link as ground."""
+"""Names of kinematic chains, and of their inversions with a given link as ground."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WORDS = {
     9: "nine",
     10: "ten",
 }
-#: Joints around a loop of four links, smallest turn of the letters first.
+#: Joints around a loop of four links, in the lexicographically smallest rotation.
 _FOUR_LINK = {
     "RRRR": "four-bar chain",
     "RRRP": "slider-crank chain (RRRP)",
@@ -37,12 +37,12 @@ _FOUR_LINK = {
     "PPPP": "four-link chain (PPPP)",
 }
 _WATT, _STEPHENSON = "EgMo", "EbEg"  # graph6
-_MOST_WAYS = 500  # of drawing multiple pins apart; more leave a chain without a name
+_MOST_WAYS = 500  # ways to separate multiple pins; with more, a chain has no name
 
 
 @dataclass(frozen=True, kw_only=True)
 class EightLinkChain:
-    """One of the sixteen chains of eight links with one freedom, by Linkwork's own numbering."""
+    """One of the sixteen eight-link chains with one freedom, in Linkwork's numbering."""
 
     number: int
     quaternary: int
@@ -53,7 +53,7 @@ class EightLinkChain:
 
     @property
     def name(self) -> str:
-        """Number and links: there is no name that everybody uses."""
+        """Number and links: there is no standard name."""
         kinds = ((self.quaternary, "quaternary"), (self.ternary, "ternary"))
         more = " and ".join(f"{count} {kind}" for count, kind in kinds if count)
         return f"eight-link chain no. {self.number} of 16 ({more} links)"
@@ -61,19 +61,17 @@ class EightLinkChain:
 
 @cache
 def eight_link_chains() -> tuple[EightLinkChain, ...]:
-    """The table of all of them."""
+    """The table of all eight-link chains."""
     text = Path(__file__).with_name("eight_link_chains.toml").read_text(encoding="utf-8")
     return tuple(EightLinkChain(**entry) for entry in tomllib.loads(text)["chain"])
 
 
 def chain_name(chain: Chain) -> str:
-    """The name of a chain, whatever link is its ground.
+    """The name of a chain, independent of its ground.
 
-    Notes
-    -----
-    Pins in slots count as blocks, see :meth:`Chain.with_blocks`. A chain with multiple pins has
-    the name of the chain of simple joints that it degenerates from if there is only one such
-    chain. Prismatic joints of a chain with more than four links are counted behind its name.
+    Notes ----- Pins in slots count as blocks, see :meth:`Chain.with_blocks`. A chain with multiple
+    pins has the name of the chain of simple joints that it degenerates from if that chain is
+    unique. Prismatic joints of a chain with more than four links are counted after its name.
     """
     # names are those of chains of lower pairs: a pin in a slot counts as a block
     whole = chain.with_blocks()
@@ -95,7 +93,7 @@ def chain_name(chain: Chain) -> str:
     sliding = sum(joint.kind is JointKind.PRISMATIC for joint in whole.joints)
     if name is None:
         freedom = "" if whole.mobility == 1 else f" with {whole.mobility} degrees of freedom"
-        if whole.mobility < 1:  # and more in truth, or it would be no mechanism
+        if whole.mobility < 1:  # but its actual mobility is larger
             freedom += " by Grübler's count"
         name = "five-bar chain" if count == 5 and letters == "RRRRR" else plain + freedom
     parts = [name]
@@ -105,13 +103,12 @@ def chain_name(chain: Chain) -> str:
 
 
 def inversion_name(chain: Chain) -> str | None:
-    """What fixing the ground link makes of a chain, where that has a name of its own.
+    """The name of the inversion with the given ground, if it has one.
 
     Watt II has a ternary ground, Watt I a binary one. Stephenson III has a ternary ground;
-    Stephenson I a binary one between the two ternary links, Stephenson II one of the two binary
-    links that follow each other. Of the double-slider chain, the elliptic trammel has the link
-    with two sliding joints as ground, the Scotch yoke one with one, Oldham's coupling that with
-    none.
+    Stephenson I a binary one between the two ternary links, Stephenson II one of two adjacent
+    binary links. The double-slider chain with ground at the link with two sliding joints is the
+    elliptic trammel, with one sliding joint the Scotch yoke, with none Oldham's coupling.
 
     References
     ----------
@@ -139,9 +136,9 @@ def inversion_name(chain: Chain) -> str | None:
 
 
 def loop_letters(chain: Chain) -> str | None:
-    """The kinds of joints around a chain that is one loop, beginning with the longest row of R.
+    """The kinds of joints around a single-loop chain, beginning with the longest sequence of R.
 
-    Up to five joints read alike in both directions.
+    With up to five joints both directions give the same letters.
     """
     start = chain.links[0]
     joints: list[Joint] = []
@@ -157,7 +154,7 @@ def loop_letters(chain: Chain) -> str | None:
     if len(joints) != len(chain.links):
         return None
     row = "".join(joint.kind.letter for joint in joints)
-    return max(row[k:] + row[:k] for k in range(len(row)))  # R is behind P in the alphabet
+    return max(row[k:] + row[:k] for k in range(len(row)))  # R follows P in the alphabet
 
 
 def _family(chain: Chain) -> str | None:
@@ -180,7 +177,7 @@ def _family(chain: Chain) -> str | None:
 
 
 def _degenerate_family(chain: Chain) -> str | None:
-    """The chain that multiple pins come from when joints of one link move together, if unique."""
+    """The chain whose joints coincide in the multiple pins, if it is unique."""
     if chain.simple or chain.mobility != 1 or len(chain.links) not in (6, 8):
         return None
     ways = 1
@@ -199,7 +196,7 @@ def _degenerate_family(chain: Chain) -> str | None:
 
 
 def _drawn_apart(joint: Joint) -> Iterator[tuple[Joint, ...]]:
-    """Every set of simple joints that a pin of k links can stand for: the trees of its links."""
+    """All sets of simple joints equivalent to a pin of k links: the trees of its links."""
     count = len(joint.links)
     if count == 2:
         yield (joint,)

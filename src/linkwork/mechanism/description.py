@@ -1,4 +1,4 @@
-"""What every form of a mechanism has in common."""
+"""The base class of the three forms of a mechanism."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Problems(list[Problem]):
 
 @dataclass(frozen=True, kw_only=True)
 class Description:
-    """A mechanism as it was described: immutable, comparable, in the file's own units.
+    """The description of a mechanism: immutable, comparable, in file units.
 
     Parameters
     ----------
@@ -61,19 +61,19 @@ class Description:
     angle : AngleUnit
         Unit of every angle.
     dimensions : Mapping[str, number or formula]
-        Named numbers, usable wherever a number is.
+        Named numbers, usable in place of numbers.
     inputs : tuple of Input
-        What is driven; several move in lock-step.
+        The driven quantities; several inputs move together.
     trace : tuple of str
-        Points whose path is drawn.
+        Points whose paths are drawn.
     outputs : Mapping[str, str]
         Named formulas of unknowns, dimensions and point coordinates (``A.x``).
     source : str
-        Where the mechanism comes from.
+        The source of the mechanism.
     family : str
-        The kind of mechanism it is listed with.
+        The heading in lists of mechanisms.
     configuration : str
-        The name of the configuration or branch to start from instead of the guess.
+        The configuration or branch to start from instead of the guess.
 
     Raises
     ------
@@ -109,7 +109,7 @@ class Description:
 
     @cached_property
     def numbers(self) -> Numbers:
-        """Every named dimension as a number, and the evaluation of further formulas."""
+        """All named dimensions as numbers, with evaluation of further formulas."""
         return Numbers(self.dimensions, self.angle)
 
     def with_dimensions(self, changes: Mapping[str, Number]) -> Self:
@@ -156,7 +156,7 @@ class Description:
         return replace(self, inputs=(changed,))
 
     def speed(self, which: Input) -> float | None:
-        """The speed of an input in its own unit per second, if it has one."""
+        """The speed of an input in its unit per second, if given."""
         if which.speed is None:
             return None
         return speed_per_second(which.speed, which.drives[0], self.numbers, self.length)
@@ -164,7 +164,7 @@ class Description:
     def check_common(self, problems: Problems, named: Iterable[tuple[Key, str]]) -> None:
         """Checks shared by all forms: names, dimensions, inputs.
 
-        ``named`` lists what the form names besides: key path and name.
+        ``named`` lists further names of the form: key path and name.
         """
         taken: dict[str, str] = {}
         for key, name in (*named, *declared("dimensions", self.dimensions)):
@@ -183,7 +183,7 @@ class Description:
     def rows(self, which: Input) -> Array:
         """The table's values of one input, in the file's unit, shape (rows,).
 
-        An input whose range is one value is held there: one row, whatever the others have.
+        An input with a range of one value is constant and has one row, unlike the others.
         """
         start, stop, step = self._range(which)
         if start == stop:
@@ -204,7 +204,7 @@ class Description:
         return start, stop, step
 
     def falls(self, which: Input) -> bool:
-        """Whether an input is driven towards smaller values: by its speed, else by its table."""
+        """Whether the input decreases, according to its speed or else its table."""
         speed = self.speed(which)
         start, stop, _ = self._range(which)
         return speed < 0 if speed is not None else stop < start
@@ -225,7 +225,7 @@ class Description:
 
 
 def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:
-    """Key path and name of everything that the keys of a table name."""
+    """Key path and name for all keys of a table."""
     return (((table, name), name) for name in names)
 
 
@@ -254,7 +254,7 @@ def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) 
 
 
 def _reads_as(name: str, folded: str) -> bool:
-    """Whether a formula can use the name: ``iθ`` is i*θ there, ``x²`` is x^2."""
+    """Whether formulas can use the name: they read ``iθ`` as i*θ, ``x²`` as x^2."""
     if folded in RESERVED:
         return True
     try:
@@ -274,7 +274,7 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
     lengthy = which.drives[0] in ("slider", "cylinder")
     missing = [field for field, number in fields if number is None]
     if missing == ["step"] and amounts[0] == amounts[1]:
-        missing = []  # held at one value
+        missing = []  # constant
     if lengthy and missing:
         problems.add((*key, missing[0]), "is missing: an input length has no natural range")
     if (lengthy and missing) or any(amount != amount for amount in amounts):  # NaN
@@ -291,5 +291,5 @@ def _check_speed(description: Description, which: Input, key: Key, problems: Pro
     try:
         description.speed(which)
     except ExpressionError as error:
-        if not description.numbers.wrong:  # else the cause may be a dimension, reported already
+        if not description.numbers.wrong:  # else the cause is a dimension, reported already
             problems.add(key, error.message)

@@ -1,4 +1,4 @@
-"""Named dimensions: numbers and formulas of each other, resolved in the right order."""
+"""Named dimensions: numbers and formulas of other dimensions, evaluated in order."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from linkwork.foundation.plain_numbers import as_told, plain_number
 
 __all__ = ["Number", "Numbers"]
 
-#: Wherever a number is expected, a formula of the named dimensions may stand.
+#: A number, or a formula of the named dimensions.
 Number = float | int | str
 _LONGEST_CHAIN = 200
 Report = Callable[[Iterable[str | int], str], None]
 
 
 class Numbers:
-    """The dimensions of a mechanism as numbers; call it to evaluate any further number.
+    """The dimensions of a mechanism as numbers; a call evaluates a number or formula.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Numbers:
             self._resolve(name, given, [])
 
     def __call__(self, number: Number) -> float:
-        """The number meant by a number or formula.
+        """The value of a number or formula.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class Numbers:
             report(("dimensions", self.spelling[name]), message)
 
     def check_number(self, report: Report, key: Iterable[str | int], number: Number) -> float:
-        """The number, or NaN after reporting why there is none."""
+        """The number, or NaN after reporting a problem."""
         try:
             return self(number)
         except ExpressionError as error:
@@ -75,7 +75,7 @@ class Numbers:
             return math.nan
 
     def _depends_on_wrong(self, number: Number) -> bool:
-        """Whether the cause is a dimension that was reported already."""
+        """Whether the cause is a dimension reported already."""
         try:
             used = {node.name for node in names_in(parse(str(number)))}
         except ExpressionError:
@@ -92,9 +92,9 @@ class Numbers:
             return
         if name in chain:
             cycle = [self.spelling[n] for n in [*chain[chain.index(name) :], name]]
-            self.wrong[name] = "is defined by itself: " + " → ".join(cycle)
+            self.wrong[name] = "is defined in terms of itself: " + " → ".join(cycle)
             return
-        # this resolver recurses: Python's limit must not be reached
+        # the evaluation is recursive: stay below Python's limit
         if len(chain) > _LONGEST_CHAIN:
             self.wrong[name] = f"depends on a chain of more than {_LONGEST_CHAIN} dimensions"
             return

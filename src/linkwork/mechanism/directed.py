@@ -1,4 +1,4 @@
-"""Wheels, cams and grounds of one point get a mark, which shows how they are turned."""
+"""Marks: second points that give one-point wheels, cams and grounds a direction."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ __all__ = ["directed", "named_in"]
 
 
 def directed(linkage: Linkage) -> Linkage:
-    """The linkage whose wheels, cams and ground have a direction: those of one point get a mark.
+    """The linkage with a mark on every wheel, cam and ground of one point.
 
-    A mark is a second point. In the sketch it lies beside the first one in the direction of the x
-    axis, from which the angle of a link of one point is counted: all angles stay what they are.
+    A mark is a second point. In the sketch it lies from the first one in the direction of the x
+    axis, from which the angle of a one-point link is measured, so no angle changes.
     """
     blocks = {slider.link for slider in linkage.of(Slider)}
     bare = [
@@ -42,7 +42,7 @@ def directed(linkage: Linkage) -> Linkage:
 
 
 def _size(linkage: Linkage, link: str) -> float:
-    """The radius of a wheel or of a cam's base circle, else the largest extent of a link."""
+    """The radius of a wheel or a cam's base circle, otherwise the largest extent of a link."""
     for part in linkage.parts:
         size = part.size_of(link, linkage)
         if size is not None:
@@ -59,7 +59,7 @@ def _sum(x: Number, size: float) -> Number:
 
 
 def named_in(linkage: Linkage) -> Iterator[str]:
-    """Every name that a linkage uses."""
+    """All names used in a linkage."""
     yield from linkage.points
     yield from linkage.links
     yield from linkage.dimensions

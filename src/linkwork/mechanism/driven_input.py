@@ -1,4 +1,4 @@
-"""An input of a mechanism: what is driven, and over which values."""
+"""An input of a mechanism: the driven quantity and its range."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Input:
 
     @property
     def drives(self) -> tuple[str, str]:
-        """``(kind, name)`` of what is driven; ``("", "")`` if nothing is named."""
+        """``(kind, name)`` of the driven quantity; ``("", "")`` if none is named."""
         for kind in ("link", "joint", "slider", "cylinder", "variable"):
             name: str | None = getattr(self, kind)
             if name is not None:

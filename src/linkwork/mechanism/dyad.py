@@ -1,7 +1,7 @@
-"""Dyads: two links that are held by parts that move as the input says.
+"""Dyads: pairs of pinned links whose outer joints are on parts of known position.
 
-The pin between them passes the force on. A structure is looked through from ground and the driven
-links on; what is no chain of dyads is left out.
+The pin between the links transmits the force. The search starts from ground and the driven links;
+structures that are not chains of dyads are skipped.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ class Dyad:
     Parameters
     ----------
     pin : str
-        The point that both carry.
+        The point on both links.
     links : (str, str)
-        The link that drives, and the one that is driven: found last to hold on to ground.
+        The driving link and the driven link.
     arms : (str, str)
-        For each link the point by which it is held; of a link that slides, "".
+        The outer point of each link; "" for a sliding link.
     guide : Guide, optional
-        What the second link slides along.
+        The guide of the second link, if it slides.
     """
 
     pin: str
@@ -56,7 +56,7 @@ def dyads_of(skeleton: Skeleton) -> tuple[Dyad, ...]:
 
 
 def _driven(skeleton: Skeleton) -> Iterator[str]:
-    """Links that an input drives: about a pin on ground, or along a line of ground."""
+    """Links driven by an input: about a pin on ground, or along a line of ground."""
     fixed = set(skeleton.fixed)
     for part in skeleton.driven:
         if part.kind == "link" and part.pivot in fixed:
@@ -85,7 +85,7 @@ def _pinned(one: Bar, other: Bar, pin: str, held: set[str]) -> Iterator[Dyad]:
 def _sliding(
     guides: Sequence[Guide], link: Bar, block: Bar, pin: str, known: set[str], held: set[str]
 ) -> Iterator[Dyad]:
-    """A link and the block that it moves along a line of a known body."""
+    """A link and the block it moves along a line of a known body."""
     arms = [p for p in link.points if p in held]
     mine = [g for g in guides if g.link == block.name and g.block and g.on in known]
     if len(arms) == 1 and mine and not set(block.points) & held:

@@ -1,4 +1,4 @@
-"""Geometric figures that parts are drawn as: discs, contours and guides."""
+"""Geometric figures of parts: discs, contours and guides."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwork.foundation.names import GROUND
 
 __all__ = ["Contour", "Disc", "Figure", "Guide", "Mesh", "Outlines"]
 
-#: Body, centre and points about it in the body's frame of every outline, by name.
+#: For every outline, by name: body, centre, and points relative to it in the body's frame.
 Outlines = Mapping[str, tuple[str, str, Iterable[complex]]]
 
 
@@ -18,8 +18,8 @@ Outlines = Mapping[str, tuple[str, str, Iterable[complex]]]
 class Figure:
     """A figure of a part.
 
-    ``over`` tells that it is drawn over the links, not under them; ``shown_again`` that it is
-    drawn in further positions of a motion too.
+    ``over``: drawn over the links, not under them; ``shown_again``: also drawn in further positions
+    of a motion.
     """
 
     over: ClassVar[bool] = False
@@ -29,32 +29,32 @@ class Figure:
 
     @property
     def pins(self) -> tuple[str, ...]:
-        """Points that are drawn as pins, however few links they are on."""
+        """Points always drawn as pins, regardless of the number of their links."""
         return ()
 
     @property
     def ends(self) -> tuple[str, ...]:
-        """Points to which the figure is fastened."""
+        """Points to which the figure is attached."""
         return ()
 
     @property
     def laid_by(self) -> tuple[str, ...]:
-        """Points of the ground that only tell where the figure lies."""
+        """Ground points that only locate the figure."""
         return ()
 
     @property
     def travelling(self) -> tuple[str, ...]:
-        """Points whose whole travel belongs to the picture."""
+        """Points whose whole path must be inside the picture."""
         return ()
 
     @property
     def extent(self) -> tuple[str, ...]:
-        """Points up to which the figure reaches where no motion tells it."""
+        """Points that give the extent of the figure without a motion."""
         return ()
 
     @property
     def turns_with(self) -> tuple[str, str] | None:
-        """The two points whose line the figure turns with."""
+        """The two points whose line rotates with the figure."""
         return None
 
 
@@ -62,8 +62,8 @@ class Figure:
 class Disc(Figure):
     """A round part of a link about one of its points.
 
-    ``kind`` is gear, pulley, wheel or roller; a ``ring`` has what it touches inside. ``teeth`` is
-    their number, if it is known.
+    ``kind`` is gear, pulley, wheel or roller; a ``ring`` surrounds its partner. ``teeth`` is the
+    number of teeth, if known.
     """
 
     link: str
@@ -79,7 +79,7 @@ class Disc(Figure):
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """What it shares with the same wheel in another mesh: radii from teeth are rounded."""
+        """A key equal for the same wheel in another mesh: radii from teeth are rounded."""
         return (self.link, self.center, f"{self.radius:.9g}")
 
 
@@ -94,7 +94,7 @@ class Mesh(Figure):
 class Contour(Figure):
     """An outline of a link: points about its ``center`` in the link's frame.
 
-    ``filled`` tells a body from a line on a body.
+    ``filled`` marks a body; otherwise it is a line on a body.
     """
 
     shown_again: ClassVar[bool] = True
@@ -114,8 +114,8 @@ class Contour(Figure):
 class Guide(Figure):
     """A slider or slot: ``point`` runs along the line through two points of the body ``on``.
 
-    ``offset`` is the distance of ``point`` to the left of the line. ``block`` tells a sliding
-    block (prismatic joint) from a pin in a slot; ``link`` is the one that slides.
+    ``offset`` is the distance of ``point`` to the left of the line. ``block`` marks a sliding
+    block (prismatic joint), otherwise a pin in a slot; ``link`` is the sliding link.
     """
 
     point: str

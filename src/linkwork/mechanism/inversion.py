@@ -21,7 +21,7 @@ from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["inverted", "settled"]
 
-#: What a linkage may hold and still be inverted; anything else might refer to the old ground.
+#: Fields that inversion supports; others might refer to the old ground.
 _CARRIED = frozenset(
     {
         "points",
@@ -41,7 +41,7 @@ Coordinates = tuple[Number, ...]
 
 
 def settled(linkage: Linkage, places: Places) -> Linkage:
-    """The linkage with an assembled position as its sketch; measured lengths stay what they were.
+    """The linkage with an assembled position as its sketch; measured lengths do not change.
 
     Parameters
     ----------
@@ -61,10 +61,10 @@ def settled(linkage: Linkage, places: Places) -> Linkage:
 def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = None) -> Linkage:
     """The linkage with another link as ground; the old ground becomes the link ``frame``.
 
-    The new ground's first point is the origin, its second lies on the positive x axis. Wheels and
-    a ground of one point need a second one for their direction: see :func:`directed`. Every
-    input drives the same relative angle, or the same length, as before, unless ``which`` is given.
-    Outputs keep their meaning: they are rewritten to be seen from the old ground.
+    The new ground's first point is the origin, its second lies on the positive x axis. Wheels and a
+    ground of one point need a second point for their direction: see :func:`directed`. Every input
+    drives the same relative angle, or the same length, as before, unless ``which`` is given.
+    Outputs keep their values: they are rewritten relative to the old ground.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _check_carried(linkage: Linkage) -> None:
 
 @dataclass
 class _Inverting:
-    """One inversion while it is written."""
+    """The construction of one inversion."""
 
     linkage: Linkage
     link: str
@@ -129,7 +129,7 @@ class _Inverting:
         } | dict(own)
         self.fixed = list(linkage.links[self.link])
         fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
-        # angles on the frame are counted from its first two points, in the ground from the x axis
+        # angles on the frame are measured from its first two points, on ground from the x axis
         self.turn = cmath.phase(fixed[second] - fixed[origin])
 
     def _axis(self) -> complex:
@@ -137,13 +137,13 @@ class _Inverting:
         points = self.linkage.links[self.link]
         if len(points) > 1:
             along = self.places[points[1]] - self.places[points[0]]
-        else:  # a block of one point slides along a line
+        else:  # a one-point block slides along a line
             slider = next(s for s in self.linkage.of(Slider) if s.link == self.link)
             along = self.places[slider.line[1]] - self.places[slider.line[0]]
         return along / abs(along)
 
     def done(self, which: Input | None) -> Linkage:
-        """The inversion."""
+        """The inverted linkage."""
         linkage = self.linkage
         frame = self._seen_frame()
         inversion = Inversion(
@@ -172,7 +172,7 @@ class _Inverting:
                 name: inverted_output(linkage, formula, frame)
                 for name, formula in linkage.outputs.items()
             },
-            # points of the new ground stand still and have no path
+            # points of the new ground are fixed and have no path
             "trace": tuple(point for point in linkage.trace if point not in self.fixed),
             # the sketch is an assembled position: it selects the configuration
             "configuration": "",
@@ -190,7 +190,7 @@ class _Inverting:
         )
 
     def _points(self) -> dict[str, Coordinates]:
-        """The new ground exactly, with its length as the file gives it; the rest as a sketch."""
+        """The new ground exactly, with its length as in the file; other points as a sketch."""
         found: dict[str, Coordinates] = {name: (z.real, z.imag) for name, z in self.seen.items()}
         own = self.linkage.links[self.link]
         if len(own) == 2:
@@ -202,7 +202,7 @@ class _Inverting:
         return found
 
     def _lengths(self) -> dict[str, Number]:
-        """All that were given, those measured, and the old ground's from its coordinates."""
+        """Given lengths, measured lengths, and those of the old ground from its coordinates."""
         linkage = self.linkage
         first, *others = ground = linkage.links[GROUND]
         found = {
@@ -215,7 +215,7 @@ class _Inverting:
             length = _distance(linkage, first, point)
             for key in (f"{first} {point}", f"{point} {first}"):
                 given = linkage.lengths.get(key)
-                # a formula keeps the length tied to the dimensions; a number would repeat the
+                # a formula keeps the dependence on dimensions; a number would duplicate the
                 # coordinates
                 if isinstance(given, str) and _same(linkage, given, length):
                     length = given
@@ -223,7 +223,7 @@ class _Inverting:
         return found
 
     def _angles(self) -> dict[str, Number]:
-        """Those given, and the old ground's further points against its first two."""
+        """Given angles, and those of further points of the old ground from its first two."""
         linkage = self.linkage
         first, second, *others = ground = linkage.links[GROUND]
         found = {
@@ -237,13 +237,13 @@ class _Inverting:
 
 
 def _same(linkage: Linkage, given: Number, exact: Number) -> bool:
-    """Whether two lengths differ by rounding only: given ones need to agree to 1e-9 only."""
+    """Whether two lengths agree to rounding; given lengths need only agree to 1e-9."""
     length = linkage.numbers(exact)
     return abs(linkage.numbers(given) - length) <= 4e-16 * length
 
 
 def _measured(linkage: Linkage) -> dict[str, Number]:
-    """Lengths that were measured between sketched points, by their key."""
+    """Lengths measured between sketched points, by key."""
     return {
         " ".join(entry.points): _distance(linkage, *entry.points, measured=entry.length)
         for entry in linkage.shapes.measured
@@ -265,7 +265,7 @@ def _formulas(linkage: Linkage, *points: str) -> bool:
 
 
 def _distance(linkage: Linkage, a: str, b: str, *, measured: float | None = None) -> Number:
-    """The distance of two points; a formula where their coordinates are formulas."""
+    """The distance of two points; a formula if their coordinates are formulas."""
     if _formulas(linkage, a, b):
         (ax, ay), (bx, by) = _texts(linkage, a, b)
         return f"hypot({bx} - {ax}, {by} - {ay})"
@@ -275,7 +275,7 @@ def _distance(linkage: Linkage, a: str, b: str, *, measured: float | None = None
 
 
 def _angle(linkage: Linkage, a: str, vertex: str, b: str) -> Number:
-    """The angle from the ray to ``a`` to that to ``b``, in the file's unit, as a formula if so."""
+    """The angle from the ray to ``a`` to the ray to ``b``, in the file's unit or as a formula."""
     if _formulas(linkage, a, vertex, b):
         (ax, ay), (vx, vy), (bx, by) = _texts(linkage, a, vertex, b)
         return f"atan2({by} - {vy}, {bx} - {vx}) - atan2({ay} - {vy}, {ax} - {vx})"

@@ -1,4 +1,4 @@
-"""Inputs and outputs of an inversion: the same quantities, seen from another ground."""
+"""Inputs and outputs of an inversion: the same quantities relative to another ground."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ class Frame:
     Parameters
     ----------
     ground : str
-        The link that has become the ground.
+        The new ground.
     name : str
-        The name of the old ground now.
+        The link name of the old ground in the inversion.
     origin : str
-        Its first point, from which its angle leads to the second one.
+        Its first point, the origin of its direction.
     place, turn : complex, float
-        Where that point was, and the direction of that angle [rad], in the old ground.
+        Coordinates of that point [length] and that direction [rad] in the old ground.
     """
 
     ground: str
@@ -42,9 +42,9 @@ class Frame:
 def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
     """The input that drives the same relative angle or length.
 
-    The angle of a link against ground was counted from the x axis; now it is counted from the old
-    ground's first two points, so that the table may begin at another number. Where the new ground
-    was driven, the other link is driven against it, the other way round.
+    An angle relative to ground was measured from the x axis; now it is measured from the line of
+    the old ground's first two points, so the table may begin at another number. If the new ground
+    was driven, the other link is driven relative to it in the opposite sense.
     """
     kind, name = which.drives
     # a length between two links is the same from every ground
@@ -64,7 +64,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
     other = frame.name if against == GROUND else against
     speed = linkage.speed(which)
     if link == frame.ground:
-        # the old ground turns the other way round, seen from the driven link
+        # relative to the driven link, the old ground turns in the opposite direction
         back = None if speed is None else -speed
         against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
         return _ranged(linkage, against_it, -1.0, turn)
@@ -97,7 +97,7 @@ def _shifted(number: Number, sign: float, shift: float) -> Number:
 
 
 def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
-    """A formula with the same value: angles and coordinates as seen from the old ground."""
+    """A formula of the same value: angles and coordinates relative to the old ground."""
     turn = linkage.angle.from_radians(frame.turn)
     angles = {canonical(name): name for name in linkage.links if name != GROUND}
     angles |= {canonical(c.angle_name): c.angle_name for c in linkage.of(Cylinder)}
@@ -117,7 +117,7 @@ def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
 
 
 def _coordinate(point: str, axis: str, turn: float, frame: Frame) -> str:
-    """A coordinate in the old ground, turned back from the frame's direction."""
+    """A coordinate in the old ground, rotated from the frame's direction."""
     x, y = f"({point}.x - {frame.origin}.x)", f"({point}.y - {frame.origin}.y)"
     angle = f"({frame.name} - ({turn!r}))"
     if axis == "x":

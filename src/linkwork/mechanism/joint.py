@@ -1,4 +1,4 @@
-"""Joints of a kinematic chain: which links they join, and what they let them do."""
+"""Joints of a kinematic chain: their links and kinds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["Joint", "JointKind"]
 
 @dataclass(frozen=True)
 class JointKind:
-    """What a joint lets its links do: its letter, its freedoms, and what it is called."""
+    """A kind of joint: its letter, number of freedoms and name."""
 
     letter: str
     freedom: int
@@ -23,7 +23,7 @@ class JointKind:
 
     @property
     def lower(self) -> bool:
-        """Whether it is a lower pair: its links touch in a surface, and have one freedom."""
+        """Whether it is a lower pair: surface contact and one freedom."""
         return self in (JointKind.REVOLUTE, JointKind.PRISMATIC)
 
 
@@ -34,16 +34,16 @@ JointKind.PIN_IN_SLOT = JointKind("RP", 2, "pin in slot")
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """A joint of two links, or a pin of more.
+    """A joint of two links, or a multiple pin.
 
     Parameters
     ----------
     name : str
         The point of a pin; otherwise the name of slider, slot or cylinder.
     links : tuple of str
-        Two; a multiple pin has more and counts as one joint less than it has links.
+        Two links, or k > 2 for a multiple pin, which counts as k - 1 joints.
     point : str
-        For a pin in a slot: where the pin is.
+        For a pin in a slot: the point of the pin.
     """
 
     kind: JointKind
@@ -53,9 +53,9 @@ class Joint:
 
     @property
     def count(self) -> int:
-        """How many simple joints it stands for."""
+        """Its number of simple joints."""
         return len(self.links) - 1
 
     def across(self, link: str) -> Iterator[str]:
-        """The links on its other side."""
+        """The other links of the joint."""
         return (other for other in self.links if other != link)

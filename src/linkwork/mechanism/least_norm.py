@@ -1,4 +1,4 @@
-"""Small underdetermined linear systems in plain numbers, or in those of many designs at once."""
+"""Least-norm solutions of small linear systems, of one or many designs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwork.foundation.lanes import Lanes, is_batched
 
 __all__ = ["full_rank", "least_norm"]
 
-_CUT = 1e-12  # relative: smaller singular values count as none
+_CUT = 1e-12  # relative: smaller singular values count as zero
 _REGULAR = 1e-8  # the determinant of the Gram matrix of rows of length 1
 
 
@@ -53,7 +53,7 @@ def full_rank(matrix: Sequence[Sequence[float]], tolerance: float) -> bool:
         return bool(np.linalg.matrix_rank(np.array(matrix), tolerance) == len(matrix))
     a = _stacked(matrix, lanes)
     regular, _, sizes = _regular(a)
-    # then no singular value is below the shortest row times the root of the determinant / m^(m-1)
+    # lower bound of the singular values: shortest row * sqrt(determinant / m^(m-1))
     least = sizes.min(axis=1) * np.sqrt(_REGULAR / len(matrix) ** (len(matrix) - 1))
     full = regular & (least > tolerance)
     others = np.flatnonzero(~full & np.isfinite(a).all((1, 2)))
@@ -76,7 +76,7 @@ def _stacked(matrix: Sequence[Sequence[float]], lanes: Lanes) -> Array:
 
 
 def _regular(a: Array) -> tuple[BoolArray, Array, Array]:
-    """Which lanes have clearly independent rows; all rows with length 1; their lengths."""
+    """Lanes with clearly independent rows; all rows normalised; their lengths."""
     sizes: Array = np.linalg.norm(a, axis=2)
     rows: AnyArray = a / sizes[:, :, None]
     gram = rows @ rows.swapaxes(1, 2)

@@ -1,4 +1,4 @@
-"""Placing the points of one rigid link from distances and angles between them."""
+"""Construction of one rigid link from distances and angles between its points."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Distance:
 
 @dataclass(frozen=True)
 class VertexAngle:
-    """The angle [rad] at ``vertex`` from the ray to ``a`` to that to ``b``, counter-clockwise."""
+    """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``."""
 
     a: str
     vertex: str
@@ -99,7 +99,7 @@ class VertexAngle:
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        # the difference is taken as a rotation: no jump at half a turn
+        # the difference as a rotation has no jump at half a turn
         return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
@@ -118,7 +118,7 @@ Given = Distance | VertexAngle
 
 @dataclass(frozen=True)
 class LinkShape:
-    """Local coordinates, real axis from the first to the second point, and what was measured."""
+    """Local coordinates, real axis from the first to the second point, and measured dimensions."""
 
     local: Mapping[str, complex]
     measured: tuple[Distance, ...] = ()
@@ -126,7 +126,7 @@ class LinkShape:
 
 @dataclass
 class _Placing:
-    """The state while points are placed one by one."""
+    """The state of placing points one by one."""
 
     points: tuple[str, ...]
     sketch: Mapping[str, complex]
@@ -136,7 +136,7 @@ class _Placing:
     measured: list[Distance] = field(default_factory=list)
 
     def distance(self, a: str, b: str, measure: bool) -> float | None:
-        """The given distance, or the sketched one (noted as measured) if asked to measure."""
+        """The given distance, or on request the sketched one, recorded as measured."""
         given = self.distances.get(frozenset((a, b)))
         if given is not None or not measure:
             return given
@@ -148,7 +148,7 @@ class _Placing:
         return length
 
     def direction(self, point: str) -> tuple[str, float] | None:
-        """A placed vertex and the given direction in which it sees ``point``."""
+        """A placed vertex and the given direction from it to ``point``."""
         for v in self.vertices:
             if v.vertex not in self.z:
                 continue
@@ -159,7 +159,7 @@ class _Placing:
         return None
 
     def place_next(self, measure: int) -> bool:
-        """Place one more point from given dimensions and at most ``measure`` measured ones."""
+        """Place one more point from given and at most ``measure`` measured dimensions."""
         for point in self.points:
             if point in self.z:
                 continue
@@ -181,7 +181,7 @@ class _Placing:
         return False
 
     def trilaterated(self, point: str, first: str, second: str) -> complex:
-        """The meeting of two circles, on the side of the sketch."""
+        """The intersection of two circles, on the side of the sketch."""
         r1 = self.distance(first, point, measure=True)
         r2 = self.distance(second, point, measure=True)
         assert r1 is not None
@@ -222,11 +222,11 @@ def place(
     Parameters
     ----------
     points : tuple of str
-        In the link's order; one point gives the trivial shape.
+        In the order of the link; one point gives the trivial shape.
     sketch : Mapping[str, complex]
-        Sketched coordinates: choose between mirror images and supply what is not given.
+        Sketched coordinates: select the mirror image and supply missing dimensions.
     distances, vertices : sequences
-        Given dimensions, all inside this link.
+        Given dimensions of this link.
 
     Raises
     ------
@@ -235,8 +235,8 @@ def place(
 
     Notes
     -----
-    Points are placed one by one where dimensions allow; otherwise all given dimensions and the
-    sketched distances that complete them are solved together by Gauss-Newton.
+    Points are placed one by one if possible; otherwise Gauss-Newton solves all given dimensions
+    together with the sketched distances that complete them.
     """
     if len(points) == 1:
         return LinkShape({points[0]: 0j})
@@ -258,7 +258,7 @@ def place(
         if len(given) > 2 * len(points) - 3:
             raise _contradiction(given, z, points)
         try:
-            with np.errstate(all="ignore"):  # what overflows does not agree, and is reported
+            with np.errstate(all="ignore"):  # overflow counts as disagreement and is reported
                 z, measured = _together(points, sketch, given)
         except np.linalg.LinAlgError:
             raise ShapeError("no link has these dimensions near the sketch") from None
@@ -268,7 +268,7 @@ def place(
 def _base(
     points: tuple[str, ...], distances: Sequence[Distance], vertices: Sequence[VertexAngle]
 ) -> tuple[str, str]:
-    """The pair placed first: the link's own first two points unless others are better known."""
+    """The pair placed first: the link's first two points unless others have a given distance."""
     given = {frozenset(d.points) for d in distances}
     first = (points[0], points[1])
     if frozenset(first) in given or not given:
@@ -300,7 +300,7 @@ def _contradiction(
 def _together(
     points: tuple[str, ...], sketch: Mapping[str, complex], given: Sequence[Given]
 ) -> tuple[dict[str, complex], list[Distance]]:
-    """All dimensions at once, from the sketch, completed by measured distances."""
+    """Solve all dimensions together from the sketch, completed by measured distances."""
     rows: list[Given] = list(given)
     measured: list[Distance] = []
     placed = {p: sketch[p] for p in points}
@@ -329,9 +329,9 @@ def _together(
 def _gauss_newton(
     z: dict[str, complex], rows: Sequence[Given], steps: int, first: int = _FIRST_STEPS
 ) -> dict[str, complex]:
-    """Points at which no row has an error, or where the last step led.
+    """Points that satisfy all rows, or the result of the last step.
 
-    Of many designs those that are not done after ``first`` steps go on by themselves.
+    Designs that have not converged after ``first`` steps continue separately.
     """
     count = len(z)
     for k in range(steps):
@@ -339,7 +339,7 @@ def _gauss_newton(
         done = largest(abs(error) for error in errors) <= 1e-14
         if everywhere(done):
             break
-        # in a family most designs need few steps: the rest goes on alone
+        # in a family most designs need few steps: the others continue separately
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
         step = least_norm(_slopes(z, rows), errors)
@@ -353,7 +353,7 @@ def _gauss_newton(
 def _gone_on(
     z: Mapping[str, complex], rows: Sequence[Given], steps: int, rest: Rest
 ) -> dict[str, complex]:
-    """Further steps of the designs that are not done."""
+    """Further steps of the designs that have not converged."""
     own = {point: rest.narrow(place) for point, place in z.items()}
     try:
         found = _gauss_newton(own, [row.narrow(rest) for row in rows], steps, first=steps)
@@ -363,7 +363,7 @@ def _gone_on(
 
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
-    """Derivatives of the rows' errors by all coordinates, x first, then y: rows of 2n."""
+    """Derivatives of the rows' errors with respect to all coordinates, x then y: rows of 2n."""
     first = next(iter(z.values()))
     # central differences: truncation ~h² and rounding ~eps/h are then both about 1e-9 or less
     h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)

@@ -1,4 +1,4 @@
-"""The exact shape of every link from its lengths and angles; the sketch decides sides.
+"""The exact shape of every link from its lengths and angles; the sketch selects sides.
 
 A link of n points has 2n - 3 dimensions. Those not given are measured between the sketched points
 and reported; more than 2n - 3 must agree.
@@ -16,11 +16,11 @@ from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, Verte
 
 __all__ = ["link_shapes"]
 
-_AGREE = 1e-9  # relative; given dimensions that say the same thing must agree to this
+_AGREE = 1e-9  # relative tolerance of redundant dimensions
 
 
 def link_shapes(linkage: Bodies, problems: Problems) -> Shapes:
-    """Shapes of all links; what contradicts itself is added to ``problems``."""
+    """Shapes of all links; contradictions are added to ``problems``."""
     local: dict[str, Mapping[str, complex]] = {}
     measured: list[Measured] = []
     lengths = {tuple(key.split()): number for key, number in linkage.lengths.items()}
@@ -61,7 +61,7 @@ def _by_point(table: Mapping[tuple[str, ...], object]) -> dict[str, list[tuple[s
 def _inside(
     by_point: Mapping[str, list[tuple[str, ...]]], points: tuple[str, ...]
 ) -> list[tuple[str, ...]]:
-    """The keys whose points all lie on one link, in the order of its points."""
+    """The keys whose points all lie on one link, in the order of that link."""
     own = set(points)
     return [key for point in points for key in by_point.get(point, ()) if own.issuperset(key)]
 
@@ -73,7 +73,7 @@ def _key_of(error: ShapeError, link: str) -> tuple[str, ...]:
 def _check_ground(
     sketch: Mapping[str, complex], distances: list[Distance], vertices: list[VertexAngle]
 ) -> None:
-    """Ground coordinates are exact: a dimension that disagrees is an error."""
+    """Report ground dimensions that disagree with the exact coordinates."""
     named: dict[complex, str] = {}
     varying: list[str] = []
     for point, place_ in sketch.items():

@@ -20,16 +20,16 @@ __all__ = ["GROUND", "Linkage"]
 
 @dataclass(frozen=True, kw_only=True)
 class Linkage(JoinedBodies):
-    """Points, the links that carry them, and what is driven.
+    """Points, links and inputs.
 
-    A pin joint is wherever links share a point. One link is called ``ground`` and stands still.
+    Links that share a point are pinned there. The link ``ground`` is fixed.
 
     Parameters
     ----------
     points : Mapping[str, (x, y)]
-        One assembled position: exact for ground, elsewhere exact or a sketch. Decides sides.
+        One assembled position: exact on ground, elsewhere exact or a sketch that selects sides.
     links : Mapping[str, sequence of str]
-        The points each link carries; its angle runs from the first to the second.
+        The points of each link; its angle is the direction from the first to the second.
     lengths : Mapping[str, number]
         Exact distances, ``"A B"``, between two points of one link.
     angles : Mapping[str, number]
@@ -37,7 +37,7 @@ class Linkage(JoinedBodies):
     sketch : bool
         If true, dimensions are never measured from ``points``.
     slots, sliders, … : tuples of parts
-        One for every table of parts, see :mod:`linkwork.mechanism.part.index`.
+        One field for each table of parts, see :mod:`linkwork.mechanism.part.index`.
     """
 
     def __post_init__(self) -> None:
@@ -74,11 +74,11 @@ class Linkage(JoinedBodies):
 
     @property
     def turning_on_one_point(self) -> frozenset[str]:
-        """Links that one point is enough for: wheels and cams, which have no direction to see."""
+        """Links that may have one point only: wheels and cams."""
         return turning_links(self)
 
     def carriers(self) -> dict[str, list[str]]:
-        """For every point the links and cylinders that carry it, in the file's order."""
+        """The links and cylinders at every point, in the file's order."""
         return carriers(self)
 
 

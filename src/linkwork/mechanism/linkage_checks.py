@@ -1,4 +1,4 @@
-"""What can be wrong with a linkage, found before anything is solved and reported together."""
+"""Checks of a linkage before it is solved; all problems are reported together."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["check_linkage"]
 
-_SMALLEST = 1e-100  # so that squares and quotients of lengths stay numbers
+_SMALLEST = 1e-100  # keeps squares and quotients of lengths finite
 
 
 def check_linkage(linkage: JoinedBodies, problems: Problems) -> None:
-    """Add every problem of the linkage that shows without its links' shapes."""
+    """Add all problems of the linkage that do not depend on link shapes."""
     linkage.check_common(
         problems,
         [
@@ -119,7 +119,7 @@ def _union(linkage: JoinedBodies, other: str, points: Iterable[str]) -> str:
 
 
 def _check_guided_once(linkage: JoinedBodies, problems: Problems) -> None:
-    """A point has one place in a body: on one line of it."""
+    """A body may guide a point along one line only."""
     first: dict[tuple[str, str], str] = {}
     for key, part in linkage.keyed_parts():
         if part.guided is None:
@@ -192,7 +192,7 @@ def _quantity_text(quantity: tuple[str, ...]) -> str:
 def _check_input(
     linkage: JoinedBodies, which: Input, key: Key, problems: Problems
 ) -> tuple[str, ...] | None:
-    """The driven quantity in a comparable form, or ``None`` after reporting."""
+    """The driven quantity in comparable form, or ``None`` after a report."""
     kind, name = which.drives
     if which.relative_to is not None and kind != "link":
         problems.add((*key, "relative_to"), "is used with link only")

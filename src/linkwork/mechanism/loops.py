@@ -16,7 +16,7 @@ __all__ = ["Loops", "PlainEquations"]
 
 @dataclass(frozen=True, kw_only=True)
 class _Equations(Description):
-    """What both forms share: unknowns with a guess, one or several input variables."""
+    """The common base of both forms: unknowns with a guess, one or more input variables."""
 
     guess: Mapping[str, Number] = FrozenDict()
 
@@ -53,13 +53,13 @@ class Loops(_Equations):
     ----------
     loops : Mapping[str, str]
         Complex equations by label: ``"a2*e^(i*θ12) + a3*e^(i*θ13) = d + a4*e^(i*θ14)"``.
-        An angle stands in an exponent, a variable length as a factor; the rest are dimensions.
+        Angles are in exponents, variable lengths are factors; other names are dimensions.
     guess : Mapping[str, number]
         Estimates of all unknowns at one input value.
     points : Mapping[str, str], optional
-        Points as formulas of the same kind; they make the mechanism drawable.
+        Points as formulas of the same kind, for drawings.
     links : Mapping[str, sequence of str], optional
-        Which points to draw as one link; ``ground`` stands still.
+        Points drawn as one link; ``ground`` is fixed.
     """
 
     loops: Mapping[str, str] = FrozenDict()

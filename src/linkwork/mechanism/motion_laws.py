@@ -1,7 +1,7 @@
 """Motion laws of cam followers: rises from 0 to 1 while x goes from 0 to 1.
 
-A law is a polynomial, or given by its acceleration in parts α + A sin(ω t + ψ), which is integrated
-from rest (Norton, Cam Design and Manufacturing Handbook, chapters 3 and 4; VDI 2143).
+A law is a polynomial, or is integrated from rest from accelerations α + A sin(ω t + ψ) (Norton, Cam
+Design and Manufacturing Handbook, chapters 3 and 4; VDI 2143).
 """
 
 from __future__ import annotations
@@ -54,12 +54,12 @@ _ACCELERATIONS: dict[str, tuple[_Accelerated, ...]] = {
     ),
 }
 
-#: The laws by name; a dwell moves nothing.
+#: The laws by name; a dwell has no pieces.
 LAWS = ("dwell", *_ACCELERATIONS, *_POLYNOMIALS)
 
 
 def pieces_of(law: str) -> tuple[Piece, ...]:
-    """The pieces of a law, one after the other."""
+    """The pieces of a law in order."""
     if law == "dwell":
         return (Piece(1.0, (0.0,)),)
     if law in _POLYNOMIALS:

@@ -1,4 +1,4 @@
-"""The numbers of a mechanism that a family can vary, and the names they are asked by."""
+"""The numbers of a mechanism that a family can vary, and their names."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ __all__ = ["Quantity", "quantities", "quantity_named", "with_numbers"]
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a description: the table it stands in, its key there, and its name.
+    """A number of a description: its table, its key in it, and its name.
 
-    ``axis`` is 0 for the x and 1 for the y of a point.
+    ``axis`` is 0 for x and 1 for y of a point.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Quantity:
 
 
 def quantities(description: Description) -> Iterator[Quantity]:
-    """Every number that can vary."""
+    """All numbers that can vary."""
     for name in description.dimensions:
         yield Quantity(name, "dimensions", name)
     if isinstance(description, Loops | PlainEquations):
@@ -62,14 +62,14 @@ def quantities(description: Description) -> Iterator[Quantity]:
 
 
 def quantity_named(description: Description, name: str) -> Quantity:
-    """The number that a name means: ``a2``, ``O2 A``, ``B A P``, ``O4.x`` or ``s16.offset``.
+    """The number with a given name: ``a2``, ``O2 A``, ``B A P``, ``O4.x`` or ``s16.offset``.
 
     The two points of a length may be given in either order.
 
     Raises
     ------
     UnknownNameError
-        With the numbers that there are, those with similar names first.
+        Lists the existing numbers, those with similar names first.
     """
     found = {_folded(quantity.name): quantity for quantity in quantities(description)}
     words = _folded(name).split()

@@ -1,4 +1,4 @@
-"""What a mechanism looks like, without numbers: which points to join, hatch, slide and trace."""
+"""The structure of a drawing without coordinates: bars, rails, pins, figures and traces."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ F = TypeVar("F", bound=Figure)
 
 @dataclass(frozen=True, kw_only=True)
 class Bar:
-    """A rigid link and the points it carries; three or more make a filled polygon."""
+    """A rigid link and its points; three or more form a filled polygon."""
 
     name: str
     points: tuple[str, ...]
@@ -28,8 +28,8 @@ class Bar:
 
 @dataclass(frozen=True, kw_only=True)
 class Rail:
-    """A straight line that points of one body run along; ``name`` is that of the variable that
-    tells how far they are.
+    """A straight line along which points of one body move; ``name`` is the variable of their
+    displacement.
 
     On ground ``along`` is its direction, a unit vector; on a link it runs from the first to the
     second point of ``line``.
@@ -44,9 +44,9 @@ class Rail:
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenPart:
-    """What an input drives: ``kind`` is link, slider or cylinder; ``pivot`` a pin of the link.
+    """The driven part: ``kind`` is link, slider or cylinder; ``pivot`` is a pin of the link.
 
-    ``backwards`` tells that it is driven towards smaller values.
+    ``backwards``: the driven quantity decreases.
     """
 
     kind: str
@@ -57,9 +57,9 @@ class DrivenPart:
 
 @dataclass(frozen=True, kw_only=True)
 class Skeleton:
-    """Everything a picture needs to know besides coordinates.
+    """The data of a picture except coordinates.
 
-    ``fixed`` are the points that stand still, ``pins`` the points where bodies are joined.
+    ``fixed`` are the points on ground, ``pins`` the points where bodies are joined.
     """
 
     fixed: tuple[str, ...] = ()
@@ -97,7 +97,7 @@ class Skeleton:
         )
 
     def of(self, kind: type[F]) -> tuple[F, ...]:
-        """The figures of one kind, besides guides and struts."""
+        """The figures of one kind."""
         return tuple(figure for figure in self.figures if isinstance(figure, kind))
 
     @classmethod
@@ -122,7 +122,7 @@ class Skeleton:
 def _joined_to_blocks(
     links: Mapping[str, tuple[str, ...]], rails: tuple[Rail, ...]
 ) -> Iterator[str]:
-    """Points at which a link that does not slide itself is joined to a block on a rail."""
+    """Points at which a non-sliding link is joined to a block on a rail."""
     for rail in rails:
         for points in links.values():
             on = [point for point in points if point in rail.points]
@@ -130,7 +130,7 @@ def _joined_to_blocks(
 
 
 def _merged(figures: Iterable[Figure]) -> list[Figure]:
-    """Figures with every wheel once, wheels first; its teeth may be told by one mesh only."""
+    """Figures without duplicate wheels, wheels first; teeth may be known from one mesh only."""
     found: dict[tuple[str, str, str], Disc] = {}
     others: list[Figure] = []
     for figure in figures:
@@ -148,7 +148,7 @@ def _merged(figures: Iterable[Figure]) -> list[Figure]:
 
 
 def _bodies(carriers: Mapping[str, list[str]], figures: Iterable[Figure]) -> Mapping[str, int]:
-    """How many bodies meet at each point: links that are welded there are one."""
+    """The number of bodies at each point; links welded there count as one."""
     welded = [joint.point for joint in figures if isinstance(joint, RigidJoint)]
     return {point: len(links) - welded.count(point) for point, links in carriers.items()}
 

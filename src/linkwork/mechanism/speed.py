@@ -13,15 +13,15 @@ _ANGULAR = {"rpm": math.tau / 60.0, "rad/s": 1.0, "deg/s": math.pi / 180.0}  # [
 
 
 def speed_per_second(speed: Number, kind: str, numbers: Numbers, length: str) -> float:
-    """The speed in the mechanism's own unit per second.
+    """The speed in the mechanism's unit per second.
 
     Parameters
     ----------
     speed : number or str
-        A number or formula, which may be followed by a unit.
+        A number or formula, optionally with a unit.
     kind : str
-        What is driven: ``slider`` and ``cylinder`` have a length's speed, ``link`` and ``joint``
-        an angle's, ``variable`` either.
+        The driven kind: ``slider`` and ``cylinder`` have a linear speed, ``link`` and ``joint`` an
+        angular one, ``variable`` either.
     numbers : Numbers
         The dimensions, and the unit of angles.
     length : str
@@ -30,7 +30,7 @@ def speed_per_second(speed: Number, kind: str, numbers: Numbers, length: str) ->
     Raises
     ------
     ExpressionError
-        If the number cannot be read, or the unit does not fit what is driven.
+        If the number cannot be read, or the unit does not fit the driven quantity.
     """
     if not isinstance(speed, str):
         return numbers(speed)

@@ -42,7 +42,7 @@ class Motion:
     Parameters
     ----------
     quantities : Quantities
-        Everything that can be asked for by name.
+        All quantities by name.
     mechanism : str
         The name of the mechanism.
     units : Units
@@ -65,20 +65,20 @@ class Motion:
     status : tuple of Status
         One status per row.
     message : str
-        How many rows have no position, and every limit of the motion with the links in line there.
+        Number of rows without position, and every limit of the motion with its links in line.
     residual, condition : array (N,)
         Largest closure error relative to the longest link; largest condition number of a block.
     iterations : array (N,) of int
         Newton-Raphson iterations.
     certification : tuple of Certification
-        Whether each row is proved, or why not; ``certified`` has it as an array of bool.
+        Proof of each row, or the reason why there is none; ``certified`` is the array of bool.
     radius, unique_within : array (N,)
         For proved rows: a true position lies within ``radius``, and no other within
         ``unique_within`` (largest norm, angles [rad], lengths relative to the longest link).
     branch : tuple of str
         The branch of each row; "" if the row has no position.
     limit : tuple of str
-        ``dead point``, ``change point``, ``maximum of …`` for rows at such a place, otherwise "".
+        ``dead point``, ``change point``, ``maximum of …`` for rows at such an input, otherwise "".
     added : array (N,) of bool
         Rows in addition to the table: limits, and with ``through`` the rows of further branches.
     speed : float, optional
@@ -158,7 +158,7 @@ class Motion:
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            If the name does not exist; lists the nearest names.
         """
         asked = self.quantity(name)
         if asked.group is Group.EVIDENCE:
@@ -174,7 +174,13 @@ class Motion:
         Raises
         ------
         UnknownNameError
-            With the nearest names; for rates by time, with what to add.
+            If the name does not exist, or the rate needs an input speed.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").sweep(step=90).quantity("B.x").unit
+        'mm'
         """
         asked = self.quantities.find(name)
         asked.check_rate(self.speed)
@@ -183,10 +189,22 @@ class Motion:
     def value(self, name: str) -> float:
         """A number of the whole motion: ``motion.value("stroke(s16)")``.
 
+        Parameters
+        ----------
+        name : str
+            ``min(…)``, ``max(…)``, ``mean(…)``, ``stroke(…)``, ``time_ratio(…)``,
+            ``path_length(…)``, ``dwell(…, band)``; the value is in file units, NaN if undefined.
+
         Raises
         ------
         InputError, UnknownNameError
-            If there is none of this name.
+            If the name does not exist.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> round(lw.example("four-bar").sweep().value("stroke(rocker)"), 2)
+        73.78
         """
         asked = self.quantities.find_of_motion(name)
         names = asked.names
@@ -195,12 +213,24 @@ class Motion:
         return float(asked.evaluate(leading, *columns))
 
     def series(self, name: str) -> Series:
-        """A quantity with both derivatives by the leading input.
+        """A quantity with both derivatives with respect to the leading input.
+
+        Parameters
+        ----------
+        name : str
+            A quantity without rate: ``"s16"``, ``"B.x"``.
 
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            If the name does not exist; lists the nearest names.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
+        >>> motion.series("B.x").first.round(3)  # mm/rad
+        array([ 47.402,  -8.004, -33.145, -42.497])
         """
         asked = self.quantities.find(name)
         if asked.group in (Group.EVIDENCE, Group.POINT) or asked.rate is not None:
@@ -216,7 +246,7 @@ class Motion:
         return Series(quantity=asked.own, value=jet.v, first=jet.d1, second=jet.d2)
 
     def own(self, name: str) -> Jet:
-        """One of the mechanism's own quantities by its exact name; see :class:`Solved`."""
+        """A variable of the mechanism by its exact name; see :class:`Solved`."""
         if name in self.inputs and name not in self.links:
             raise self.quantities.unknown(name)
         series = self.series(name)
@@ -229,17 +259,17 @@ class Motion:
 
     @cached_property
     def found(self) -> BoolArray:
-        """Which rows hold a position, shape (N,)."""
+        """Whether a row has a position, shape (N,)."""
         return read_only(np.array([s is Status.CONVERGED for s in self.status], dtype=bool))
 
     @property
     def asked(self) -> BoolArray:
-        """The rows of the input's table, shape (N,): all but those added at limits and around."""
+        """Whether a row is in the input's table, shape (N,); false for added rows."""
         return np.logical_not(self.added)
 
     @property
     def certified(self) -> BoolArray:
-        """Which rows are proved, shape (N,)."""
+        """Whether a row is proved, shape (N,)."""
         return np.array([c is Certification.CERTIFIED for c in self.certification], dtype=bool)
 
     @property
@@ -254,7 +284,13 @@ class Motion:
         Parameters
         ----------
         names : str
-            Quantities and rates; all columns if none is named.
+            Quantities and rates; by default all columns.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").sweep(start=0, stop=90, step=30).table("rocker", "B.x")
+        <Table of 4 rows over crank, 4 columns: crank [deg], rocker [deg], B.x [mm], status>
         """
         return presenter(Motion.table)(self, *names)
 
@@ -281,20 +317,20 @@ class Motion:
         Parameters
         ----------
         names : str
-            Columns, rates and ``residual``, ``iterations``, ``condition`` among them; unknowns
-            and outputs if left out. Points for paths and hodographs, pins for transmission angles.
+            Columns, including rates, ``residual``, ``iterations`` and ``condition``; by default
+            unknowns and outputs. Points for paths and hodographs, pins for transmission angles.
         kind : str
             ``curves``, ``polar``, ``path``, ``hodograph`` or ``transmission``.
         against : str
-            The column to plot over, or ``time``; the leading input if left out.
+            The column of the abscissa, or ``time``; by default the leading input.
         wrapped : bool
-            Show angles over one turn; no line is drawn where they jump.
+            Reduce angles to one turn; no line is drawn where they jump.
         ax : Axes, or a sequence of them, optional
-            Where to draw: one for each panel. A new figure if left out.
+            Existing axes, one for each panel; by default a new figure.
         theme : str
             ``light`` or ``dark``.
         title : str, optional
-            The mechanism's name unless given; "" for none.
+            By default the mechanism's name; "" for none.
 
         Returns
         -------
@@ -304,9 +340,11 @@ class Motion:
         Raises
         ------
         InputError
-            If there is nothing to plot, or what is asked does not go together.
+            If there is nothing to plot, or options exclude each other.
         UnknownNameError
-            For a name that does not exist.
+            If a name does not exist.
+        MissingPackageError
+            If Matplotlib is not installed.
         """
         return presenter(Motion.plot)(
             self,
@@ -326,7 +364,7 @@ class Motion:
         options: Any = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Write the motion to a file that moves: ``motion.animate("crank.html")``.
+        """Write the motion as an animation: ``motion.animate("crank.html")``.
 
         A page (.html) works offline in any browser; films are .gif, .apng, .webp (with Pillow) and
         .mp4 (with ffmpeg). The page of :meth:`linkwork.Mechanism.animate` shows the equations too.
@@ -334,35 +372,35 @@ class Motion:
         Parameters
         ----------
         path : str or Path
-            The suffix chooses the format.
+            The file; its suffix selects the format.
         options : linkwork.viewer.FilmOptions, optional
-            Pictures a second, rows, size of a film.
+            Frames per second, number of positions and size of a film.
         progress : callable, optional
-            Told the share of a film that is done, 0 to 1.
+            Called with the finished fraction of a film, 0 to 1.
 
         Raises
         ------
         InputError
-            If the suffix names no known format, or there is nothing to draw.
+            If the suffix is not a known format, or there is nothing to draw.
         MissingPackageError
-            Without what writes the format.
+            If the package that writes the format is not installed.
         """
         presenter(Motion.animate)(self, path, options=options, progress=progress)
 
     def widget(self) -> Any:
-        """The motion in a notebook, to play and to drag; needs the extra ``notebook``.
+        """The motion as a notebook widget to play and drag; needs the extra ``notebook``.
 
         Returns
         -------
         anywidget.AnyWidget
-            ``row`` is the row that is shown; setting it moves the picture.
+            ``row`` is the displayed row and can be set.
 
         Raises
         ------
         InputError
             If there is nothing to draw.
         MissingPackageError
-            Without anywidget.
+            If anywidget is not installed.
         """
         return presenter(Motion.widget)(self)
 
@@ -375,13 +413,27 @@ class Motion:
 
     @property
     def counts(self) -> Counter[Status]:
-        """How many rows ended in which status."""
+        """Number of rows by status."""
         return Counter(self.status)
 
     def trace(self, point: str) -> ComplexArray:
-        """The path of a point as x + iy, shape (N,), NaN where there is no position.
+        """The path of a point as x + iy, shape (N,), NaN without a position.
 
-        ``motion.trace("B.velocity")`` is its velocity likewise.
+        Parameters
+        ----------
+        point : str
+            A point, or one of its rates: ``"B.velocity"``.
+
+        Raises
+        ------
+        UnknownNameError
+            If the point does not exist, or the rate needs an input speed.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").sweep(start=0, stop=60, step=60).trace("B").round(1)
+        array([136.7+71.1j, 133.9+72.5j])
         """
         own, rate = Rate.split(point)
         own = find_spelling(own, self.points)

@@ -55,13 +55,13 @@ class Certificate:
 
     @property
     def certified(self) -> bool:
-        """Whether everything is proved."""
+        """Whether the position is proved."""
         return self.certification.certified
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonStep:
-    """One iterate of Newton-Raphson; ``step`` is the change that led to the next one."""
+    """One iterate of Newton-Raphson; ``step`` is the change to the next iterate."""
 
     k: int
     unknowns: Mapping[str, float]
@@ -73,8 +73,8 @@ class NewtonStep:
 class NewtonTrail:
     """The iterates of one block of equations, in file units.
 
-    ``residual`` in the steps is the 2-norm of the block's real equations in their own unit,
-    ``step`` the largest weighted change of an unknown.
+    In the steps, ``residual`` is the 2-norm of the block's real equations in their unit, ``step``
+    the largest weighted change of an unknown.
     """
 
     equations: tuple[str, ...]
@@ -92,7 +92,7 @@ class Position:
     Parameters
     ----------
     quantities : Quantities
-        Everything that can be asked for by name.
+        All quantities by name.
     mechanism : str
         The name of the mechanism.
     units : Units
@@ -100,7 +100,7 @@ class Position:
     skeleton : Skeleton
         Links, joints and other parts, for drawings.
     status, message : Status, str
-        How the search ended, and the sentence with its details.
+        The final status, and a sentence with details.
     input : Mapping[str, float]
         Input values.
     input_units : Mapping[str, str]
@@ -144,7 +144,7 @@ class Position:
     steps : tuple of NewtonTrail
         The iterates of every block, with ``with_steps=True``.
     failure : Failure, optional
-        Why there is no position, or why it is not the one nearest to the guess.
+        The reason why there is no position, or not the one nearest to the guess.
 
     Examples
     --------
@@ -201,7 +201,7 @@ class Position:
         Raises
         ------
         UnknownNameError
-            With the nearest names.
+            If the name does not exist; lists the nearest names.
         """
         asked = self.quantities.find(name)
         asked.check_rate(self.speed)
@@ -216,14 +216,14 @@ class Position:
         return float(asked.values(self, self.speed))
 
     def own(self, name: str) -> Jet:
-        """One of the mechanism's own quantities by its exact name; see :class:`Solved`."""
+        """A variable of the mechanism by its exact name; see :class:`Solved`."""
         point, _, axis = name.rpartition(".")
         for table in (self.unknowns, self.links, self.sliders, self.outputs):
             if name in table:
                 value = table[name]
                 break
         else:
-            if point not in self.points:  # an input that is no link
+            if point not in self.points:  # an input that is not a link
                 raise self.quantities.unknown(name)
             value = self.points[point][axis == "y"]
         rates = (self.first.get(name, np.nan), self.second.get(name, np.nan))
@@ -242,7 +242,14 @@ class Position:
         return presenter(Position._repr_html_)(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The position as JSON-ready data: NaN becomes null, the status its member name."""
+        """The position as JSON-ready data: NaN becomes null, the status its member name.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("four-bar").solve(at=60).to_dict()["status"]
+        'CONVERGED'
+        """
         return {
             "mechanism": self.mechanism,
             "units": {"angle": self.units.angle.value, "length": self.units.length},
@@ -307,7 +314,7 @@ def _trail(trail: NewtonTrail) -> dict[str, Any]:
 
 
 def position_summary(position: Position) -> Summary:
-    """Status, unknowns, evidence."""
+    """A summary: status, unknowns, evidence."""
     at = driven_text(position.input, position.input_units)
     head = f"Position of {position.mechanism}" + (f" at {at}" if at else "")
     if not position.status.ok:

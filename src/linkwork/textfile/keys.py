@@ -32,7 +32,7 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Form:
-    """A kind of file: its keys, and the table ``marker`` that tells it from others, if any."""
+    """A kind of file: its keys, and the table ``marker`` that identifies it, if any."""
 
     title: str
     doc: str
@@ -41,7 +41,7 @@ class Form:
 
     @property
     def definition(self) -> str:
-        """Its name among the definitions of the JSON Schema."""
+        """Its name in the definitions of the JSON Schema."""
         return self.title.replace("-", "_").replace(" ", "_")
 
 
@@ -67,7 +67,7 @@ _HEAD = (
     ),
 )
 _DIMENSIONS = Key(
-    "dimensions", Named(Number()), "Named numbers and formulas, usable wherever a number is"
+    "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"
 )
 _OUTPUTS = Key(
     "outputs",
@@ -76,7 +76,7 @@ _OUTPUTS = Key(
 )
 _TRACE = Key(
     "trace",
-    Table((Key("points", _NAME_LIST, "Points whose path is drawn", required=True),)),
+    Table((Key("points", _NAME_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
 )
 _GUESS = Key(
@@ -108,7 +108,7 @@ _DRIVES = (
     *_RANGE,
 )
 _VARIABLE = (
-    Key("variable", Text(), "The name in the equations that is driven", required=True),
+    Key("variable", Text(), "The driven variable of the equations", required=True),
     *_RANGE,
 )
 LINKAGE = Form(
@@ -122,7 +122,7 @@ LINKAGE = Form(
         Key(
             "points",
             Named(ListOf(Number(), "coordinate", 2, 2)),
-            "One assembled position: A = [35, 20]; exact for ground, elsewhere a sketch is enough",
+            "One assembled position: A = [35, 20]; exact on ground, elsewhere a sketch is enough",
             required=True,
         ),
         Key(

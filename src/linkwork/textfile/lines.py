@@ -12,7 +12,7 @@ from linkwork.textfile.tokens import Token, Tokens
 
 __all__ = ["Lines", "Path"]
 
-#: Keys, and from 0 the places in lists: ``("input", 1, "from")``.
+#: Keys, and indices in lists: ``("input", 1, "from")``.
 Path = tuple[str | int, ...]
 _DEEPEST = 8  # keys below are not kept: the format needs four, hostile files have thousands
 
@@ -21,7 +21,7 @@ _DEEPEST = 8  # keys below are not kept: the format needs four, hostile files ha
 class Lines:
     """Line numbers, from 1, of the keys of one file.
 
-    They are looked for when the first one is asked for: most files have no problem.
+    They are computed at the first request, since most files have no problem.
 
     Parameters
     ----------
@@ -38,13 +38,13 @@ class Lines:
 
     @cached_property
     def at(self) -> Mapping[Path, int]:
-        """Line of every key, of every entry of a list, and of every table's first mention."""
+        """Lines of all keys, list entries and first mentions of tables."""
         return _Scanner(self.text.removeprefix("\ufeff").replace("\r\n", "\n")).scanned()
 
     def line(self, path: Sequence[str | int]) -> int:
-        """The line of a key, or of the nearest key around it; of the file itself, 1.
+        """The line of a key, or of the nearest enclosing key; 1 for the file itself.
 
-        A single ``[[input]]`` is found without its place in the list, and a name in any spelling.
+        A single ``[[input]]`` is found without its index, and a name in any spelling.
         """
         for end in range(len(path), 0, -1):
             found = self._exact(tuple(path[:end]))
@@ -76,13 +76,13 @@ def _folded(path: Path) -> Path:
 
 
 class _Scanner:
-    """Walks the tokens of a valid text and notes where each path begins."""
+    """Reads the tokens of a valid text and records where each path begins."""
 
     def __init__(self, text: str) -> None:
         self.tokens = Tokens(text)
         self.k = 0
         self.lines: dict[Path, int] = {}
-        self.counts: dict[Path, int] = {}  # arrays of tables, and how many tables they have
+        self.counts: dict[Path, int] = {}  # number of tables in every array of tables
 
     def scanned(self) -> dict[Path, int]:
         table: Path | None = ()
@@ -104,7 +104,7 @@ class _Scanner:
         return token is not None and token.kind == "sign" and token.text in signs
 
     def skip(self, *signs: str) -> bool:
-        """Step over one of the signs, if it stands here."""
+        """Skip one of the signs, if it is next."""
         if self.is_sign(*signs):
             self.k += 1
             return True
@@ -115,12 +115,12 @@ class _Scanner:
             self.k += 1
 
     def note(self, path: Path | None, token: Token) -> None:
-        """Keep the line of a path and of every table it mentions for the first time."""
+        """Record the line of a path and of tables first mentioned in it."""
         for end in range(1, len(path or ()) + 1):
             self.lines.setdefault((path or ())[:end], self.tokens.line(token.at))
 
     def key(self) -> tuple[str, ...]:
-        """The parts of a dotted key; the cursor ends behind it."""
+        """The parts of a dotted key; moves the cursor past it."""
         parts: list[str] = []
         while (token := self.token) is not None and token.kind in ("string", "word"):
             parts.append(_unquoted(token))
@@ -143,7 +143,7 @@ class _Scanner:
         path = (*path, last)
         if many:
             self.note(path, token)
-            # places in a list are counted from 0
+            # indices in a list count from 0
             self.counts[path] = self.counts.get(path, -1) + 1
             # keys below the header belong to the entry just begun
             path = (*path, self.counts[path])
@@ -153,7 +153,7 @@ class _Scanner:
         return path
 
     def resolved(self, parts: Iterable[str]) -> Path | None:
-        """The path of a header's parents: an array of tables stands for its last table."""
+        """The path of a header's parents: an array of tables means its last table."""
         path: Path = ()
         for part in parts:
             path = self.current((*path, part))
@@ -170,7 +170,7 @@ class _Scanner:
         path = _joined(table, self.key())
         self.note(path, token)
         if not self.skip("="):
-            self.k += 1  # not TOML: go on rather than stand still
+            self.k += 1  # not TOML: skip, to avoid an endless loop
         self.value(path)
 
     def value(self, path: Path | None) -> None:
@@ -207,7 +207,7 @@ class _Scanner:
 
 
 def _joined(table: Path | None, parts: Path) -> Path | None:
-    """The path below a table, or ``None`` where paths are too deep to be kept."""
+    """The path below a table, or ``None`` if paths are too deep to record."""
     if table is None or len(table) + len(parts) > _DEEPEST:
         return None
     return (*table, *parts)

@@ -19,7 +19,7 @@ from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 
 __all__ = ["ReadFile", "check_format", "located_error", "read_bytes", "read_file", "read_text"]
 
-#: Tables and keys on which the meaning of no other table depends.
+#: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
     {"name", "length", "source", "family", "configuration", "input", "trace", "outputs"}
 )
@@ -27,12 +27,12 @@ _LEAVES = frozenset(
 
 @dataclass(frozen=True, kw_only=True)
 class ReadFile:
-    """A mechanism file that was understood, and where its keys stand.
+    """A mechanism file without errors, and the lines of its keys.
 
     Parameters
     ----------
     description : Linkage, Loops or PlainEquations
-        What the file describes.
+        The mechanism described.
     lines : Lines
         From key path to line number.
     name : str
@@ -54,7 +54,7 @@ def read_file(path: Path | str) -> ReadFile:
     Raises
     ------
     MechanismFileError
-        With every problem found: file, line, key and what to do.
+        With every problem found: file, line, key and remedy.
     """
     return read_bytes(bytes_of(Path(path), str(path)), str(path))
 
@@ -86,13 +86,13 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     structure = Structure(data, form)
     problems = list(structure.problems)
     lost = {(key,) for key in structure.lost}
-    # with a table lost on which others depend, the mechanism would report consequences only
+    # if a required table has errors, the mechanism would only report consequences
     if structure.lost <= _LEAVES:
         kept = {key: entry for key, entry in structure.content.items() if key not in structure.lost}
         try:
             description = _description(kept, form)
         except MechanismError as error:
-            # a table with a problem of structure is not reported a second time
+            # a table with a structural problem is not reported twice
             problems += [p for p in error.problems if p.key[:1] not in lost]
         else:
             if not problems:
@@ -107,7 +107,7 @@ def located_error(problems: Iterable[Problem], lines: Lines, name: str) -> Mecha
 
 
 def check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
-    """A file of another format has other rules: nothing else is said about it."""
+    """Reject other formats; further checks do not apply to them."""
     number = data.get("format", FORMAT)
     if type(number) is int and number > FORMAT:
         message = (

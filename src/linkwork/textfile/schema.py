@@ -1,4 +1,4 @@
-"""The JSON Schema of mechanism files, with which editors complete and check."""
+"""The JSON Schema of mechanism files, for completion and checks in editors."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def schema_of(form: Form) -> dict[str, Any]:
 
 
 def schema_text(schema: Mapping[str, Any] | None = None) -> str:
-    """A schema as it is published; that of mechanism files unless given."""
+    """The published text of a schema; by default that of mechanism files."""
     return json.dumps(schema or json_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -75,7 +75,7 @@ def _form(form: Form) -> dict[str, Any]:
 
 
 def _fields(keys: tuple[Key, ...]) -> dict[str, Any]:
-    """A table whose keys are known."""
+    """A table with a fixed set of keys."""
     found: dict[str, Any] = {
         "type": "object",
         "properties": {key.name: _described(key) for key in keys},
@@ -122,7 +122,7 @@ def _schema(kind: Kind) -> dict[str, Any]:
 
 
 def _key_names(words: int) -> dict[str, Any]:
-    """How the keys of a table are written, where they are several names."""
+    """The pattern of keys that consist of several names."""
     if words < 2:
         return {}
     return {"propertyNames": {"pattern": r"^\s*\S+" + r"\s+\S+" * (words - 1) + r"\s*$"}}

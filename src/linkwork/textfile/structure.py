@@ -37,8 +37,8 @@ _LONGEST_SHOWN = 40  # characters of a value in a message
 class Structure:
     """The checked content of a file.
 
-    ``problems`` lists what is wrong; ``lost`` names the top-level tables and keys of which
-    something had to be left out, so that checks of their meaning would blame the wrong place.
+    ``problems`` lists the errors; ``lost`` names the top-level tables and keys with omitted
+    content, for which further checks would report misleading errors.
     """
 
     def __init__(self, data: dict[str, Any], form: Form) -> None:
@@ -70,7 +70,7 @@ class Structure:
     def _unknown_key(self, name: str, present: set[str], known: list[str], path: Path) -> None:
         table = _table_text(path)
         forms = FORMS if self.form in FORMS else ()
-        # a key of another kind of file is no spelling mistake
+        # a key of another kind of file is not a spelling mistake
         others = [form for form in forms if name in _names_in_form(form, path)]
         free = [key for key in known if key not in present]
         if others and not path:
@@ -86,7 +86,7 @@ class Structure:
         self._wrong((*path, name), message, lost)
 
     def _value(self, entry: Any, kind: Kind, path: Path) -> Any:
-        """The entry if it is of its kind, converted; otherwise a problem is noted."""
+        """The entry converted to its kind; a mismatch is recorded as a problem."""
         match kind:
             case Table(keys):
                 return self._sub_table(entry, keys, path)
@@ -131,7 +131,7 @@ class Structure:
         return entry
 
     def _check_number(self, entry: Any, wanted: str, path: Path, text: bool = True) -> None:
-        """A finite number, or ``text`` that is judged later."""
+        """A finite number, or ``text``, which is checked later."""
         if text and isinstance(entry, str):
             return
         # bool is a subclass of int in Python
@@ -181,12 +181,12 @@ class Structure:
 def _finite(number: float) -> bool:
     try:
         return math.isfinite(number)
-    except OverflowError:  # a whole number beyond every float
+    except OverflowError:  # an integer larger than every float
         return False
 
 
 def _names_in_form(form: Form, path: Path) -> set[str]:
-    """The keys that another form has at the same place."""
+    """The keys of another form in the same table."""
     keys: tuple[Key, ...] = form.keys
     for part in (part for part in path if isinstance(part, str)):
         kind = next((key.kind for key in keys if key.name == part), None)
@@ -220,7 +220,7 @@ def _count_text(kind: ListOf) -> str:
 
 
 def _shown(entry: Any) -> str:
-    """A value as it would be written in TOML, cut short."""
+    """A value in TOML notation, shortened."""
     match entry:
         case bool():
             return "true" if entry else "false"

@@ -10,14 +10,14 @@ from linkwork.foundation.names import canonical
 
 __all__ = ["TextEdits"]
 
-#: Keys, and from 0 the places in lists: ``("points", "A", 0)``, ``("input", 0, "from")``.
+#: Keys, and indices in lists: ``("points", "A", 0)``, ``("input", 0, "from")``.
 KeyPath = tuple[str | int, ...]
 
 _BOM = "\ufeff"
 
 
 class TextEdits:
-    """A TOML text that is being changed.
+    """Edits of a TOML text.
 
     Names are found in any spelling (``theta2``, ``θ2``) and the points of a length in either
     order; a single ``[input]`` counts as the first of a list.
@@ -33,49 +33,49 @@ class TextEdits:
 
         self._bom = _BOM if text.startswith(_BOM) else ""
         plain = text.removeprefix(_BOM)
-        # only a file that has CRLF throughout is written so again
+        # CRLF is kept only if the file uses it throughout
         self._line_end = "\r\n" if plain.count("\r\n") == plain.count("\n") > 0 else "\n"
         self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
 
     @property
     def text(self) -> str:
-        """The text as it stands now."""
+        """The current text."""
         written: str = self._document.as_string()
         return self._bom + written.replace("\r\n", "\n").replace("\n", self._line_end)
 
     def has(self, path: KeyPath) -> bool:
-        """Whether something stands at a key path."""
+        """Whether a key path exists."""
         return self._found(path) is not None
 
     def get(self, path: KeyPath) -> Any:
-        """What stands at a key path, as plain data.
+        """The value at a key path, as plain data.
 
         Raises
         ------
         UnknownNameError
-            If there is nothing.
+            If the path does not exist.
         """
         holder, key = self._existing(path)
         entry = holder[key]
         return entry.unwrap() if hasattr(entry, "unwrap") else entry
 
     def keys(self, path: KeyPath) -> list[str]:
-        """The keys of a table, none if it is not there."""
+        """The keys of a table; none if it does not exist."""
         entry = self.get(path) if self.has(path) else {}
         return list(entry) if isinstance(entry, Mapping) else []
 
     def entries(self, table: str) -> Iterator[tuple[int, dict[str, Any]]]:
-        """The entries of a ``[[table]]`` with their places, as plain data."""
+        """The entries of a ``[[table]]`` with their indices, as plain data."""
         if self.has((table,)):
             found = self.get((table,))
             yield from enumerate(found if isinstance(found, list) else [found])
 
     def put(self, path: KeyPath, entry: Any) -> None:
-        """Write a value; a table that is missing is made, comments beside the value are kept."""
+        """Write a value; creates a missing table and keeps comments on the line."""
         place = self._found(path)
         if place is not None:
             holder, key = place
-            # replacing the value in place keeps the comment behind it
+            # replacing the value in place keeps the comment after it
             holder[key] = _as_before(holder[key], entry)
             return
         holder = self._document
@@ -112,12 +112,12 @@ class TextEdits:
         self._document.append(table, rows)
 
     def remove(self, path: KeyPath) -> None:
-        """Take out what stands at a key path, and its table if that is then empty.
+        """Remove the entry at a key path, and its table if that is then empty.
 
         Raises
         ------
         UnknownNameError
-            If there is nothing.
+            If the path does not exist.
         """
         holder, key = self._existing(path)
         del holder[key]
@@ -131,13 +131,13 @@ class TextEdits:
         return found
 
     def _found(self, path: Sequence[str | int]) -> tuple[Any, Any] | None:
-        """The holder of what stands at a path and its own key there."""
+        """The container of an entry, and the entry's key in it."""
         holder: Any = None
         key: Any = None
         entry: Any = self._document
         for part in path:
             if part == 0 and isinstance(entry, Mapping):
-                continue  # the only table of its kind
+                continue  # a single table
             own = _own_key(entry, part)
             if own is None:
                 return None
@@ -155,7 +155,7 @@ class TextEdits:
 
 
 def _own_key(entry: Any, part: str | int) -> Any:
-    """The key of a table, or place of a list, that is meant; ``None`` if there is none."""
+    """The matching key of a table or index of a list; ``None`` if there is none."""
     if isinstance(part, int):
         listed = isinstance(entry, Sequence) and not isinstance(entry, str)
         return part if listed and part < len(entry) else None
@@ -173,7 +173,7 @@ def _own_key(entry: Any, part: str | int) -> Any:
 
 
 def _as_before(old: Any, entry: Any) -> Any:
-    """A whole number stays written as one; a pair keeps what of it is the same."""
+    """Keep integers as integers, and the unchanged coordinate of a pair as written."""
     plain = old.unwrap() if hasattr(old, "unwrap") else old
     if isinstance(entry, float) and isinstance(plain, int) and entry.is_integer():
         return int(entry)

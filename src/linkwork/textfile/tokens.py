@@ -1,7 +1,7 @@
 """The words and signs of a TOML text, in one linear pass that accepts any text.
 
-Up to the first place where a text is not TOML the tokens are exactly TOML's; behind it they are
-arbitrary. So limits can be checked before the parser meets them, and lines found after it.
+Up to the first syntax error the tokens are those of TOML; after it they are arbitrary. This allows
+limits to be checked before parsing, and lines to be found afterwards.
 """
 
 from __future__ import annotations

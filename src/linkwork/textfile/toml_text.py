@@ -13,11 +13,11 @@ from linkwork.textfile.tokens import Token, Tokens
 
 __all__ = ["LARGEST", "bytes_of", "data_of", "text_of"]
 
-#: Bytes of the largest file that is read.
+#: Maximum size of a file [bytes].
 LARGEST = 1_000_000
-_DEEPEST = 20  # brackets inside each other; the format needs three
-_MOST_PARTS = 8  # of a dotted key; the parser's memory grows with their square
-_LONGEST_WORD = 400  # bare keys and numbers: longer numbers are refused by Python itself
+_DEEPEST = 20  # nested brackets; the format needs three
+_MOST_PARTS = 8  # of a dotted key; the parser's memory grows quadratically
+_LONGEST_WORD = 400  # bare keys and numbers: Python itself rejects longer numbers
 _PLACE = re.compile(r" \((?:at line (\d+), column (\d+)|at end of document)\)$")
 _TWICE = re.compile(r"cannot declare \('(.*)'(?:,)?\) twice")
 _SEPARATOR = "', '"
@@ -34,7 +34,7 @@ def bytes_of(path: Path, name: str) -> bytes:
     Raises
     ------
     MechanismFileError
-        If there is no such file, or it cannot be read or is too large.
+        If the file does not exist, cannot be read or is too large.
     """
     try:
         with path.open("rb") as file:
@@ -72,11 +72,11 @@ def text_of(data: bytes, name: str) -> str:
     Raises
     ------
     MechanismFileError
-        If the bytes are too many or no UTF-8.
+        If there are too many bytes, or they are not UTF-8.
     """
     if len(data) > LARGEST:
         _refuse(name, _too_large(len(data)))
-    # byte order marks of UTF-16, as Windows editors write them
+    # byte order marks of UTF-16, written by Windows editors
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         _refuse(name, "is UTF-16 text: save it as UTF-8", 1)
     try:
@@ -96,7 +96,7 @@ def data_of(text: str, name: str) -> dict[str, Any]:
     Raises
     ------
     MechanismFileError
-        If the text is too long, too deeply nested, or no TOML; with line and column.
+        If the text is too long, too deeply nested or not TOML; with line and column.
     """
     if len(text) > LARGEST:
         _refuse(name, _too_large(len(text)))
@@ -112,12 +112,12 @@ def data_of(text: str, name: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         _refuse(name, *_explained(str(error), text))
     except (ValueError, RecursionError, OverflowError) as error:
-        # The limits leave none that is known; the parser may find others.
+        # The limits prevent all known cases; the parser may find others.
         _refuse(name, f"is not TOML: {error}", 1)
 
 
 def _check_limits(tokens: Tokens, name: str) -> None:
-    """Refuse what would cost the parser memory or recursion out of all proportion."""
+    """Reject text that would need excessive memory or recursion in the parser."""
     depth = parts = 0
     previous: Token | None = None
     for token in tokens.all:
@@ -148,7 +148,7 @@ def _explained(message: str, text: str) -> tuple[str, int]:
     if twice := _TWICE.fullmatch(what):
         what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] occurs twice"
     if place is None or place[1] is None:
-        # the parser gives no place for the end of the text: the last line with content is meant
+        # the parser gives no line for the end of the text: use the last line with content
         line = max((k for k, row in enumerate(rows, 1) if row.strip()), default=1)
         return f"is not TOML: {what} (at the end){_hint(what, rows[line - 1], None)}", line
     line, column = int(place[1]), int(place[2])
@@ -157,7 +157,7 @@ def _explained(message: str, text: str) -> tuple[str, int]:
 
 
 def _hint(what: str, row: str, column: int | None) -> str:
-    """What to do about it; empty if there is nothing certain to say."""
+    """The remedy; empty if it is uncertain."""
     if what == "cannot overwrite a value":
         return f": {row.split('=')[0].strip()} is given twice"
     if what.startswith("unclosed"):

@@ -28,8 +28,7 @@ _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 def write_text(description: Description) -> str:
     """The mechanism as a TOML text; reads back as the same description.
 
-    Numbers keep every digit and names their spelling and order; what has its default value is
-    left out.
+    Numbers keep all digits, names their spelling and order; default values are omitted.
     """
     import tomlkit
 
@@ -42,18 +41,18 @@ def write_text(description: Description) -> str:
 
 
 def save(description: Description, path: Path | str) -> None:
-    """Write the mechanism to a file: wholly, or not at all.
+    """Write the mechanism to a file, completely or not at all.
 
     Raises
     ------
     InputError
-        If the file cannot be written; an older file of that name is then unchanged.
+        If the file cannot be written; an existing file is then unchanged.
     """
     save_text(write_text(description), path)
 
 
 def save_text(text: str, path: Path | str) -> None:
-    """Write a text to a file as UTF-8: wholly, or not at all; raises like :func:`save`."""
+    """Write a text to a file as UTF-8, completely or not at all; raises like :func:`save`."""
     target = Path(path)
     try:
         target = target.resolve()
@@ -64,19 +63,19 @@ def save_text(text: str, path: Path | str) -> None:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    """Write beside the target, then rename: readers see the old file or the new one."""
+    """Write a temporary file and rename it: readers see the old file or the new one."""
     beside = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}")
     try:
         with beside.open("xb") as file:
             file.write(data)
             file.flush()
-            # the data must be on the disk before the name points to it
+            # the data must be on disk before the file is renamed
             os.fsync(file.fileno())
         if target.exists():
-            # a new file has the default permissions: those of the old one are kept
+            # keep the permissions of the old file
             beside.chmod(target.stat().st_mode & 0o777)
         os.replace(beside, target)
-    except BaseException:  # also on Ctrl-C no temporary file is left
+    except BaseException:  # remove the temporary file, also after Ctrl-C
         beside.unlink(missing_ok=True)
         raise
 
@@ -97,7 +96,7 @@ def _head(description: Description) -> dict[str, Any]:
 
 
 def _tables(description: Description) -> _Tables:
-    """Every table that has something to say, in the order in which people read."""
+    """All tables that are not empty, in reading order."""
     found: _Tables = {"dimensions": dict(description.dimensions)}
     match description:
         case Linkage():
@@ -120,7 +119,7 @@ def _tables(description: Description) -> _Tables:
             raise TypeError(f"a {type(description).__name__} has no file format")
     found["trace"] = {"points": description.trace} if description.trace else {}
     found["outputs"] = dict(description.outputs)
-    needed = ("guess",)  # the reader asks for it even where there is nothing to guess
+    needed = ("guess",)  # the reader requires it even if there are no unknowns
     return {name: table for name, table in found.items() if table or name in needed}
 
 
@@ -135,7 +134,7 @@ def _input(which: Input) -> dict[str, Any]:
 
 
 def _given(part: Any) -> dict[str, Any]:
-    """What a part says, without fields that are left open or as they are anyway."""
+    """The fields of a part that are given and differ from their defaults."""
     usual = {field.name: field.default for field in fields(part)}
     return {
         key: _rows(entry) if isinstance(entry, tuple) else entry
@@ -145,7 +144,7 @@ def _given(part: Any) -> dict[str, Any]:
 
 
 def _rows(entry: tuple[Any, ...]) -> tuple[Any, ...]:
-    """A list with its tables as the part has them."""
+    """A list of tables in the order of the part."""
     return tuple(_given(each) if is_dataclass(each) else each for each in entry)
 
 
@@ -181,7 +180,7 @@ def _with_entries(table: Any, entries: Mapping[str, Any]) -> Any:
 
 
 def _plain(entry: Any) -> Any:
-    """Lists for tuples, and plain numbers for those of other packages."""
+    """Convert tuples to lists and numbers of other packages to Python numbers."""
     match entry:
         case bool() | str() | int():
             return entry

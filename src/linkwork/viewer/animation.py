@@ -32,7 +32,7 @@ __all__ = [
 #: Formats by suffix.
 ANIMATION_FORMATS = ("html", *FILM_FORMATS)
 
-_LASTING = 4.8  # seconds of a film whose rows are not given
+_LASTING = 4.8  # default duration of a film [s]
 
 
 @dataclass(frozen=True, kw_only=True)

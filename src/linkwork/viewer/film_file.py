@@ -22,8 +22,8 @@ __all__ = ["FILM_FORMATS", "check_film", "film_bytes"]
 #: Formats by suffix.
 FILM_FORMATS = ("gif", "mp4", "apng", "webp")
 
-_COLOURS = 96  # of a GIF: drawings have few
-_FASTEST_GIF = 50  # pictures a second: GIF counts hundredths, and viewers slow faster ones down
+_COLOURS = 96  # colours of a GIF: drawings have few
+_FASTEST_GIF = 50  # frames per second: delays are in 1/100 s, viewers slow down shorter ones
 
 
 def check_film(kind: str, fps: float) -> None:

@@ -20,7 +20,7 @@ __all__ = ["loop_arrows"]
 
 
 def loop_arrows(loops: Sequence[MovingLoop], motion: Motion, pack: Pack) -> Iterator[VectorData]:
-    """Every vector once, head to tail around its loop, in the order that suits the first row."""
+    """Every vector once, head to tail around its loop, in the order chosen for the first row."""
     if not motion.found.any():
         return
     row = int(np.flatnonzero(motion.found)[0])
@@ -50,7 +50,7 @@ def loop_arrows(loops: Sequence[MovingLoop], motion: Motion, pack: Pack) -> Iter
 def _around(
     loop: MovingLoop, row: int, pose: Pose, ways: dict[str, ComplexArray], near: float
 ) -> Iterator[tuple[str, ComplexArray, ComplexArray]]:
-    """Name, tail and tip (N,) of every vector, from where the polygon of a row begins."""
+    """Name, tail and tip (N,) of every vector, beginning at the start of a row's polygon."""
     shown = loop.at(row)
     moving = dict(zip(map(id, (*shown.left, *shown.right)), (*loop.left, *loop.right), strict=True))
     left = set(map(id, shown.left))
@@ -72,7 +72,7 @@ def _around(
 
 
 def _point(place: ComplexArray, ways: dict[str, ComplexArray], near: float) -> int:
-    """The number of the point that is there in every row; -1 if there is none."""
+    """The index of the point at this position in all rows; -1 if there is none."""
     alike = (k for k, way in enumerate(ways.values()) if _together(place, way, near))
     return next(alike, -1)
 

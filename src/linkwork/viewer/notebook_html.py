@@ -41,11 +41,11 @@ __all__ = [
 
 _CLASS = "linkwork-shown"
 _LONGEST, _IN_ROW, _OF_CIRCUIT = 380.0, 230.0, 310.0  # longer sides of pictures [CSS px]
-_LARGER = 1.3  # names, so that they can be read at that size
+_LARGER = 1.3  # enlargement of names, for legibility at that size
 _FAINT = 5  # further positions of a motion
-_MOST = 12  # pictures beside each other
+_MOST = 12  # pictures side by side
 
-# Notebooks have style sheets of their own, for tables above all: these rules go before them.
+# These rules take precedence over the style sheets of notebooks, especially for tables.
 _LAYOUT = """
 .linkwork-shown{display:inline-block;box-sizing:border-box;max-width:100%;padding:12px 16px;
 border-radius:10px;border:1px solid color-mix(in srgb,COLOUR-FAINT 35%,COLOUR-PAGE);
@@ -135,7 +135,7 @@ def _position(
 
 
 def _motion_picture(motion: Motion, within: Box) -> tuple[Scene, Box]:
-    """A motion in its first position, with others faintly, and what that needs of the plane."""
+    """The picture of a motion: its first position, faint further positions, and the box of all."""
     moving = moving_scene(motion, within=within)
     pose = Pose.at_row(motion, int(np.flatnonzero(motion.found)[0]))
     faint = faint_symbols(further_positions(pose, motion, _FAINT), moving.scene.measures)

@@ -48,7 +48,7 @@ def offline_page(page: PageData) -> str:
 
 
 def page_json(page: PageData) -> str:
-    """The data as JSON; what has its usual empty value is kept, so that types hold."""
+    """The data as JSON, including fields with empty default values."""
     return json.dumps(
         page, default=vars, ensure_ascii=False, separators=(",", ":"), allow_nan=False
     )

@@ -1,8 +1,8 @@
-"""Columns of smooth numbers in few bytes: rounded, differenced, and written as short integers.
+"""Compact columns of smooth numbers: rounded, differenced, and written as short integers.
 
-A column of a cycle changes by little from row to row, and its differences by less. Rounded to
-whole multiples of a step, its differences of the order that needs fewest bytes are written as
-zigzag integers in groups of seven bits. The front end adds them up again.
+A column of a cycle changes slowly from row to row, and its differences even less. Values are
+rounded to multiples of a step and differenced; the order that needs the fewest bytes is written as
+zigzag integers in groups of seven bits. The front end sums them.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from linkwork.viewer.page_data import PackedColumn
 
 __all__ = ["Pack", "packed", "shortened", "unpressed"]
 
-#: The ``order`` of a column that holds plain floats, of eight bytes or of four.
+#: The ``order`` of a column of plain floats of eight or four bytes.
 PLAIN, SHORT = -1, -2
 
 _FLOATS = {PLAIN: "<f8", SHORT: "<f4"}
 _RATE_DIGITS = 7
-_BITS = 34  # of the largest value: ten digits
+_BITS = 34  # relative to the largest value: ten digits
 _ORDERS = range(8)
 _LARGEST = 2.0**52
-_LEAST = -1022  # power of two of the smallest number that is written in full
+_LEAST = -1022  # exponent of two of the smallest number written in full
 
 
 class Pack(Protocol):
-    """How a column is written."""
+    """An encoding of a column."""
 
     def __call__(
         self, values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
@@ -41,16 +41,16 @@ class Pack(Protocol):
 def packed(
     values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
-    """A column (N,) of which only the ``found`` rows are kept; what is not finite is no number.
+    """Pack the ``found`` rows of a column (N,); values that are not finite become gaps.
 
     Parameters
     ----------
     values : array (N,)
     found : array (N,) of bool
     step : float, optional
-        What values are rounded to; ten digits of the largest unless given.
+        Rounding step; by default ten digits of the largest value.
     rate : bool
-        A derivative, which grows without bound beside a dead point: seven digits of usual values.
+        A derivative, which is unbounded near a dead point: seven digits of usual values.
     """
     known = np.isfinite(values[found])
     kept = np.where(known, values[found], 0.0)
@@ -73,19 +73,19 @@ def packed(
 def unpressed(
     values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
-    """The same as plain floats: quick to write, and exact."""
+    """Pack a column as plain floats: fast and exact."""
     return _plain(values, found, PLAIN)
 
 
 def shortened(
     values: Array, found: BoolArray, *, step: float | None = None, rate: bool = False
 ) -> PackedColumn:
-    """The same to seven digits, in half the room."""
+    """Pack a column with seven digits, in half the size."""
     return _plain(values, found, SHORT)
 
 
 def _clipped(kept: Array) -> tuple[Array, float]:
-    """Derivatives without the excess beside dead points, and what they are rounded to."""
+    """Derivatives limited near dead points, and their rounding step."""
     size = np.abs(kept)
     largest = float(size.max(initial=0.0))
     usual = min(largest, 1e3 * float(np.median(size))) if len(kept) else 0.0
@@ -100,7 +100,7 @@ def _plain(values: Array, found: BoolArray, order: int) -> PackedColumn:
 
 
 def _smallest(whole: CountArray) -> tuple[int, CountArray]:
-    """The differences that need fewest bytes, and their order."""
+    """The differences that need the fewest bytes, and their order."""
     best, least, order = whole, _length(whole), 0
     for k in _ORDERS[1:]:
         whole = np.diff(whole, prepend=0)
@@ -113,7 +113,7 @@ def _smallest(whole: CountArray) -> tuple[int, CountArray]:
 
 
 def _length(whole: CountArray) -> float:
-    """About how many bytes numbers need."""
+    """The approximate number of bytes of numbers."""
     return float(np.log2(2.0 * np.abs(whole) + 1.0).sum()) / 7 + len(whole)
 
 
@@ -127,7 +127,7 @@ def _bytes(whole: CountArray) -> bytes:
         if not left.any():
             break
     table = np.stack(groups, axis=1)
-    # The last group of a number is its last one that is not zero; the others are marked.
+    # The last nonzero group of a number ends it; the groups before it are marked.
     last = table.shape[1] - 1 - (table[:, ::-1] != 0).argmax(axis=1)
     last[~table.any(axis=1)] = 0
     place = np.arange(table.shape[1])

@@ -43,12 +43,12 @@ __all__ = ["FORMAT", "Loops", "drawn_page", "motion_page"]
 #: Gives the loop equations over a motion.
 Loops = Callable[[Motion], Sequence[MovingLoop]]
 
-#: Of the page data: the front end refuses any other.
+#: Version of the page data; the front end rejects any other.
 FORMAT = 1
 
-_MARGIN = 0.05  # of the drawing, left free around it
-_NOTHING = -400.0  # the exponent of 0: no float is so small
-_COARSE = 0.001  # of a decade: how exactly residuals and radii are kept
+_MARGIN = 0.05  # margin as a fraction of the drawing
+_NOTHING = -400.0  # exponent written for 0, below that of any float
+_COARSE = 0.001  # in decades: precision of residuals and radii
 
 
 def motion_page(
@@ -69,7 +69,7 @@ def motion_page(
     equations : sequence of (str, str)
         Labels and MathML of the loop equations.
     loops : callable, optional
-        Gives the loop equations over a motion, to be shown as vectors;
+        Gives the loop equations over a motion, displayed as vectors:
         ``mechanism.moving_loops``.
     forces : sequence of Force
         Shown as arrows at their points, the same over the whole motion.
@@ -105,10 +105,10 @@ def drawn_page(
     forces: Sequence[Force] = (),
     pack: Pack = packed,
 ) -> PageData:
-    """The data of a page from motions that are drawn already.
+    """The data of a page from drawn motions.
 
-    ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is quick, for a page
-    that is soon renewed, and needs eight times the room.
+    ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is fast, for a page that
+    is replaced soon, but eight times as large.
     """
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
@@ -252,7 +252,7 @@ def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
 
 
 def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
-    """Exponents of what is not negative."""
+    """Exponents of numbers that are not negative."""
     known = np.log10(np.where(values > 0, values, np.nan))
     return pack(np.where(values == 0, _NOTHING, known), motion.found, step=_COARSE)
 

@@ -1,7 +1,7 @@
 """The data for the front end: plain dataclasses from which its TypeScript types are generated.
 
 Every class here becomes an interface of ``frontend/src/page_data.ts`` (``scripts/frontend types``).
-Angles of frames are radians; every other number is in the unit that its column names.
+Angles of frames are in radians; all other numbers are in the unit of their column.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True)
 class PackedColumn:
-    """Numbers of the rows that were found: whole multiples of ``step``, differenced ``order``
-    times, zigzag integers of seven bits a byte, in base64. Order -1: plain floats of eight bytes,
-    the lowest first; -2: of four. ``gaps`` are places among these rows where there is no number, as
-    derivatives at dead points; plain floats have NaN there.
+    """Numbers of the found rows: multiples of ``step``, differenced ``order`` times, as zigzag
+    integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes;
+    -2: of four. ``gaps`` are indices of rows without a number, such as derivatives at dead points;
+    plain floats have NaN there.
     """
 
     step: float
@@ -43,8 +43,8 @@ class PackedColumn:
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """A quantity over the rows: its name as printed, its unit; ``group`` says where it is listed:
-    ``input``, ``unknown``, ``output``, ``derived``.
+    """A quantity over the rows: its printed name and unit; ``group`` is its list: ``input``,
+    ``unknown``, ``output`` or ``derived``.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Column:
 
 @dataclass(frozen=True, kw_only=True)
 class PointData:
-    """A point: its coordinates, their first and second derivatives by the leading input."""
+    """A point: its coordinates and their first and second derivatives with respect to the input."""
 
     name: str
     shown: str
@@ -73,7 +73,7 @@ class PointData:
 
 @dataclass(frozen=True, kw_only=True)
 class TurnData:
-    """The angle [rad] of a link or line that something turns with."""
+    """The angle [rad] of a link or line with which shapes rotate."""
 
     name: str
     angle: PackedColumn
@@ -81,7 +81,7 @@ class TurnData:
 
 @dataclass(frozen=True, kw_only=True)
 class FrameData:
-    """What carries a shape: numbers of a point and of a turn; -1 for none."""
+    """The frame of a shape: indices of a point and of a turn; -1 for none."""
 
     origin: int
     turn: int
@@ -92,8 +92,8 @@ class Part:
     """A shape: ``line``, ``area``, ``disc``, ``strokes`` or ``text``.
 
     ``points`` are x, y, x, y, … in its frame (``frame`` ≥ 0) or in the plane (-1); of a disc its
-    centre, of a text its anchor. A shape of its own course (``frame`` -2) has packed x and y of
-    each corner, and ``shown`` (1 or 0) in every row. Lengths are in the mechanism's unit.
+    centre, of a text its anchor. A deforming shape (``frame`` -2) has packed x and y of each
+    corner, and ``shown`` (1 or 0) in every row. Lengths are in the mechanism's unit.
     """
 
     kind: str
@@ -114,8 +114,8 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class VectorData:
-    """A vector of a loop equation with its name, from one point to another by their numbers. Where
-    it does not lie between points these are -1, and ``course`` has x and y of its tail and tip.
+    """A vector of a loop equation with its name, between two points given by index. If it is not
+    between points, these are -1, and ``course`` has x and y of its tail and tip.
     """
 
     name: str
@@ -127,7 +127,7 @@ class VectorData:
 
 @dataclass(frozen=True, kw_only=True)
 class ForceData:
-    """A force on a point, by its number."""
+    """A force on a point, given by index."""
 
     point: int
     x: float
@@ -136,7 +136,7 @@ class ForceData:
 
 @dataclass(frozen=True, kw_only=True)
 class LimitMark:
-    """A row at which something turns back or branches cross."""
+    """A row at a dead point or change point."""
 
     row: int
     text: str
@@ -144,7 +144,7 @@ class LimitMark:
 
 @dataclass(frozen=True, kw_only=True)
 class RowEvidence:
-    """What is known of every row; ``found`` is 1 or 0, statuses number ``texts``."""
+    """The evidence of every row; ``found`` is 1 or 0, statuses are indices into ``texts``."""
 
     found: PackedColumn
     status: PackedColumn
@@ -161,11 +161,11 @@ class RowEvidence:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionData:
-    """One circuit or branch as it is shown.
+    """One displayed circuit or branch.
 
-    ``order`` are the found rows in the order in which the mechanism passes them; ``closed`` tells
-    that the last is followed by the first. ``speed`` is that of the leading input, 0 if it has
-    none; ``backwards`` tells that its arrow is drawn towards smaller values.
+    ``order`` are the found rows in the order of the motion; ``closed``: the first follows the last.
+    ``speed`` is that of the leading input, 0 if it has none; ``backwards``: its arrow points
+    towards smaller values.
     """
 
     name: str
@@ -188,7 +188,7 @@ class MotionData:
 
 @dataclass(frozen=True, kw_only=True)
 class RoleStyle:
-    """How a role is drawn: colours (``tone``: that of the link; "" for none), widths in strokes."""
+    """The style of a role: colours (``tone``: that of the link; "" for none), widths in strokes."""
 
     role: str
     layer: int
@@ -221,7 +221,7 @@ class Equation:
 
 @dataclass(frozen=True, kw_only=True)
 class PageData:
-    """Everything a page shows. ``view`` is left, bottom, right, top of the drawing."""
+    """The complete data of a page. ``view`` is left, bottom, right, top of the drawing."""
 
     format: int
     version: str

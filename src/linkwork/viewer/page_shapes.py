@@ -1,4 +1,4 @@
-"""The shapes of a moving scene, and its frames, as the front end reads them."""
+"""The shapes and frames of a moving scene in the format of the front end."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData
 
 __all__ = ["OWN_COURSE", "shapes_of"]
 
-#: The frame of a shape that changes its form.
+#: The frame of a deforming shape.
 OWN_COURSE = -2
 
-_DIGITS = 7  # of coordinates, counted from the size of the drawing
+_DIGITS = 7  # digits of coordinates, relative to the size of the drawing
 _KINDS: dict[type[Primitive], str] = {
     Arc: "line", Polyline: "line", Polygon: "area", Disc: "disc", Hatch: "strokes", Text: "text"
 }  # fmt: skip
@@ -30,7 +30,7 @@ _KINDS: dict[type[Primitive], str] = {
 def shapes_of(
     motion: Motion, scene: MovingScene, pack: Pack
 ) -> tuple[tuple[TurnData, ...], tuple[FrameData, ...], tuple[Part, ...]]:
-    """What turns, the frames that carry something, and all shapes from the bottom to the top."""
+    """The turns, the frames in use, and all shapes from bottom to top."""
     used = dict.fromkeys(part.frame for part in scene.parts)
     carriers = [frame for frame in used if frame is not None and frame != STILL]
     turns = list(dict.fromkeys(frame.turn for frame in carriers if frame.turn))
@@ -83,7 +83,7 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -
 
 
 def _places(shape: Primitive) -> tuple[XY, ...]:
-    """The points that a shape is drawn through."""
+    """The points of a drawn shape."""
     match shape:
         case Polyline() | Arc():
             return shape.shaft

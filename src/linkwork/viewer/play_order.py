@@ -1,4 +1,4 @@
-"""The rows of a motion in the order in which the mechanism passes them."""
+"""The rows of a motion in playing order."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ from linkwork.results.motion import Motion
 
 __all__ = ["falling", "play_order"]
 
-_MEETING = 1.5  # largest steps between rows: runs whose ends are nearer than this are joined
+_MEETING = 1.5  # in multiples of the largest step: runs with nearer ends are joined
 
 
 def play_order(motion: Motion) -> tuple[CountArray, bool]:
-    """Found rows in order, and whether the last is followed by the first.
+    """Found rows in order, and whether the first follows the last.
 
-    A table starts somewhere on a circuit, may leave a gap where the input reaches no position, and
-    lists further branches after it. Runs of neighbouring rows are put together where their ends
-    meet; runs that meet nothing follow each other. Time runs forward: where the speed of the input
-    is against the table, so is the order.
+    A table starts anywhere on a circuit, may have a gap without positions, and lists further
+    branches at its end. Runs of neighbouring rows are joined at common ends; other runs follow each
+    other. The order follows time: it is reversed if the input speed is opposite to the table.
     """
     places = _places(motion)
     runs = _runs(places, motion)
@@ -57,20 +56,20 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
 
 
 def falling(motion: Motion, rows: Sequence[int]) -> list[bool]:
-    """Whether the leading input falls from each of these rows to the next, to the last from the one
-    before.
+    """Whether the leading input decreases from each of these rows to the next; for the last row,
+    from the one before.
     """
     name, values = next(iter(motion.inputs.items()))
     ahead = np.diff(values[list(rows)])
     turn = {"deg": 360.0, "rad": 2.0 * np.pi}.get(motion.input_units[name])
-    if turn is not None:  # the shorter way around
+    if turn is not None:  # the shorter direction
         ahead = np.remainder(ahead + 0.5 * turn, turn) - 0.5 * turn
     falls = (ahead < 0).tolist()
     return [*falls, *falls[-1:]] if falls else [False] * len(rows)
 
 
 def _places(motion: Motion) -> ComplexArray:
-    """Where everything is, shape (N, m): points, and the tips of links that may turn about one."""
+    """Coordinates of all points, and of tips of links that may rotate about one, shape (N, m)."""
     points = [motion.trace(name) for name in motion.points]
     known = np.concatenate(points)[np.isfinite(np.concatenate(points))]
     size = float(np.abs(known - known[:1]).max(initial=0.0)) or 1.0
@@ -80,7 +79,7 @@ def _places(motion: Motion) -> ComplexArray:
 
 
 def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
-    """Which rows stay: where runs meet in the same position, the row that is listed first."""
+    """The rows to keep: if runs meet in the same position, only the first listed row."""
     there = places[order]
     span = float(np.abs(there - there[0]).max())
     kept = np.ones(len(order), dtype=bool)
@@ -90,9 +89,9 @@ def _passed_once(order: CountArray, places: ComplexArray) -> BoolArray:
 
 
 def _runs(places: ComplexArray, motion: Motion) -> list[CountArray]:
-    """Neighbouring found rows, broken also where the mechanism jumps.
+    """Runs of neighbouring found rows, interrupted at jumps of the mechanism.
 
-    Beside a limit it moves far for a small step of the input: that is no jump on one branch.
+    Near a limit, large motions for small input steps on one branch are not jumps.
     """
     rows = np.flatnonzero(motion.found)
     steps = np.abs(np.diff(places[rows], axis=0)).max(axis=1, initial=0.0)

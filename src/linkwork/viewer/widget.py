@@ -1,6 +1,6 @@
 """A motion as a notebook widget: the front end of pages, synchronised with Python.
 
-Only this module needs anywidget, and only when it makes a widget.
+Only this module uses anywidget, and imports it on first use.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def motions_widget(
     InputError
         If there is nothing to draw.
     MissingPackageError
-        Without anywidget.
+        If anywidget is not installed.
     """
     kind = _widget_class()
     data = motion_page(motions, equations=equations, loops=loops, forces=forces)
@@ -117,7 +117,7 @@ def _widget_class() -> Any:
 
         @traitlets.observe("configuration")  # type: ignore[untyped-decorator]
         def _moved(self, change: Any) -> None:
-            """The same row if it has a position there too, else the nearest row with a position."""
+            """The same row if it has a position, otherwise the nearest row with a position."""
             there = self._rows[change["new"]]
             if self.row not in there:
                 self.row = min(there, key=lambda row: (abs(row - self.row), row))

@@ -137,7 +137,7 @@ x = "mew <= 40"
         edited(('"four-bar"', '"four-ber"')),
         """\
 1 problem in plan.toml
-  line 3  mechanism  there is no "four-ber" (library: four-bar, double-four-bar, ackermann-steering, andrews-squeezer, antiparallelogram, atkinson-engine, beam-engine, belt-drive, … 76 more); a file of your own ends in .toml""",
+  line 3  mechanism  there is no "four-ber" (library: four-bar, double-four-bar, ackermann-steering, andrews-squeezer, antiparallelogram, atkinson-engine, beam-engine, belt-drive, … 76 more); the name of a file ends in .toml""",
     ),
     "a dimension that the mechanism lacks": (
         edited(('"O2 A"', '"O2 X"')),
@@ -155,7 +155,7 @@ x = "mew <= 40"
         HEAD + 'sampling = "grid"\n[dimensions]\n"O2 A" = 40\n',
         """\
 1 problem in plan.toml
-  line 4  dimensions  varies nothing: values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
+  line 4  dimensions  is empty: give values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }""",
     ),
     "a grid with a count": (
         HEAD + 'sampling = "grid"\ncount = 3\n[dimensions]\n"O2 A" = { from = 1, to = 2 }\n',

@@ -433,7 +433,7 @@ def test_two_runs_do_not_write_to_one_store(whole: Path, tmp_path: Path) -> None
     with pytest.raises(InputError) as caught:
         run_study(study(), tmp_path / "out.zarr", workers=1, progress=second)
     assert str(caught.value) == (
-        f'another run is writing to "{tmp_path / "out.zarr"}": wait for it, or end it'
+        f'another run is writing to "{tmp_path / "out.zarr"}": wait for it or stop it'
     )
 
 

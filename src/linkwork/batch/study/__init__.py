@@ -1,4 +1,4 @@
-"""Studies: very many designs of one mechanism from a plan, in a store that can be resumed."""
+"""Studies: many designs of a mechanism from a plan, in a store that can be resumed."""
 
 from __future__ import annotations
 

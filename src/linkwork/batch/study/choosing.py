@@ -32,7 +32,7 @@ _LEVELS = _RANGE | {"levels"}
 _TRIANGLE = _RANGE | {"likeliest"}
 _NORMAL = frozenset({"mean", "deviation"})
 
-#: What a plan of this sampling must give, and which keys say nothing in it.
+#: For each sampling: required values of a plan, and keys without effect.
 _NEEDED = {
     "grid": ((), ("count", "seed", "table", "columns")),
     "random": (("count", "seed"), ("table", "columns")),
@@ -42,21 +42,21 @@ _NEEDED = {
 _WANTED = {
     "grid": "values: [40, 50, 60] or { from = 40, to = 60, levels = 3 }",
     "random": "a distribution: { from = 36, to = 44 }, { mean = 40, deviation = 0.1 }, "
-    "{ from = 36, to = 44, likeliest = 41 }, or values that are as likely: [40, 50, 60]",
+    "{ from = 36, to = 44, likeliest = 41 }, or equally likely values: [40, 50, 60]",
     "latin-hypercube": "a range: { from = 36, to = 44 }",
-    "table": "one number for all designs: what varies stands in the table",
+    "table": "one number for all designs: varied numbers are in the table",
 }
 _DOES = {
     "grid": "a grid is every combination of its values",
     "random": "random designs are drawn",
     "latin-hypercube": "random designs are drawn",
-    "table": "designs stand in the table",
+    "table": "designs are listed in the table",
 }
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Each of some values is as likely."""
+    """Equally likely values."""
 
     values: tuple[float, ...]
 
@@ -67,7 +67,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Triangular:
-    """Values from ``low`` to ``high``, those near ``likeliest`` drawn most often."""
+    """A triangular distribution from ``low`` to ``high`` with its peak at ``likeliest``."""
 
     low: float
     likeliest: float
@@ -87,14 +87,14 @@ class Triangular:
 def choose_values(
     content: Mapping[str, Any], folder: Path, problems: Problems
 ) -> tuple[Plan, Mapping[str, float]] | None:
-    """What varies and what is the same for all designs; ``None`` with problems noted.
+    """The varied and the constant numbers; ``None`` after problems.
 
     Parameters
     ----------
     content : Mapping
-        Of a plan, its structure checked.
+        A plan of checked structure.
     folder : Path
-        Where the table is looked for.
+        The folder of the table.
     """
     before = len(problems)
     sampling = content["sampling"]
@@ -116,8 +116,8 @@ def choose_values(
     }[sampling]
     found = {name: _read(name, entry, sampling, read, problems) for name, entry in varied.items()}
     if not varied and sampling != "table":
-        problems.add(("dimensions",), f"varies nothing: {_WANTED[sampling]}")
-    # a plan is made only of sound dimensions: its own errors would repeat those noted
+        problems.add(("dimensions",), f"is empty: give {_WANTED[sampling]}")
+    # only valid dimensions reach the plan, whose errors would repeat those reported
     if len(problems) > before:
         return None
     try:
@@ -133,7 +133,7 @@ def choose_values(
 
 
 def values_between(plan: Plan, start: int, stop: int) -> dict[str, Array]:
-    """The designs from ``start`` up to ``stop``, without those before, (stop - start,) each."""
+    """The designs from ``start`` to ``stop`` (excluded), (stop - start,) each."""
     pieces = [
         {
             # random values are drawn in chunks of fixed size, so that a design does not depend on
@@ -148,7 +148,7 @@ def values_between(plan: Plan, start: int, stop: int) -> dict[str, Array]:
 
 @lru_cache(maxsize=2)
 def _chunk_of(plan: Plan, k: int) -> Mapping[str, Array]:
-    """A chunk of a plan; chunks of a study, which are smaller, need it several times."""
+    """A chunk of a plan, cached: several of the smaller chunks of a study use it."""
     return plan.chunk(k)
 
 
@@ -171,7 +171,7 @@ def _read(
     read: Callable[[Any], Any],
     problems: Problems,
 ) -> Any:
-    """What one dimension does in its sampling; ``None`` with a problem noted."""
+    """The distribution or values of one dimension; ``None`` after a problem."""
     key = ("dimensions", name)
     try:
         found = read(entry)

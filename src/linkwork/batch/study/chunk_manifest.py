@@ -1,7 +1,7 @@
 """The manifest of a store: finished chunks, with the checksums of their files.
 
-A chunk is finished when its entry is there, and the entry is written after its files. So a run
-that is killed leaves chunks that are finished, and others that are computed again.
+A chunk is finished when its entry exists; the entry is written after the files. After a killed run,
+unfinished chunks are computed again.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from linkwork.batch.study.zarr_files import LEDGER
 
 __all__ = ["PARTIAL", "Entry", "read_entries", "write_entry", "write_whole"]
 
-#: What files are called until they are whole.
+#: Suffix of incomplete files.
 PARTIAL = ".part"
 _SUFFIX = ".json"
 
@@ -29,13 +29,13 @@ class Entry:
     Parameters
     ----------
     chunk, start, stop : int
-        Which it is, and its designs from ``start`` up to ``stop``.
+        Its number, and its designs from ``start`` to ``stop`` (excluded).
     files : Mapping[str, [size, CRC-32]]
         By path in the store.
     rows : Mapping[str, int]
-        How many rows ended in which status.
+        Number of rows by status.
     problems : Mapping[str, int]
-        Why so many designs could not be built.
+        Number of designs that could not be built, by reason.
     """
 
     chunk: int
@@ -54,7 +54,7 @@ class Entry:
         rows: Mapping[str, int],
         problems: Mapping[str, int],
     ) -> Entry:
-        """The entry of a chunk whose files have this content."""
+        """The entry of a chunk with files of this content."""
         sums = {path: [len(data), zlib.crc32(data)] for path, data in sorted(files.items())}
         return cls(
             chunk=chunk,
@@ -66,44 +66,44 @@ class Entry:
         )
 
     def holds(self, store: Path) -> bool:
-        """Whether all files are there as they were written."""
+        """Whether all files exist and match their checksums."""
         return all(_sum(store / path) == known for path, known in self.files.items())
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file that appears whole or not at all."""
+    """Write a file completely or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + PARTIAL)
     part.write_bytes(data)
-    # renaming is atomic: a reader never sees half a file
+    # renaming is atomic: readers never see incomplete files
     os.replace(part, path)
 
 
 def write_entry(store: Path, entry: Entry) -> None:
-    """Note that a chunk is finished."""
-    # sorted, so that two runs of a study write equal stores
+    """Record that a chunk is finished."""
+    # sorted, so that two runs write identical stores
     text = json.dumps(asdict(entry), ensure_ascii=False, sort_keys=True)
     write_whole(store / LEDGER / f"{entry.chunk:08}{_SUFFIX}", text.encode())
 
 
 def read_entries(store: Path) -> dict[int, Entry]:
-    """All entries by chunk; one that cannot be read is as none."""
+    """All entries by chunk; unreadable entries are ignored."""
     found = {}
     for path in sorted((store / LEDGER).glob(f"[0-9]*{_SUFFIX}")):
         try:
             entry = Entry(**json.loads(path.read_text(encoding="utf-8")))
-        except (ValueError, TypeError):  # cut short by a machine that lost its power
+        except (ValueError, TypeError):  # truncated by a power failure
             continue
         found[entry.chunk] = entry
     return found
 
 
 def _sum(path: Path) -> list[int] | None:
-    """Size and checksum of a file; ``None`` if it is not there."""
+    """Size and checksum of a file; ``None`` if it does not exist."""
     size = total = 0
     try:
         with path.open("rb") as file:
-            # piece by piece: a file may be larger than memory
+            # in pieces: a file may be larger than memory
             while piece := file.read(1 << 20):
                 size += len(piece)
                 total = zlib.crc32(piece, total)

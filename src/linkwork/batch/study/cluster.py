@@ -1,7 +1,7 @@
 """Compute the parts of a study on a Dask cluster; the only module that uses dask.distributed.
 
-Workers need Linkwork and nothing else: what they compute travels with the task, what they have
-computed comes back, and only the process that was started writes to the store.
+Workers need only Linkwork: they receive their input with the task and return the results; only the
+main process writes to the store.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from linkwork.foundation.errors import InputError, MissingPackageError
 
 __all__ = ["cluster_crew"]
 
-_PATIENCE = 10  # seconds that a scheduler has to answer, and to have a worker
+_PATIENCE = 10  # timeout for the scheduler's answer and its first worker [s]
 _AHEAD = 2  # parts for each thread of the cluster
 
 
 def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tuple[int, Part]]:
-    """Parts in the order in which they are ready; those of workers that die are computed again.
+    """Parts in order of completion; those of workers that die are computed again.
 
     Raises
     ------
     MissingPackageError
-        Without dask.distributed.
+        If dask.distributed is not installed.
     InputError
-        If no scheduler answers, it has no workers, or they refuse.
+        If no scheduler answers, it has no workers, or these reject the job.
     """
     try:
         import distributed
@@ -45,12 +45,12 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
         ) from None
     with client:
         _wait_for_workers(client, scheduler)
-        # more parts than threads are under way, so that no worker waits for the next one
+        # more pending parts than threads, so that no worker has to wait
         threads = sum(client.nthreads().values())
         run = uuid4().hex
 
         def submit(values: Values) -> Any:
-            # a key of its own each time: Dask would return a remembered result for equal values
+            # a unique key each time: Dask would return a cached result for equal values
             return client.submit(compute_part, job, values, key=f"linkwork-{run}-{uuid4().hex}")
 
         try:

@@ -1,4 +1,4 @@
-"""The task of one worker: the motions of some designs, and the values to keep."""
+"""The task of a worker: solve some designs and return the values to store."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from linkwork.results.quantities.registry import Call
 
 __all__ = ["Job", "Part", "compute_part", "linkwork_version", "passes_name"]
 
-_MOST_PROBLEMS = 20  # distinct reasons that are kept of one part
+_MOST_PROBLEMS = 20  # distinct reasons recorded for one part
 _FURTHER = "further reasons"
 
 
 def linkwork_version() -> str:
-    """The version of Linkwork that runs here."""
+    """The running version of Linkwork."""
     try:
         return version("linkwork")
-    except PackageNotFoundError:  # a tree on the path that was never installed
+    except PackageNotFoundError:  # a source tree that is not installed
         return "unknown"
 
 
 def passes_name(condition: str) -> str:
-    """The name of the array that says which designs pass a filter."""
+    """The name of the array of a filter's results."""
     return f"passes.{condition}"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """What is computed of every design; goes to workers.
+    """The computation for every design; sent to workers.
 
     Parameters
     ----------
@@ -51,12 +51,12 @@ class Job:
     reductions : Mapping[str, Call]
         One number per design, by the name of its array.
     filters : Mapping[str, Condition]
-        What a design has to pass, by name.
+        Conditions on a design, by name.
     certify : bool
     device : str
-        ``"cpu"`` or ``"gpu"``; every worker needs one.
+        ``"cpu"`` or ``"gpu"``; every worker needs this device.
     version : str
-        Of Linkwork; a worker with another one refuses.
+        Version of Linkwork; a worker with another version rejects the job.
     """
 
     description: Description
@@ -70,16 +70,16 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """What was computed of D consecutive designs.
+    """The results of D consecutive designs.
 
     Parameters
     ----------
     arrays : Mapping[str, (D,) or (D, R)]
         By the names of the store's arrays.
     rows : Mapping[str, int]
-        How many rows ended in which status, of designs that were built.
+        Number of rows by status, of designs that could be built.
     problems : Mapping[str, int]
-        Why so many designs could not be built.
+        Number of designs that could not be built, by reason.
     """
 
     arrays: Mapping[str, AnyArray]
@@ -88,17 +88,17 @@ class Part:
 
 
 def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
-    """The part of some designs.
+    """Compute the results of some designs.
 
     Parameters
     ----------
     values : Mapping[str, (D,) or number]
-        What varies, in file units.
+        The varied numbers, in file units.
 
     Raises
     ------
     InputError
-        If this is another version of Linkwork than the one that asks.
+        If the version of Linkwork differs from that of the main process.
     """
     # results of two versions may differ by rounding: a store must not mix them
     if job.version != linkwork_version():
@@ -108,7 +108,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
         )
     family = family_of(_model(job.description), values)
     built = family.designs.problem == 0
-    # one thread: the processes of a study share the cores already
+    # one thread, since the processes of a study already share the cores
     motion = family.sweep(certify=job.certify, threads=1, device=job.device)
     measured = Measured(motion)
     passes = {name: built & condition.holds(measured) for name, condition in job.filters.items()}
@@ -129,7 +129,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     return Part(arrays=arrays, rows=_rows(motion.status[built]), problems=_problems(family))
 
 
-# a worker gets many parts of one study, and a model takes long to build
+# a worker computes many parts of one study, and building a model takes long
 @lru_cache(maxsize=2)
 def _model(description: Description) -> Model:
     return as_described(description)

@@ -1,7 +1,7 @@
 """Conditions that a plan sets for the motion of a design, parsed from text.
 
-``mu >= 40`` and ``stroke(rocker) <= 60`` are true or false of it, as are the words of
-:data:`WORDS`. They are read by patterns and never evaluated as code.
+Conditions are comparisons such as ``mu >= 40`` and ``stroke(rocker) <= 60``, or the words of
+:data:`WORDS`. They are matched by patterns and never evaluated as code.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A number of a motion against a bound, in file units; false where no row is found."""
+    """A number of a motion compared with a bound, in file units; false without found rows."""
 
     reduced: Call
     sign: str
@@ -101,7 +101,7 @@ def _certified(motion: FamilyMotion) -> BoolArray:
     return np.asarray(motion.certified.all(axis=1))
 
 
-#: Conditions by name: every row is found; no row lies beyond a dead point; every row is proved.
+#: Conditions by name: all rows found; no row beyond a dead point; all rows proved.
 WORDS: Mapping[str, Callable[[FamilyMotion], BoolArray]] = {
     "whole cycle": _whole_cycle,
     "no dead point": _no_dead_point,
@@ -115,12 +115,12 @@ Condition = Comparison | Word
 def read_condition(text: str) -> Condition:
     """A condition from text: a word of :data:`WORDS`, or a comparison.
 
-    A quantity by itself is compared at every row found: ``mu >= 40`` is ``min(mu) >= 40``.
+    A plain quantity is compared at every row found: ``mu >= 40`` is ``min(mu) >= 40``.
 
     Raises
     ------
     InputError
-        If it is none.
+        If the text is not a condition.
     """
     folded = " ".join(text.split())
     if folded in WORDS:

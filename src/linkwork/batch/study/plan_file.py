@@ -1,4 +1,4 @@
-"""Read study plans: a study, or every problem with its line."""
+"""Read study plans; report all problems with their lines."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ def read_plan(path: Path | str, *, columns: Sequence[str] = ()) -> Study:
     Parameters
     ----------
     columns : sequence of str
-        Quantities that are kept at every row besides those that the plan keeps.
+        Quantities stored at every row in addition to those of the plan.
 
     Raises
     ------
     MechanismFileError
-        With every problem found: file, line, key and what to do; also for the mechanism's file.
+        With every problem found: file, line, key and remedy; also for the mechanism's file.
     """
     name = str(path)
     text = text_of(bytes_of(Path(path), name), name)
@@ -78,7 +78,7 @@ def read_plan_text(
     *,
     columns: Sequence[str] = (),
 ) -> Study:
-    """Read the plan in a text; files that it names are looked for in ``folder``.
+    """Read the plan in a text; its files are in ``folder``.
 
     Raises like :func:`read_plan`.
     """
@@ -90,7 +90,7 @@ def read_plan_text(
         raise located_error(structure.problems, lines, name)
     content = dict(structure.content)
     if columns:
-        # columns asked for on the command line come after those of the plan, each once
+        # columns of the command line follow those of the plan, without duplicates
         content["keep"] = [*dict.fromkeys([*content.get("keep", ()), *columns])]
     reader = _Reader(content, text, Path(folder))
     study = reader.study(Path(name).stem)
@@ -101,7 +101,7 @@ def read_plan_text(
 
 @dataclass
 class _Reader:
-    """Finds what the content of a plan means; ``problems`` where it means nothing."""
+    """Interprets the content of a plan and collects ``problems``."""
 
     content: Mapping[str, Any]
     text: str
@@ -109,7 +109,7 @@ class _Reader:
     problems: Problems = field(default_factory=Problems)
 
     def study(self, stem: str) -> Study | None:
-        """The study; ``None`` with problems noted."""
+        """The study; ``None`` after problems."""
         source = self._mechanism_text()
         if source is None:
             return None
@@ -166,12 +166,12 @@ class _Reader:
             return example_text(name), f"{name}.toml"
         except UnknownNameError:
             known = choices("library", examples(), name)
-            message = f'there is no "{name}" {known}; a file of your own ends in .toml'
+            message = f'there is no "{name}" {known}; the name of a file ends in .toml'
             self.problems.add(("mechanism",), message)
             return None
 
     def _described(self, text: str, name: str) -> Description:
-        """What the mechanism's file describes; what is wrong with it is said with its own lines."""
+        """The description in the mechanism's file; its problems have lines of that file."""
         read: ReadFile = read_text(text, name)
         try:
             as_described(read.description)
@@ -198,7 +198,7 @@ class _Reader:
     def _nothing(
         self, model: Model, plan: Plan, constants: Mapping[str, float]
     ) -> FamilyMotion | None:
-        """The motion of no designs: it knows all names, and costs nothing."""
+        """A motion without designs, to look up names at no cost."""
         known = True
         for name in (*plan, *constants):
             try:
@@ -217,7 +217,7 @@ class _Reader:
         return family.take(slice(0)).sweep(certify=False, threads=1)
 
     def _key_of_number(self, name: str) -> Key:
-        """Where a plan names a number of the mechanism."""
+        """The key path of a number of the mechanism in a plan."""
         return ("dimensions", name) if name in self.content.get("dimensions", {}) else ("table",)
 
     def _texts(self, table: str, read: Callable[[str], T]) -> dict[str, T]:
@@ -246,7 +246,7 @@ class _Reader:
         reductions: Mapping[str, Call],
         conditions: Mapping[str, Condition],
     ) -> None:
-        """Quantities exist, and every array of the store has a name of its own."""
+        """Check that quantities exist and the names of arrays are unique."""
         keep = self.content.get("keep", ())
         inputs = [variable.name for variable in model.equations.inputs]
         known = [
@@ -269,7 +269,7 @@ class _Reader:
             taken[name] = "an input, which every row has"
         for name in plan:
             self._check_free(self._key_of_number(name), name, name, taken)
-            taken[name] = "what varies"
+            taken[name] = "a varied number"
         for k, name in enumerate(keep):
             if known[k]:
                 self._check_free(("keep", k), name, name, taken)
@@ -281,7 +281,7 @@ class _Reader:
     def _check_quantity(
         self, key: Key, name: str, inputs: list[str], ask: Callable[[], object]
     ) -> bool:
-        """Whether there is such a quantity, and designs can differ in it."""
+        """Check that the quantity exists and can differ between designs."""
         if find_spelling(name, inputs) in inputs:
             self.problems.add(key, f'"{name}" is an input, the same for every design: leave it out')
             return False
@@ -293,7 +293,7 @@ class _Reader:
         return True
 
     def _check_free(self, key: Key, name: str, array: str, taken: dict[str, str]) -> None:
-        """A name that can be a folder's, and is no other array's."""
+        """Check that the name is a valid folder name and unique."""
         if array in taken:
             self.problems.add(key, f'"{name}" is already {taken[array]}: leave it out or rename it')
         elif not name.strip() or len(name) > _LONGEST_NAME or any(sign in name for sign in "/\\:*"):
@@ -306,17 +306,17 @@ class _Reader:
     def _identity(
         self, mechanism: str, plan: Plan, job: Job, model: Model, chunk: int
     ) -> dict[str, Any]:
-        """Everything on which results depend, as JSON would hold it."""
+        """All data on which results depend, in JSON types."""
         content = self.content
         first, last = model.rows_in_file_units[[0, -1]].tolist()
         return {
             "linkwork": job.version,
-            # a checkout with other line ends is the same mechanism
+            # files with other line ends describe the same mechanism
             "mechanism": mechanism.replace("\r\n", "\n"),
             "sampling": content["sampling"],
             "count": plan.count,
             "seed": content.get("seed"),
-            # a list: the order of dimensions decides how random numbers are drawn
+            # a list: the random numbers depend on the order of dimensions
             "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
             "table": _digest(plan) if content["sampling"] == "table" else None,
             "input": {"first": first, "last": last, "rows": len(model.rows_in_file_units)},
@@ -330,7 +330,7 @@ class _Reader:
 
 
 def _digest(plan: Plan) -> str:
-    """A number that tells one table from another."""
+    """A checksum of a table."""
     total = hashlib.sha256("\0".join(plan).encode())
     for values in plan.values():
         total.update(values.tobytes())
@@ -338,7 +338,7 @@ def _digest(plan: Plan) -> str:
 
 
 def _units(motion: FamilyMotion, job: Job) -> dict[str, str]:
-    """The units of what is kept and of numbers of motions, by the names of their arrays."""
+    """The units of stored quantities and numbers of motions, by array name."""
     found = {name: motion.unit(name) for name in job.keep}
     for name, call in job.reductions.items():
         found[name] = motion.quantities.find_of_motion(str(call)).unit

@@ -27,10 +27,10 @@ _SPREAD = Several(
         (
             Key("from", PlainNumber(), "The smallest value"),
             Key("to", PlainNumber(), "The largest value"),
-            Key("levels", Whole(1, 10**9), "In a grid: so many values from the first to the last"),
-            Key("likeliest", PlainNumber(), "Of a random triangle: the value most often drawn"),
-            Key("mean", PlainNumber(), "Of a random normal distribution: its mean"),
-            Key("deviation", PlainNumber(), "Of a random normal distribution: one sigma"),
+            Key("levels", Whole(1, 10**9), "In a grid: number of equidistant values"),
+            Key("likeliest", PlainNumber(), "For a triangular distribution: the most likely value"),
+            Key("mean", PlainNumber(), "For a normal distribution: its mean"),
+            Key("deviation", PlainNumber(), "For a normal distribution: its standard deviation"),
         )
     ),
     "a number, a list of numbers, or a table such as { from = 36, to = 44 }",
@@ -43,7 +43,7 @@ _INPUT = (
 
 PLAN = Form(
     "study-plan",
-    "Many designs of one mechanism: what varies, what is kept of each, which of them pass",
+    "Many designs of one mechanism: varied numbers, stored results and filters",
     "",
     (
         Key(
@@ -52,47 +52,47 @@ PLAN = Form(
             "The version of this file format; write format = 1",
             required=True,
         ),
-        Key("name", Text(), "What the study is called"),
+        Key("name", Text(), "Name of the study"),
         Key(
             "mechanism",
             Text(),
-            'The mechanism: a name of the library, "four-bar", or a file beside the plan, '
+            'The mechanism: a name of the library, "four-bar", or a file next to the plan, '
             '"mine.toml"',
             required=True,
         ),
         Key(
             "sampling",
             Text(SAMPLINGS),
-            "How designs are chosen: every combination, by chance, evenly by chance, or as "
-            "a table lists them",
+            "How designs are chosen: every combination, random, Latin hypercube, or as "
+            "listed in a table",
             required=True,
         ),
-        Key("count", Whole(1, 10**15), "How many designs are drawn"),
-        Key("seed", Whole(0), "Where the random numbers start: the same seed, the same designs"),
-        Key("table", Text(), "A CSV file beside the plan: one design in each row"),
-        Key("columns", ListOf(Text(), "column", 1), "The columns that vary; all if left out"),
+        Key("count", Whole(1, 10**15), "Number of designs"),
+        Key("seed", Whole(0), "Seed of the random numbers: the same seed gives the same designs"),
+        Key("table", Text(), "A CSV file next to the plan: one design in each row"),
+        Key("columns", ListOf(Text(), "column", 1), "The varied columns; default all"),
         Key(
             "certify",
             Flag(),
-            "Whether every position is proved; true if left out, false is faster",
+            "Whether every position is proved; default true, false is faster",
         ),
         Key(
             "device",
             Text(("cpu", "gpu")),
-            "What computes: the processor, or a graphics card, whose results agree to rounding",
+            "The device: processor or graphics card; their results agree to rounding",
         ),
-        Key("chunk", Whole(1), "Designs that are computed and stored together"),
+        Key("chunk", Whole(1), "Number of designs computed and stored together"),
         Key(
             "keep",
             ListOf(Text(), "quantity", 1),
-            'Quantities kept at every row: ["B.x", "rocker"]',
+            'Quantities stored at every row: ["B.x", "rocker"]',
         ),
         Key(
             "dimensions",
             Named(_SPREAD, 0),
-            "What varies: a number of the mechanism, and its values or their distribution",
+            "Varied numbers of the mechanism, with values or distribution",
         ),
-        Key("input", Table(_INPUT), "Another range of the mechanism's table"),
+        Key("input", Table(_INPUT), "Range that replaces that of the mechanism's table"),
         Key(
             "reductions",
             Named(Text(), 0),
@@ -101,7 +101,7 @@ PLAN = Form(
         Key(
             "filters",
             Named(Text(), 0),
-            'What a design has to pass: "whole cycle", "no dead point", "certified", '
+            'Conditions on a design: "whole cycle", "no dead point", "certified", '
             'or a comparison such as "mu >= 40"',
         ),
     ),

@@ -25,18 +25,18 @@ __all__ = ["Progress", "run_study"]
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """How far a run is.
+    """Progress of a run.
 
     Parameters
     ----------
     total : int
         Designs of the study.
     done : int
-        Designs that are stored.
+        Designs stored.
     before : int
-        Those of them that were stored before this run began.
+        Designs stored before this run.
     seconds : float
-        Since it began.
+        Time since the start of the run [s].
     """
 
     total: int
@@ -51,7 +51,7 @@ class Progress:
 
     @property
     def left(self) -> float | None:
-        """Seconds that are left at this rate, if it is known."""
+        """Remaining time at this rate [s], if known."""
         return (self.total - self.done) / self.rate if self.rate else None
 
 
@@ -69,39 +69,39 @@ def run_study(
     Parameters
     ----------
     plan : Study or path
-        A plan that was read, or its file.
+        A plan, or its file.
     store : path
-        A folder, by custom ``….zarr``. One that holds a part of the same study is gone on with.
+        A folder, usually ``….zarr``. A store of the same study is resumed.
     workers : int, optional
-        Processes on this machine; all of its cores unless given, one for a graphics card. With
-        one there are no others.
+        Processes on this machine; by default one per core, or one with a graphics card. With one,
+        the calling process computes.
     scheduler : str, optional
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers compute instead.
     fresh : bool
-        Take away the study that is in the store, and begin again.
+        Delete the study in the store and start over.
     progress : callable, optional
-        Told how far the run is, at its beginning and after each chunk.
+        Called with the progress at the beginning and after each chunk.
 
     Raises
     ------
     InputError
-        For a plan that cannot be understood, or a store of another study: with what differs.
+        If the plan is invalid, or the store belongs to another study (lists the differences).
     MissingPackageError
-        Without zarr and xarray, or dask.distributed for a cluster.
+        If zarr or xarray, or dask.distributed for a cluster, is not installed.
 
     Notes
     -----
-    What is stored depends on the plan alone, not on who computed it in which order. The store can
-    be read at any moment; chunks that are not there yet read as missing. Only this process
-    writes to it: a chunk's files, each renamed when it is whole, then its entry in the ledger with
-    their checksums. A run that was killed computes the chunk again that it was writing.
+    The stored data depend on the plan only, not on the workers or their order. The store can be
+    read at any moment; missing chunks read as missing values. Only this process writes to it: a
+    chunk's files, each renamed when it is complete, then the ledger entry with their checksums.
+    After a killed run, unfinished chunks are computed again.
     """
     check_packages()
     if workers is not None:
         workers = whole_number("workers", workers, least=1)
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
-        graphics_card()  # or the reason why there is none, before a store is begun
+        graphics_card()  # raises an error before a store is created
     with open_store(study, Path(store), fresh=fresh) as target:
         tell = _teller(study, target.done, progress)
         tell()
@@ -123,7 +123,7 @@ def _crew(
     workers: int | None,
     scheduler: str | None,
 ) -> Generator[tuple[int, Part]]:
-    """The parts of all tasks by whoever is to compute them."""
+    """The parts of all tasks, from the selected kind of workers."""
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
     # more processes than chunks would only load Linkwork
@@ -139,7 +139,7 @@ def _crew(
 def _teller(
     study: Study, done: set[int], progress: Callable[[Progress], None] | None
 ) -> Callable[[], None]:
-    """Tells ``progress`` how far the chunks in ``done`` have got."""
+    """A function that reports the chunks in ``done`` to ``progress``."""
     began = monotonic()
 
     def designs() -> int:

@@ -33,7 +33,7 @@ __all__ = ["Store", "attributes_of", "open_store"]
 
 _IDENTITY = "linkwork_identity"
 _LOCK = "lock"
-_LONGEST_SHOWN = 60  # characters of a value that differs
+_LONGEST_SHOWN = 60  # maximum length of a value in a message
 
 
 class Store:
@@ -44,25 +44,25 @@ class Store:
     path : Path
     study : Study
     files : ZarrFiles
-        Makes the files of the store.
+        Creates the files of the store.
     """
 
     def __init__(self, path: Path, study: Study, files: ZarrFiles) -> None:
         self.path, self.study = path, study
         self._files = files
         entries = read_entries(path)
-        #: Chunks that are finished, whose files are as they were written.
+        #: Finished chunks with files that match their checksums.
         self.done = {k for k, entry in entries.items() if entry.holds(path)}
 
     def write(self, k: int, part: Part) -> None:
-        """Store a chunk: first its files, then its entry in the ledger."""
+        """Store a chunk: first its files, then its ledger entry."""
         designs = self.study.designs_of(k)
         varied = self.study.varied(k)
         files = self._files.encoded(designs, {**varied, **part.arrays})
         for path, data in files.items():
             write_whole(self.path / path, data)
         write_entry(
-            # after the files: an entry without its files would be trusted by the next run
+            # after the files: the next run would accept an entry without files
             self.path,
             Entry.of_files(k, designs, files, rows=part.rows, problems=part.problems),
         )
@@ -71,37 +71,37 @@ class Store:
 
 @contextmanager
 def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Store]:
-    """The store of a study: made, or gone on with if it holds chunks of the same study.
+    """Create the store of a study, or resume it if it belongs to the same study.
 
     Parameters
     ----------
     fresh : bool
-        Take away the store of any study that is there.
+        Delete an existing store of any study.
 
     Raises
     ------
     InputError
-        If another study or something else is there, or another run is writing to it.
+        If the path contains another study or other files, or another run is writing to it.
     """
     files = _files_of(study)
     if fresh and path.exists():
-        attributes_of(path)  # nothing but a study's store is ever taken away
+        attributes_of(path)  # delete nothing but the store of a study
         _take_away(path)
     if not path.exists():
         _make(path, files.first)
-    attributes_of(path)  # what is no store has no lock either
+    attributes_of(path)  # only stores have a lock
     with _lock_store(path):
         _check_same(study, path)
         yield Store(path, study, files)
 
 
 def attributes_of(path: Path) -> Mapping[str, Any]:
-    """What a store says of its study.
+    """The attributes of a store that describe its study.
 
     Raises
     ------
     InputError
-        If it is no store of a study.
+        If it is not the store of a study.
     """
     if not path.exists():
         raise InputError(f'there is no "{path}"')
@@ -134,10 +134,10 @@ def _files_of(study: Study) -> ZarrFiles:
 
 
 def _make(path: Path, files: Mapping[str, bytes]) -> None:
-    """The store without any chunk, in one step."""
+    """Create a store without chunks, in one step."""
     if not path.parent.is_dir():
         raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
-    # on the same file system, so that renaming it is one step
+    # on the same file system, so that renaming is atomic
     part = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     shutil.rmtree(part, ignore_errors=True)
     for name, data in files.items():
@@ -148,18 +148,18 @@ def _make(path: Path, files: Mapping[str, bytes]) -> None:
 
 
 def _take_away(path: Path) -> None:
-    """The store is there or not: a part of it that is left would be gone on with."""
+    """Delete a store in one step: remaining parts would be resumed."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
     with _lock_store(path):
-        # renamed before it is deleted: an interruption leaves no half store under its name
+        # renamed before deletion: an interruption leaves no incomplete store of this name
         os.rename(path, aside)
     shutil.rmtree(aside)
 
 
 def _check_same(study: Study, path: Path) -> None:
-    """Refuse a store of another study."""
+    """Reject the store of another study."""
     there = attributes_of(path)[_IDENTITY]
-    # as JSON reads it again: tuples are lists there
+    # as read back from JSON: tuples become lists
     here = json.loads(json.dumps(study.identity))
     if told := "\n".join(_differences(there, here)):
         raise InputError(
@@ -170,7 +170,7 @@ def _check_same(study: Study, path: Path) -> None:
 
 
 def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[str]:
-    """What differs between two studies, a line for each."""
+    """The differences between two studies, one line each."""
     for key in {**there, **here}:
         old: Any = there.get(key)
         new: Any = here.get(key)
@@ -178,7 +178,7 @@ def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[
             continue
         if key == "mechanism":
             old, new = _first_change(old, new)
-        # other names: the values are of no interest then
+        # different names: values need not be compared
         elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
             old, new = ([name for name, _ in each] for each in (old, new))
         elif key in ("dimensions", "input", "reductions", "filters"):
@@ -197,7 +197,7 @@ def _changed_entries(
 
 
 def _first_change(old: str, new: str) -> tuple[str, str]:
-    """The first lines of two texts that are not the same."""
+    """The first differing lines of two texts."""
     pairs = zip_longest(old.split("\n"), new.split("\n"), fillvalue="")
     was, now = next(pair for pair in pairs if pair[0] != pair[1])
     return was.strip(), now.strip()
@@ -212,7 +212,7 @@ def _shown(value: Any) -> str:
 
 @contextmanager
 def _lock_store(path: Path) -> Iterator[None]:
-    """Nobody else writes meanwhile; the lock of a process that was killed is gone with it."""
+    """Lock the store against other writers; the lock of a killed process disappears."""
     lock = path / LEDGER / _LOCK
     with lock.open("ab") as file:
         try:
@@ -220,11 +220,11 @@ def _lock_store(path: Path) -> Iterator[None]:
                 msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
             else:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # of a store that was taken away between opening and locking: as if it were locked
+            # a store deleted between opening and locking counts as locked
             if not os.path.samestat(os.fstat(file.fileno()), lock.stat()):
                 raise FileNotFoundError(lock)
         except OSError:
             raise InputError(
-                f'another run is writing to "{path}": wait for it, or end it'
+                f'another run is writing to "{path}": wait for it or stop it'
             ) from None
         yield

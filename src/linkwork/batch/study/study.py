@@ -24,15 +24,15 @@ DESIGN = "design"
 
 _LARGEST_CHUNK = 16_384
 _SMALLEST_CHUNK = 2048
-_CHUNK_BYTES = 64 << 20  # of the arrays of one chunk while it is computed
-_CHUNKS_WANTED = 16  # of a small study, so that several workers share it
+_CHUNK_BYTES = 64 << 20  # target size of the arrays of one chunk
+_CHUNKS_WANTED = 16  # chunks of a small study, for several workers
 
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
     """An array of the store: over designs, over designs and inputs, or over inputs alone.
 
-    ``fill`` stands where nothing has been computed; ``values`` are known from the beginning.
+    ``fill`` marks values not computed; ``values`` are known in advance.
     """
 
     name: str
@@ -45,29 +45,29 @@ class Variable:
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Study:
-    """What a plan asks for; made by :func:`~linkwork.batch.study.read_plan`.
+    """A study as planned; made by :func:`~linkwork.batch.study.read_plan`.
 
     Parameters
     ----------
     name : str
     text : str
-        The plan itself.
+        The text of the plan.
     mechanism_text : str
-        The mechanism's file itself.
+        The text of the mechanism's file.
     model : Model
         The mechanism with the study's range of its input.
     plan : Plan
-        What varies.
+        The plan of the varied numbers.
     constants : Mapping[str, float]
-        What is the same for all designs and not as in the mechanism.
+        Changed numbers that are the same for all designs.
     job : Job
-        What is computed of every design.
+        The computation for every design.
     units : Mapping[str, str]
-        Of what is kept and of numbers of motions, by the names of their arrays.
+        Units of stored quantities and numbers of motions, by array name.
     chunk_size : int
-        Designs that are computed and stored together.
+        Number of designs computed and stored together.
     identity : Mapping[str, object]
-        Everything on which results depend, in the words of the plan, as JSON would hold it.
+        All data on which results depend, with the keys of the plan, in JSON types.
     """
 
     name: str
@@ -89,7 +89,7 @@ class Study:
 
     @property
     def chunks(self) -> int:
-        """How many chunks there are; the last one may be smaller."""
+        """The number of chunks; the last one may be smaller."""
         # rounded up
         return -(-self.plan.count // self.chunk_size)
 
@@ -99,12 +99,12 @@ class Study:
         return range(start, min(start + self.chunk_size, self.plan.count))
 
     def varied(self, k: int) -> dict[str, Array]:
-        """What varies in a chunk, in file units, (designs,) each."""
+        """The varied numbers of a chunk, in file units, (designs,) each."""
         designs = self.designs_of(k)
         return values_between(self.plan, designs.start, designs.stop)
 
     def values(self, k: int) -> Mapping[str, Array | float]:
-        """What is not as in the mechanism in a chunk: what varies, and the constants."""
+        """All changed numbers of a chunk: the varied ones and the constants."""
         return {**self.varied(k), **self.constants}
 
     @cached_property
@@ -187,17 +187,17 @@ class Study:
 
 
 def usual_chunk(count: int, rows: int, columns: int) -> int:
-    """How many designs are computed together where a plan does not say.
+    """The default number of designs computed together.
 
     Parameters
     ----------
     count : int
-        Of all designs.
+        Number of designs of the study.
     rows, columns : int
-        Numbers that a design has in memory: so many quantities at so many rows.
+        Size of the arrays of one design: numbers of rows and of quantities.
     """
     # 8 bytes for each float64
     fitting = max(_CHUNK_BYTES // (8 * rows * columns), 1)
     shared = max(-(-count // _CHUNKS_WANTED), _SMALLEST_CHUNK)
-    # a power of two: chunks fill the lanes of the kernels without a rest
+    # a power of two: chunks fill the lanes of the kernels exactly
     return 1 << (min(fitting, shared, _LARGEST_CHUNK).bit_length() - 1)

@@ -19,7 +19,7 @@ from linkwork.foundation.arrays import AnyArray, Array
 __all__ = ["OutputSummary", "Summary", "summary_of"]
 
 _BINS = 12
-_SAME_VALUE = 1e-12  # of their size: values that differ by less are one and the same
+_SAME_VALUE = 1e-12  # relative: values that differ by less are equal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,12 +30,12 @@ class OutputSummary:
     ----------
     name, unit : str
     count : int
-        Of the values that there are.
+        Number of values.
     least, mean, most : float
-        NaN where there are none.
+        NaN without values.
     histogram : tuple of int
-        How many lie in each of equal parts from ``least`` to ``most``; one part where all values
-        are the same to rounding.
+        Numbers of values in equal bins from ``least`` to ``most``; one bin if all values are equal
+        to rounding.
     """
 
     name: str
@@ -49,25 +49,25 @@ class OutputSummary:
 
 @dataclass(frozen=True, kw_only=True)
 class Summary:
-    """What is known of a study from its store.
+    """The summary of a study, computed from its store.
 
     Parameters
     ----------
     name, mechanism : str
     designs, computed : int
-        Designs of the plan, and those in the store.
+        Numbers of designs in the plan and in the store.
     inputs : int
         Rows of each design.
     built, passed : int
         Designs that could be built, and those that passed every filter.
     filters : Mapping[str, (str, int)]
-        By name: the condition, and the designs that pass it.
+        By name: the condition, and the number of designs that pass it.
     rows : Mapping[str, int]
         Rows of designs that were built, by status.
     certified : int
         Rows that are proved.
     problems : Mapping[str, int]
-        Why so many designs could not be built.
+        Number of designs that could not be built, by reason.
     outputs : tuple of OutputSummary
     """
 
@@ -85,7 +85,7 @@ class Summary:
     outputs: tuple[OutputSummary, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON would hold it."""
+        """The summary in JSON types."""
         return asdict(self)
 
 
@@ -95,7 +95,7 @@ def summary_of(store: Path | str) -> Summary:
     Raises
     ------
     InputError
-        If it is no store of a study.
+        If it is not the store of a study.
     """
     path = Path(store)
     known = attributes_of(path)
@@ -140,7 +140,7 @@ def _pieces(array: Any, entries: list[Entry]) -> Iterator[AnyArray]:
 
 
 def _values(name: str, arrays: Any, entries: list[Entry]) -> Iterator[Array]:
-    """What there is of an output in each chunk, of designs that passed."""
+    """The available values of an output in each chunk, of designs that passed."""
     for values, passed in zip(
         _pieces(arrays[name], entries), _pieces(arrays["passed"], entries), strict=True
     ):
@@ -153,7 +153,7 @@ def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
     # two passes, since the ends of the bins are known only after the first
     for values in _values(name, arrays, entries):
         count += values.size
-        # one chunk after the other: the store may be larger than memory
+        # chunk by chunk: the store may be larger than memory
         total += float(values.sum())
         least = min(least, float(values.min(initial=np.inf)))
         most = max(most, float(values.max(initial=-np.inf)))

@@ -1,6 +1,6 @@
 """A worker process: reads parts of a study from its input, writes results to its output.
 
-It ends when whoever started it is gone, so that a run that was killed leaves no process behind.
+It ends with the process that started it, so a killed run leaves no processes.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from linkwork.foundation.errors import LinkworkError
 
 __all__ = ["Answer", "serve"]
 
-#: A part, or why there is none.
+#: A part, or the reason why there is none.
 Answer = Part | str
 
 
 def serve() -> None:
-    """Read jobs with values and answer each with its part, until the input ends."""
+    """Read jobs with values and return the part of each, until the input ends."""
     requests = sys.stdin.buffer
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever prints must not answer
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # printed text must not enter the results
     try:
         while True:
             pickle.dump(_answer(*pickle.load(requests)), answers, pickle.HIGHEST_PROTOCOL)
             answers.flush()
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
-        os._exit(0)  # nobody is there to be told anything else
+        os._exit(0)  # the main process has ended
 
 
 def _answer(job: Job, values: dict[str, object]) -> Answer:
     try:
-        return compute_part(job, values)  # type: ignore[arg-type]  # as they were sent
+        return compute_part(job, values)  # type: ignore[arg-type]  # types as sent
     except LinkworkError as error:
         return str(error)
 

@@ -1,15 +1,15 @@
-"""Processes of this machine compute the parts of a study.
+"""Worker processes on this machine that compute the parts of a study.
 
-``concurrent.futures.ProcessPoolExecutor`` cannot serve here, nor can what is built on
-multiprocessing, such as Dask's ``LocalCluster``:
+``concurrent.futures.ProcessPoolExecutor`` and other pools based on multiprocessing, such as Dask's
+``LocalCluster``, are not suitable:
 
-* Its processes run the caller's main module once more, so a study in a script without
+* Their processes run the caller's main module again, so a study in a script without
   ``if __name__ == "__main__"`` ends in an error.
-* The death of one process breaks the pool and fails all parts under way; which part a process died
-  over is not known, so designs that always kill their worker would be computed for ever.
-* Its processes hold both ends of their pipes, so they outlive a run that was killed.
+* The death of one process breaks the pool and fails all running parts; the part that caused it is
+  not known, so designs that always kill their worker would be retried forever.
+* Their processes hold both ends of their pipes, so they survive a killed run.
 
-A process with a pipe of its own, asked by one thread, has none of this.
+Separate processes, each with its own pipe and thread, avoid these problems.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from linkwork.foundation.errors import InputError
 __all__ = ["Task", "Values", "local_crew", "one_after_the_other", "pump_parts"]
 
 Values = Mapping[str, "Array | float"]
-#: The number of a chunk, and what varies in it.
+#: The number of a chunk, and its varied numbers.
 Task = tuple[int, Values]
 
-_MOST_DEATHS = 3  # of processes over one and the same part
-_PATIENCE = 1.0  # seconds between looks whether somebody wants to interrupt
+_MOST_DEATHS = 3  # deaths of workers on the same part
+_PATIENCE = 1.0  # interval of checks for Ctrl-C [s]
 
 
 class _Future(Protocol):
@@ -46,13 +46,13 @@ class _Future(Protocol):
 
 
 def one_after_the_other(job: Job, tasks: Iterable[Task]) -> Iterator[tuple[int, Part]]:
-    """Parts computed by this process."""
+    """Compute the parts in this process."""
     for k, values in tasks:
         yield k, compute_part(job, values)
 
 
 def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[int, Part]]:
-    """Parts computed by so many processes, in the order in which they are ready."""
+    """Compute the parts in worker processes, in order of completion."""
     crew = _Processes(job, workers)
     pool = ThreadPoolExecutor(workers)
 
@@ -67,7 +67,7 @@ def local_crew(job: Job, tasks: Iterable[Task], workers: int) -> Iterator[tuple[
 def pump_parts(
     tasks: Iterable[Task], submit: Callable[[Values], _Future], most: int
 ) -> Iterator[tuple[int, Part]]:
-    """Parts in the order in which they are ready; no more than ``most`` are under way."""
+    """Parts in order of completion; at most ``most`` are running."""
     ready: SimpleQueue[_Future] = SimpleQueue()
     pending: dict[_Future, int] = {}
     waiting = iter(tasks)
@@ -83,7 +83,7 @@ def pump_parts(
 
 
 def _next(ready: SimpleQueue[_Future]) -> _Future:
-    """The next future that is done; Ctrl-C is heard meanwhile on every system."""
+    """The next completed future; Ctrl-C works meanwhile on every system."""
     while True:
         try:
             return ready.get(timeout=_PATIENCE)
@@ -92,7 +92,7 @@ def _next(ready: SimpleQueue[_Future]) -> _Future:
 
 
 class _Processes:
-    """Worker processes, each asked by one thread at a time."""
+    """Worker processes, each used by one thread at a time."""
 
     def __init__(self, job: Job, count: int) -> None:
         self._job = job
@@ -104,19 +104,19 @@ class _Processes:
             self._idle.put(self._started())
 
     def part(self, values: Values) -> Part:
-        """The part of some designs, by whichever process is idle.
+        """The part of some designs, computed by an idle process.
 
         Raises
         ------
         InputError
-            If the job is refused, or processes die over it again and again.
+            If the job is rejected, or processes die on it repeatedly.
         """
         for _ in range(_MOST_DEATHS):
             process = self._idle.get()
             try:
                 answer = self._asked(process, values)
             except (EOFError, OSError, pickle.UnpicklingError):
-                # an answer cut short leaves the pipe out of step: a new process takes over
+                # after an incomplete answer the pipe cannot be used: start a new process
                 process.kill()
                 self._idle.put(self._in_place_of(process))
                 continue
@@ -139,7 +139,7 @@ class _Processes:
             process.wait()
             for stream in (process.stdin, process.stdout):
                 if stream is not None:
-                    with suppress(OSError):  # what it did not read is lost with it
+                    with suppress(OSError):  # unread data is discarded
                         stream.close()
 
     def _asked(self, process: subprocess.Popen[bytes], values: Values) -> Part | str:
@@ -155,7 +155,7 @@ class _Processes:
             return dead if self._ended else self._started()
 
     def _started(self) -> subprocess.Popen[bytes]:
-        # in a session of its own: Ctrl-C reaches the run, which ends its workers itself
+        # new session: Ctrl-C reaches only the main process, which ends its workers
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", "linkwork.batch.study.worker"],
             stdin=subprocess.PIPE,

@@ -1,7 +1,7 @@
 """Arrays as files of a Zarr store; the only module that uses zarr.
 
-Files are made in memory and written by :mod:`~linkwork.batch.study.store`, so that each appears
-whole or not at all.
+Files are created in memory and written by :mod:`~linkwork.batch.study.store`, each completely or
+not at all.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from linkwork.foundation.errors import MissingPackageError
 
 __all__ = ["LEDGER", "METADATA", "ZarrFiles", "check_packages", "open_arrays"]
 
-#: The group beside the arrays in which finished chunks are listed.
+#: The group that lists finished chunks.
 LEDGER = "ledger"
 #: The file that describes the whole store, or one array in its folder.
 METADATA = "zarr.json"
 
 
 def check_packages() -> None:
-    """Whether what a store needs is installed.
+    """Check that the packages for stores are installed.
 
     Raises
     ------
     MissingPackageError
-        With the command that installs it.
+        If one is missing; with the install command.
     """
     try:
-        import xarray  # noqa: F401 - the units of quantities are asked of it
+        import xarray  # noqa: F401 - for the units of quantities
         import zarr  # noqa: F401
     except ImportError:
         raise MissingPackageError(
@@ -41,7 +41,7 @@ def check_packages() -> None:
 
 
 class ZarrFiles:
-    """The files of a store, made in memory.
+    """The files of a store, created in memory.
 
     Parameters
     ----------
@@ -49,9 +49,9 @@ class ZarrFiles:
     sizes : Mapping[str, int]
         Length of every axis.
     chunk : int
-        Designs in a file.
+        Designs per file.
     attributes : Mapping
-        Of the whole store.
+        Attributes of the store.
     """
 
     def __init__(
@@ -85,10 +85,10 @@ class ZarrFiles:
                 array[:] = variable.values
             self._arrays[variable.name] = array
         with warnings.catch_warnings():
-            # xarray asks for it; readers that do not know it read each array's own file
+            # used by xarray; other readers read the metadata of each array
             warnings.filterwarnings("ignore", message="Consolidated metadata")
             zarr.consolidate_metadata(store)
-        #: Path and content of every file that is there before anything is computed.
+        #: Path and content of the files that exist before any computation.
         self.first = {path: buffer.to_bytes() for path, buffer in self._files.items()}
 
     def encoded(self, designs: range, arrays: Mapping[str, AnyArray]) -> dict[str, bytes]:

@@ -1,1 +1,1 @@
-"""Charts as plain data, made from results alone, and their translation by Matplotlib."""
+"""Charts as plain data computed from results, and their Matplotlib writer."""

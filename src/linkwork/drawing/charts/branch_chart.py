@@ -1,4 +1,4 @@
-"""Small multiples: every branch of every circuit in a panel of its own, side by side."""
+"""Small multiples: one panel for every branch of every circuit."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from linkwork.results.circuits import Branch, Circuits
 __all__ = ["branch_chart"]
 
 _USUAL_COLUMNS, _MOST_COLUMNS = 3, 4
-_STEPS = {1: 8, 2: 4, 3: 4}  # ticks of a turn, by the number of columns
+_STEPS = {1: 8, 2: 4, 3: 4}  # ticks per turn, by the number of columns
 
 
 def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
-    """Every branch in a panel of its own, all the others behind it in grey.
+    """One panel for every branch, with all others behind it in grey.
 
     Parameters
     ----------
     names : sequence of str
-        The quantities to show, one below the other; the first unknown if left out.
+        The quantities to show, one below the other; by default the first unknown.
 
     Raises
     ------
     InputError
-        If there is no circuit, or more branches than stand in a row for several quantities.
+        If there is no circuit, or too many branches for several quantities.
     UnknownNameError
-        For a quantity that does not exist.
+        If a quantity does not exist.
     """
     every = circuit_chart(circuits, names)
     shown = every.panels if names else every.panels[:1]
@@ -59,7 +59,7 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
 
 
 def _columns(count: int) -> int:
-    """How many panels stand in a row."""
+    """The number of panels in a row."""
     if count == 4:
         return 2
     return max(1, min(count, _USUAL_COLUMNS if count <= _USUAL_COLUMNS**2 else _MOST_COLUMNS))
@@ -70,7 +70,7 @@ def _axis(axis: Axis, columns: int) -> Axis:
 
 
 def _panel(every: Panel, branch: Branch, k: int, *, titled: bool) -> Panel:
-    """The k-th curve of a panel in front of the others, which lose their colour."""
+    """The panel with its k-th curve in front and the others in grey."""
     own = replace(every.curves[k], below=0)
     others = [replace(c, quiet=True) for n, c in enumerate(every.curves) if n != k]
     title = "\n".join(filter(None, (branch.name, branch.configuration))) if titled else ""
@@ -79,7 +79,7 @@ def _panel(every: Panel, branch: Branch, k: int, *, titled: bool) -> Panel:
 
 
 def _ends(curve: Curve, x: float, y: float) -> bool:
-    """Whether a point is one of a curve's."""
+    """Whether a point belongs to a curve."""
     points = np.stack([curve.x, curve.y], axis=1)
     size = np.maximum(np.nanmax(np.abs(points), axis=0), 1.0)
     return bool((np.abs(points - (x, y)) < 1e-9 * size).all(axis=1).any())

@@ -12,35 +12,35 @@ __all__ = ["Axis", "Band", "Chart", "Curve", "Mark", "Panel", "Pen", "Rule", "Sc
 
 
 class Shape(Enum):
-    """What the sides of a panel are."""
+    """The kind of a panel's axes."""
 
-    GRAPH = auto()  # one quantity over another one
-    PLANE = auto()  # both coordinates to one scale
-    POLAR = auto()  # a radius over an angle
+    GRAPH = auto()  # one quantity against another
+    PLANE = auto()  # both coordinates with equal scale
+    POLAR = auto()  # radius against angle
 
 
 class Scale(Enum):
-    """How values are spread along an axis."""
+    """The scale of an axis."""
 
     LINEAR = auto()
     LOG = auto()
-    ROUNDING = auto()  # logarithmic down to the rounding of numbers, zero below it
-    COUNT = auto()  # whole numbers from zero on
+    ROUNDING = auto()  # logarithmic down to unit roundoff, linear to zero below
+    COUNT = auto()  # integers from zero
 
 
 class Pen(Enum):
-    """How a curve is drawn."""
+    """The style of a curve."""
 
     LINE = auto()
-    DOTS = auto()  # every value by itself: neighbours have nothing to do with each other
+    DOTS = auto()  # separate points without connecting lines
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curve:
-    """A line through (x, y), both (K,); NaN breaks it. ``tone`` counts colours from 1.
+    """A line through (x, y), both (K,), broken at NaN. ``tone`` is the colour number from 1.
 
-    ``below`` counts the later curves that run over it: it shows on both sides of them only if it
-    is drawn wider. ``quiet`` curves are a background for the others and have no colour.
+    ``below`` is the number of later curves that cover it: it is drawn wider to be visible beside
+    them. ``quiet`` curves are a grey background.
     """
 
     x: Array
@@ -59,9 +59,9 @@ class Curve:
 @dataclass(frozen=True, kw_only=True)
 class Mark:
     """A point of a curve: ``dead point``, ``change point``, ``maximum``, ``minimum``; or a
-    ``station``, a dot with the value of the input beside it.
+    ``station``, a dot labelled with the input value.
 
-    ``away`` is the direction (x, y) in which there is room for ``text``.
+    ``away`` is the direction (x, y) with free space for ``text``.
     """
 
     x: float
@@ -74,9 +74,9 @@ class Mark:
 
 @dataclass(frozen=True, kw_only=True)
 class Rule:
-    """A thin line across a panel, where ``along`` (x or y) has the value ``at``.
+    """A thin line across a panel at the value ``at`` of ``along`` (x or y).
 
-    ``kind`` as in :class:`Mark`; without one it is a quiet line.
+    ``kind`` as in :class:`Mark`; without a kind the line is grey.
     """
 
     along: str
@@ -86,7 +86,7 @@ class Rule:
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """Values of y that are recommended."""
+    """A recommended range of y."""
 
     low: float
     high: float
@@ -95,11 +95,11 @@ class Band:
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """What an axis is called, what it shows, and where its ticks stand.
+    """Label, range and ticks of an axis.
 
-    Without ``ends`` it shows all of its curves; with them, curves may leave it if it is no angle.
-    Ticks stand at ``ticks``, or else at multiples of ``step``, or else at round numbers. ``turn``
-    is a full turn in the unit of an angle, 0 if it is none.
+    Without ``ends`` it shows all of its curves; otherwise curves may leave it unless it is an
+    angle. Ticks are at ``ticks``, otherwise at multiples of ``step``, otherwise at round numbers.
+    ``turn`` is a full turn in the unit of an angle, 0 for other quantities.
     """
 
     label: str
@@ -112,7 +112,7 @@ class Axis:
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """Curves over the common axis, or over an axis ``across`` of their own."""
+    """Curves over the common axis, or over a separate axis ``across``."""
 
     axis: Axis
     curves: tuple[Curve, ...]
@@ -126,10 +126,9 @@ class Panel:
 
 @dataclass(frozen=True, kw_only=True)
 class Chart:
-    """Panels in rows of ``columns``; graphs stand over one common axis.
+    """Panels in rows of ``columns``; graphs share one axis.
 
-    ``legend`` names the curves and marks that a reader could not tell otherwise: all of them
-    unless it is given.
+    ``legend`` names the curves and marks that need a legend entry; by default all.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""Every circuit as a closed curve of each quantity over the input."""
+"""Chart of all circuits as closed curves of each quantity over the input."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["MOST_PANELS", "circuit_chart"]
 
-#: Unknowns that are shown if nobody says which.
+#: Maximum number of unknowns shown by default.
 MOST_PANELS = 6
 
 
 def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     """Every circuit as a closed curve of each quantity over the input, limits marked.
 
-    An angle input is shown over one turn. An angle is shown over the turn that cuts its curves
-    least, or over less where that shows them all.
+    An angle input is shown over one turn. Other angles are shown over the turn that
+    cuts the fewest curves, or over less if that shows all.
 
     Parameters
     ----------
     names : sequence of str
-        The quantities to show; the first :data:`MOST_PANELS` unknowns if left out.
+        The quantities to show; by default the first :data:`MOST_PANELS` unknowns.
 
     Raises
     ------
     InputError
         If there is no circuit.
     UnknownNameError
-        For a quantity that does not exist.
+        If a quantity does not exist.
     """
     if not len(circuits):
         raise InputError(f'"{circuits.mechanism}" has no circuit to draw: {circuits.message}')
@@ -102,14 +102,14 @@ def _marks(
     window: Window,
     lines: Iterable[tuple[Array, Array]],
 ) -> list[Mark]:
-    """Dead points and change points on the curves of one quantity, at both edges if need be."""
+    """Dead points and change points on the curves of one quantity, at both edges if necessary."""
     x, y = rounded(motion[driver], window.x_turn), rounded(motion[name], window.y_turn)
     ends = np.concatenate([np.stack(line, axis=1) for line in lines])
     near = window.tolerance(ends)
     found: list[Mark] = []
     for k in (k for k, kind in enumerate(motion.limit) if kind):
         for place in window.shown_on(ends, float(x[k]), float(y[k])):
-            # a dead point is the end of two branches: it is marked once
+            # a dead point ends two branches, but is marked once
             if not any((np.abs(np.subtract(place, (m.x, m.y))) < near).all() for m in found):
                 found.append(Mark(x=place[0], y=place[1], tone=tone, kind=motion.limit[k]))
     return found

@@ -1,4 +1,4 @@
-"""Columns of a motion, ready to be drawn: what they are called, measured in, spread over."""
+"""Columns of a motion for charts: labels, units and scales."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from linkwork.results.quantity import Kind, Rate
 
 __all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of"]
 
-#: What ``against`` calls the time.
+#: Name of the time in ``against``.
 TIME = "time"
 
-#: Columns of a table that are text.
+#: Text columns of a table.
 _TEXTS = ("status", "certified", "branch", "limit")
 
-#: Numbers about a position that are not drawn as lines over a logarithmic axis.
+#: Scale and style of evidence not drawn as lines over a logarithmic axis.
 _EVIDENCE: Mapping[str, tuple[Scale, Pen]] = {
     "residual": (Scale.ROUNDING, Pen.DOTS),
     "iterations": (Scale.COUNT, Pen.DOTS),
@@ -39,22 +39,22 @@ class Column:
     Parameters
     ----------
     name : str
-        As the motion spells it, ``theta13.d1``.
+        As in the motion, ``theta13.d1``.
     label, unit : str
-        As printed without the unit, and the unit as tables write it.
+        The printed label without unit, and the unit as in tables.
     measure : str
-        What it measures, in a word: ``angle``, ``length``, ``velocity``; columns of one measure
-        and unit share a panel. "" for numbers that share it with nothing.
+        Kind of quantity: ``angle``, ``length``, ``velocity``; columns with equal measure and unit
+        share a panel. "" for numbers with a panel of their own.
     values : array (N,)
         File units, NaN where there is no position.
     turn : float
-        A full turn in that unit, 0 if it is no angle.
+        A full turn in that unit, 0 unless it is an angle.
     slope : array (N,), optional
-        Of an angle that may jump: its derivative by the input, both as they are counted here.
+        For an angle that may jump: its derivative with respect to the input, in these units.
     size : float
-        What is large for it: differences of a billionth are rounding.
+        Typical size: differences below 1e-9 of it are rounding.
     scale, pen
-        How it is spread along an axis and drawn.
+        Scale of its axis and style of its curve.
     """
 
     name: str
@@ -70,7 +70,7 @@ class Column:
 
     @property
     def rate(self) -> bool:
-        """Whether it is a derivative: these grow beyond all limits at dead points."""
+        """Whether it is a derivative, which is unbounded at dead points."""
         return Rate.split(self.name)[1] is not None
 
 
@@ -82,16 +82,16 @@ def lead_of(motion: Motion) -> str:
 
 
 def column_of(motion: Motion, name: str) -> Column:
-    """A column by its name: quantity, input, coordinate, rate, or ``residual`` and the like.
+    """A column by name: quantity, input, coordinate, rate, or evidence such as ``residual``.
 
-    ``B.velocity`` is the length of the vector, of a point B.
+    ``B.velocity`` of a point B is the magnitude of the vector.
 
     Raises
     ------
     UnknownNameError
-        With the names that exist; for rates by time, with what to add.
+        Lists the existing names; for rates with respect to time, states the missing speed.
     InputError
-        If the column is text, or a point has to be followed by one of its coordinates.
+        If the column is text, or a point without coordinate.
     """
     if name in _TEXTS:
         raise InputError(f'"{name}" is text and cannot be plotted')
@@ -126,10 +126,10 @@ def column_of(motion: Motion, name: str) -> Column:
 
 
 def _evidence(motion: Motion, asked: Asked) -> Column:
-    """A number about positions, of those found."""
+    """A number about the positions found."""
     scale, pen = _EVIDENCE.get(asked.name, (Scale.LOG, Pen.LINE))
     shown = motion.found
-    if asked.name == "condition":  # infinite at dead points but for rounding
+    if asked.name == "condition":  # infinite at dead points, up to rounding
         shown = shown & ~np.isin(motion.limit, ("dead point", "change point"))
     values = np.where(shown, motion[asked.name].astype(float), np.nan)
     label = asked.name.replace("_", " ")
@@ -139,7 +139,7 @@ def _evidence(motion: Motion, asked: Asked) -> Column:
 
 
 def _rate(motion: Motion, asked: Asked, rate: Rate) -> Column:
-    """A rate of a quantity, or the length of a point's."""
+    """A rate of a quantity, or its magnitude for a point."""
     own, of_point = asked.own, asked.group is Group.POINT
     size = _reach(motion) if own.kind is Kind.LENGTH else 1.0
     return Column(
@@ -153,19 +153,19 @@ def _rate(motion: Motion, asked: Asked, rate: Rate) -> Column:
 
 
 def _reach(motion: Motion) -> float:
-    """How far the mechanism's points are from each other: the size of its lengths."""
+    """The typical length: the extent of the mechanism's points."""
     places = [series.value for pair in motion.points.values() for series in pair]
     found = [p[np.isfinite(p)] for p in places]
     return max((float(np.ptp(p)) for p in found if len(p)), default=0.0) or 1.0
 
 
 def abscissa_of(motion: Motion, against: str = "") -> Column:
-    """What a motion is drawn over: the leading input, ``time``, or any column.
+    """The abscissa of a motion: the leading input, ``time``, or any column.
 
     Raises
     ------
     InputError
-        If the time is not known, or as :func:`column_of`.
+        If there is no input speed, or as :func:`column_of`.
     """
     if not against:
         return column_of(motion, lead_of(motion))
@@ -175,7 +175,7 @@ def abscissa_of(motion: Motion, against: str = "") -> Column:
 
 
 def _time(motion: Motion) -> Column:
-    """Time from the first row on, while the leading input moves at its speed."""
+    """Time since the first row, at constant speed of the leading input."""
     lead = lead_of(motion)
     if motion.speed is None:
         raise InputError(
@@ -195,6 +195,6 @@ def _time(motion: Motion) -> Column:
 
 
 def _speed_of(motion: Motion) -> str:
-    """A speed as one would write it for this input."""
+    """An example of a speed for this input."""
     unit = motion.input_units[lead_of(motion)]
     return "60 rpm" if unit == motion.units.angle.value else f"50 {unit}/s" if unit else "50"

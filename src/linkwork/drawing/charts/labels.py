@@ -1,4 +1,4 @@
-"""Columns of a motion as figures name them: ``θ₁₃ [deg]``, ``ds₁₆/dθ₁₂ [mm/rad]``."""
+"""Labels of columns in figures: ``θ₁₃ [deg]``, ``ds₁₆/dθ₁₂ [mm/rad]``."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def printed_unit(unit: str) -> str:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """``ds₁₆/dθ₁₂ [mm/rad]``; a number without a unit, or by one without, stands alone."""
+    """``ds₁₆/dθ₁₂ [mm/rad]``; without brackets if there is no unit."""
     return f"{text} [{printed_unit(unit)}]" if unit.replace("^2", "") not in ("", "1/1") else text
 
 
 def axis_label(name: str, unit: str) -> str:
-    """The label of an axis that shows a quantity: ``θ₁₃ [deg]``."""
+    """The axis label of a quantity: ``θ₁₃ [deg]``."""
     return with_unit(printed_name(name), unit)
 
 
@@ -35,11 +35,11 @@ def rate_label(name: str, rate: Rate, driver: str) -> str:
 
 
 def size_label(point: str, rate: Rate, driver: str) -> str:
-    """The length of a point's rate: ``|velocity of B|``."""
+    """The magnitude of a point's rate: ``|velocity of B|``."""
     return f"|{rate_label(point, rate, driver)}|"
 
 
 def _term(name: str) -> str:
-    """A name behind the d of a derivative: words stand apart from it."""
+    """A name after the d of a derivative; words are separated by a space."""
     stem = pretty(name).partition(".")[0].rstrip("0123456789'")
     return printed_name(name) if len(stem) == 1 else f" {printed_name(name)}"

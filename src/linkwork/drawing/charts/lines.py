@@ -1,4 +1,4 @@
-"""Rows of a motion as lines: broken where there is no position, no way, or an angle jumps."""
+"""Rows of a motion as lines, broken at missing positions, gaps and jumps of angles."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ from linkwork.results.motion import LimitKind, Motion
 __all__ = ["breaks", "broken", "limit_marks", "runs"]
 
 _DEAD = LimitKind.DEAD_POINT.word
-_FURTHER = 1.5  # steps of the table: rows that are further apart are no neighbours
+_FURTHER = 1.5  # steps of the table: rows further apart are not neighbours
 _SINGULAR = (_DEAD, LimitKind.CHANGE_POINT.word, LimitKind.UNKNOWN.word)
 
 
 def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
-    """Between which neighbouring rows nothing may be drawn, shape (N - 1,).
+    """Whether the line between neighbouring rows is interrupted, shape (N - 1,).
 
-    Rows on different branches are not neighbours on the way, nor are rows whose inputs are further
-    apart than the table's, which are named whole turns away, nor two dead points without a row
-    between them: there may be none. An angle jumps if it changes by more than half a turn other
-    than its derivative says.
+    It is between rows on different branches, between rows whose inputs differ by more than the
+    table's step, and between two dead points without a row between them. An angle jumps if its
+    change differs by more than half a turn from that predicted by its derivative.
 
     Parameters
     ----------
@@ -45,7 +44,7 @@ def breaks(motion: Motion, lead: Array, *columns: Column) -> BoolArray:
 
 def _jumps(column: Column, slope: Array, dx: Array) -> BoolArray:
     dy = np.diff(column.values)
-    # the first finite one of both ends: at a dead point there is none
+    # the first finite one of both ends; none at a dead point
     ahead, behind = slope[:-1], slope[1:]
     steady = np.where(np.isfinite(ahead), ahead, behind)
     expected = np.where(np.isfinite(steady), steady, 0.0) * dx
@@ -55,12 +54,12 @@ def _jumps(column: Column, slope: Array, dx: Array) -> BoolArray:
 
 
 def broken(values: Array, where: BoolArray) -> Array:
-    """Values (N,) with NaN between the rows that ``where`` (N - 1,) parts."""
+    """Values (N,) with NaN inserted between the rows marked in ``where`` (N - 1,)."""
     return np.insert(values, np.flatnonzero(where) + 1, np.nan)
 
 
 def runs(x: Array, y: Array) -> Iterator[tuple[Array, Array]]:
-    """The pieces of a line between its NaN."""
+    """The pieces of a line between NaN values."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], np.isfinite(x + y).astype(int), [0]))))
     for start, stop in zip(edges[::2], edges[1::2], strict=True):
         yield x[start:stop], y[start:stop]
@@ -69,9 +68,10 @@ def runs(x: Array, y: Array) -> Iterator[tuple[Array, Array]]:
 def limit_marks(
     motion: Motion, across: Column, column: Column, tone: int
 ) -> tuple[list[Mark], list[Rule]]:
-    """Dead points, change points and extremes of a column: marks on it, rules where it is not.
+    """Dead points, change points and extremes of a column: marks on it, or rules if it has no
+    value.
 
-    Derivatives and conditions have no value at a dead point; only its place is shown.
+    Derivatives and conditions have no value at a dead point; a rule shows the input.
     """
     marks: list[Mark] = []
     rules: list[Rule] = []

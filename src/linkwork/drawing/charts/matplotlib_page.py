@@ -1,4 +1,4 @@
-"""Charts as Matplotlib figures of their own."""
+"""Charts as Matplotlib figures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["chart_figure", "draw_page", "legend_entries"]
 
 
 def chart_figure(chart: Chart, theme: Theme | ChartTheme) -> Figure:
-    """A chart as a figure of its own."""
+    """A chart as a new figure."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -37,7 +37,7 @@ def chart_figure(chart: Chart, theme: Theme | ChartTheme) -> Figure:
 
 
 def draw_page(figure: Figure, chart: Chart, theme: ChartTheme) -> list[Axes]:
-    """Draw a chart on an empty figure, which takes the size of its page; returns its panels."""
+    """Draw a chart on an empty figure and set its size; returns the axes of the panels."""
     entries = legend_entries(chart, theme)
     page = page_of(chart, [entry.get_label() for entry in entries], _ratio(chart))
     figure.set_size_inches(page.width, page.height)
@@ -74,7 +74,7 @@ def _panel(figure: Figure, chart: Chart, k: int, page: Page, theme: ChartTheme) 
 
 
 def _ratio(chart: Chart) -> float:
-    """Of planes, the height of what they show by its width; the tallest one's."""
+    """The largest height-to-width ratio of the areas shown by planes."""
     ratios = []
     for panel in chart.panels:
         sides = []
@@ -119,7 +119,7 @@ def legend_entries(chart: Chart, theme: ChartTheme) -> list[Any]:
 def _legend(
     figure: Figure, entry: Any, page: Page, place: tuple[float, float], theme: ChartTheme
 ) -> None:
-    """One entry of the legend, its left upper corner at ``place`` [inches]."""
+    """One legend entry with its upper left corner at ``place`` [inches]."""
     figure.legend(
         handles=[entry],
         loc="upper left",

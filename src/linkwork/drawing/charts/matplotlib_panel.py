@@ -1,4 +1,4 @@
-"""One panel of a chart as Matplotlib axes: translated, not designed, here."""
+"""The translation of one panel of a chart to Matplotlib axes."""
 
 from __future__ import annotations
 
@@ -21,27 +21,30 @@ if TYPE_CHECKING:
 
 __all__ = ["band_style", "curve_style", "draw_panel", "mark_style", "rule_style"]
 
-_LINE, _WIDER = 1.6, 1.7  # points: a curve, and what it grows by for every curve that hides it
+_LINE, _WIDER = (
+    1.6,
+    1.7,
+)  # points: width of a curve, and increase per curve on top
 _QUIET = 1.0
-_DOT = 2.2  # points: the diameter of a value that stands alone
+_DOT = 2.2  # points: the diameter of an isolated value
 _TICK = 0.9 * SMALL
 _STATION, _STATION_TEXT = 3.2, 7.5
-_BESIDE = 0.35  # of a unit vector: a text in this direction is beside what it belongs to
-_ROOM = 0.33  # inches around what a plane shows, for the texts of stations
+_BESIDE = 0.35  # component of a unit vector beyond which a text is placed left or right
+_ROOM = 0.33  # inches around a plane's curves, for the texts of stations
 _LABEL_AT = 0.62  # inches left of a panel
-_MOST_TICKS = ((4.0, 8), (1.5, 5), (0.0, 3))  # by the length of a side [inches]
+_MOST_TICKS = ((4.0, 8), (1.5, 5), (0.0, 3))  # for the length of a side [inches]
 _SHAPES = {"dead point": "o", "change point": "D", "maximum": "^", "minimum": "v"}
-#: Curves of one colour differ in these.
+#: Dashes of curves with the same colour.
 _DASHES: tuple[Any, ...] = ("solid", (0, (4.0, 1.6)), (0, (1.0, 1.2)), (0, (4.0, 1.4, 1.0, 1.4)))
 _RULE_DASHES = {"dead point": (0, (1.0, 1.6)), "change point": (0, (5.0, 2.0, 1.0, 2.0))}
-_LARGE = 1e5  # from here on numbers are written with powers of ten
-_ROUNDING = 1e-16  # residuals below it are shown as zero
-_DECADES = 3  # an axis over more of them has ticks at powers of ten only
+_LARGE = 1e5  # larger numbers are written with powers of ten
+_ROUNDING = 1e-16  # smaller residuals are shown as zero
+_DECADES = 3  # with more decades, ticks are at powers of ten only
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def draw_panel(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
-    """Draw a panel into axes, which are polar for a polar panel."""
+    """Draw a panel into axes (polar axes for a polar panel)."""
     polar = panel.shape is Shape.POLAR
     ax.set_facecolor(theme.background)
     across = panel.across or across
@@ -101,13 +104,13 @@ def band_style(theme: ChartTheme) -> dict[str, Any]:
 
 
 def _curve(ax: Axes, curve: Curve, turned: float, theme: ChartTheme, leaves: bool) -> None:
-    """A curve; a position between two that are missing is a dot."""
+    """Draw a curve; isolated positions are dots."""
     style = curve_style(theme, curve.tone, curve.pen)
     if curve.quiet:
         style = {"color": theme.rule, "linestyle": "solid", "linewidth": _QUIET}
     elif curve.pen is Pen.LINE:
         style["linewidth"] += _WIDER * curve.below
-    # unless it leaves the panel, half of a line along an edge must not be cut off
+    # do not clip a line along an edge, unless it leaves the panel
     place: dict[str, Any] = {"clip_on": leaves, "zorder": 2.5 if curve.quiet else 3}
     x, y = curve.x * turned, curve.y
     ax.plot(x, y, gid=f"curve:{curve.name}", **style, **place)
@@ -134,7 +137,7 @@ def _mark(ax: Axes, mark: Mark, turned: float, theme: ChartTheme, leaves: bool) 
             (mark.x * turned, mark.y),
             xytext=(5.5 * x, 5.5 * y),
             textcoords="offset points",
-            # beside a dot, the nearer end of the text stands at it; above and below, its middle
+            # left or right of a dot, align the nearer end of the text; above or below, its middle
             ha="left" if x > _BESIDE else "right" if x < -_BESIDE else "center",
             va="bottom" if y > _BESIDE else "top" if y < -_BESIDE else "center",
             fontsize=_STATION_TEXT,
@@ -155,7 +158,7 @@ def _rule(ax: Axes, rule: Rule, theme: ChartTheme) -> None:
 
 
 def _sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
-    """Labels, grid and sides of a panel that is not round."""
+    """Labels, grid and sides of a panel that is not polar."""
     if panel.shape is Shape.PLANE:
         _to_one_scale(ax, panel, across)
     _name(ax, panel, theme, pad=4.0)
@@ -173,7 +176,7 @@ def _sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
 
 
 def _to_one_scale(ax: Axes, panel: Panel, across: Axis) -> None:
-    """Show what a plane has to show, and as much around it as fills the axes."""
+    """Set the limits of a plane to its curves, enlarged to fill the axes."""
     wanted = []
     for axis, ticked in ((across, ax.xaxis), (panel.axis, ax.yaxis)):
         low, high = axis.ends or ticked.get_data_interval()
@@ -196,7 +199,7 @@ def _name(ax: Axes, panel: Panel, theme: ChartTheme, pad: float) -> None:
 
 
 def _polar_sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
-    """Angles around, radii along a ray, the circle of zero where radii may be negative."""
+    """Angle labels, radius labels along a ray, and the zero circle if radii may be negative."""
     places = np.arange(0.0, across.turn - 1e-9, across.step)
     text = _tick_text(across)
     ax.set_xticks([place * math.tau / across.turn for place in places])
@@ -206,7 +209,7 @@ def _polar_sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> Non
     ax.set_axisbelow(True)
     ax.tick_params(colors=theme.faint, labelsize=_TICK)
     ax.spines["polar"].set_color(theme.rule)
-    ax.set_rlabel_position(15.0)  # type: ignore[attr-defined]  # of polar axes only
+    ax.set_rlabel_position(15.0)  # type: ignore[attr-defined]  # polar axes only
     for label in ax.get_yticklabels():
         label.set_bbox(
             {"facecolor": theme.background, "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
@@ -215,7 +218,7 @@ def _polar_sides(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> Non
 
 
 def _scale(ticked: TickedAxis, axis: Axis, show: Callable[[float, float], Any]) -> None:
-    """Ends and ticks of an axis."""
+    """Set the ends and ticks of an axis."""
     from matplotlib.ticker import FixedLocator, MaxNLocator, MultipleLocator, NullLocator
 
     ax = ticked.axes
@@ -247,7 +250,7 @@ def _scale(ticked: TickedAxis, axis: Axis, show: Callable[[float, float], Any]) 
 
 
 def _large(ticked: TickedAxis, axis: Axis) -> bool:
-    """Whether some ticks need a power of ten: then all of them have it."""
+    """Whether any tick needs a power of ten; then all are written with it."""
     return not axis.turn and max(map(abs, ticked.get_view_interval())) >= _LARGE
 
 
@@ -269,7 +272,7 @@ def _log_scale(ax: Axes, name: str, ticked: TickedAxis) -> None:
     if not (low > 0 and math.isfinite(high)):
         return
     few = math.log10(high / low) < _DECADES
-    # ends at ticks, so that there are at least two of them
+    # ends at ticks, for at least two ticks
     steps = (1, 2, 5) if few else (1,)
     every = [s * 10.0**k for k in range(-324 + 16, 308) for s in steps]
     first = max((v for v in every if v <= low * 1.001), default=low)
@@ -283,7 +286,7 @@ def _log_scale(ax: Axes, name: str, ticked: TickedAxis) -> None:
 
 
 def _rounding_scale(ax: Axes, name: str, ticked: TickedAxis) -> None:
-    """Decades above the rounding of numbers, and zero below them."""
+    """Set a scale of decades above unit roundoff, and zero below."""
     from matplotlib.ticker import FixedLocator, NullLocator
 
     _, high = ticked.get_data_interval()
@@ -312,7 +315,7 @@ def _power_text(value: float) -> str:
 
 
 def _tick_text(axis: Axis) -> Callable[[float], str]:
-    """How the ticks of an axis are written: radians as parts of π where they stand at them."""
+    """The format of ticks: radians as fractions of π where possible."""
     stands = axis.ticks or (axis.step,)
     parts = [value / math.pi * 36 for value in stands]
     whole = all(abs(part - round(part)) < 1e-9 for part in parts) and max(parts) >= 1
@@ -328,7 +331,7 @@ def _plain(value: float) -> str:
 
 
 def _pi_text(value: float) -> str:
-    """A multiple of π/36 as one writes it: ``0``, ``π/4``, ``3π/2``, ``−π``."""
+    """A multiple of π/36 in usual notation: ``0``, ``π/4``, ``3π/2``, ``−π``."""
     part = Fraction(round(value / math.pi * 36), 36)
     if not part:
         return "0"

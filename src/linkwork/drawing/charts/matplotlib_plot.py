@@ -1,7 +1,7 @@
-"""Charts for notebooks and scripts: in figures that Matplotlib shows, or in axes of the caller.
+"""Charts for notebooks and scripts, in new figures or in existing axes.
 
-This is what ``motion.plot`` and ``circuits.plot`` do. A new figure is one of pyplot's, so that a
-notebook displays it and ``matplotlib.pyplot.show`` finds it.
+This module implements ``motion.plot`` and ``circuits.plot``. New figures belong to pyplot, so that
+notebooks and ``matplotlib.pyplot.show`` display them.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_chart", "plot_circuits", "plot_motion"]
 
-_COLUMNS = 4  # entries of a legend side by side, in axes of the caller
-_ROW = 1.7  # height of a row of the legend, in sizes of its letters
+_COLUMNS = 4  # columns of a legend in existing axes
+_ROW = 1.7  # height of a legend row, in font sizes
 
 
 def plot_motion(
@@ -64,17 +64,17 @@ def plot_circuits(
 def plot_chart(
     chart: Chart, *, ax: Any = None, theme: str = "light", title: str | None = None
 ) -> PlotAxes:
-    """Draw a chart into a new figure, or its panels into axes of the caller.
+    """Draw a chart into a new figure, or its panels into existing axes.
 
     Returns
     -------
     Axes or tuple of Axes
-        One for each panel; of a chart with one panel the axes themselves.
+        One for each panel; a single Axes for a chart with one panel.
 
     Raises
     ------
     InputError
-        If there are more or fewer axes than panels, or a polar panel is to be drawn into others.
+        If the number of axes differs from that of panels, or a polar panel needs polar axes.
     MissingPackageError
         If Matplotlib is not installed.
     """
@@ -113,7 +113,7 @@ def _given(ax: Any, chart: Chart) -> list[Axes]:
 
 
 def _label(drawn: Sequence[Axes], chart: Chart, theme: ChartTheme) -> None:
-    """Title, legend and lower labels: the legend stands above the first panel, not in it."""
+    """Add title, legend and lower labels; the legend is above the first panel."""
     entries = legend_entries(chart, theme)
     rows = -(-len(entries) // _COLUMNS)
     first = drawn[0]

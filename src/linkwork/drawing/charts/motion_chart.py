@@ -23,33 +23,33 @@ from linkwork.results.motion import Motion
 
 __all__ = ["across_axis", "check_found", "columns_of", "motion_chart", "shared_panels"]
 
-_MOST_CURVES = 6  # in a panel: as many as there are colours
-_BESIDE = 15.0  # em: the longest label beside a panel that names all of its curves
-_BEYOND = 4.0  # times as far as most of it: a curve that runs to infinity at a dead point
+_MOST_CURVES = 6  # curves in a panel: the number of colours
+_BESIDE = 15.0  # em: the longest axis label that names all curves of a panel
+_BEYOND = 4.0  # beyond this multiple of its usual range a curve runs to infinity at a dead point
 
 
 def motion_chart(
     motion: Motion, names: Sequence[str] = (), *, against: str = "", wrapped: bool = False
 ) -> Chart:
-    """Columns over the leading input, those of one unit in one panel, limits marked.
+    """Columns over the leading input, one panel per unit, with limits marked.
 
-    Lines are broken where there is no position.
+    Lines are broken at rows without position.
 
     Parameters
     ----------
     names : sequence of str
-        The columns; unknowns and outputs if left out.
+        The columns; by default unknowns and outputs.
     against : str
-        Over which column, or ``time``; over the leading input if left out.
+        The column of the abscissa, or ``time``; by default the leading input.
     wrapped : bool
-        Show angles over one turn; a line goes on at the other side of the panel.
+        Reduce angles to one turn; lines continue at the other side of the panel.
 
     Raises
     ------
     InputError
-        If no position was found, a name is text or a point, or there is no time.
+        If no position was found, a name is text or a point, or the input has no speed.
     UnknownNameError
-        For a column that does not exist.
+        If a column does not exist.
     """
     check_found(motion)
     across = abscissa_of(motion, against)
@@ -68,13 +68,13 @@ def motion_chart(
 
 
 def check_found(motion: Motion) -> None:
-    """Refuse a motion without a position."""
+    """Reject a motion without positions."""
     if not motion.found.any():
         raise InputError(f'"{motion.mechanism}" has no position to plot: {motion.message}')
 
 
 def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
-    """The columns of some names, each once."""
+    """The columns with these names, without duplicates."""
     if not names:
         raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
     found = {column.name: column for column in (column_of(motion, name) for name in names)}
@@ -84,7 +84,7 @@ def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
 def shared_panels(
     motion: Motion, across: Column, columns: Sequence[Column], *, wrapped: bool = False
 ) -> list[Panel]:
-    """Panels of columns over one of them; those of one measure and unit share a panel."""
+    """Panels of columns over one abscissa; columns of equal measure and unit share a panel."""
     groups = _grouped(columns)
     order = [column.name for group in groups for column in group]
     tones = {name: tone for tone, name in enumerate(order, start=1)}
@@ -92,7 +92,7 @@ def shared_panels(
 
 
 def _grouped(columns: Sequence[Column]) -> list[list[Column]]:
-    """Columns that share a panel: of one measure and unit, as many as can be told apart."""
+    """Groups of columns of equal measure and unit, limited to the number of colours."""
     groups: dict[tuple[str, str], list[Column]] = {}
     for column in columns:
         key = (column.measure, column.unit) if column.measure else ("", column.name)
@@ -128,7 +128,7 @@ def _panel(
 
 
 def _value_axis(motion: Motion, group: Sequence[Column], curves: Sequence[Curve]) -> Axis:
-    """The axis of columns that share a panel: what it is called, what it shows."""
+    """Label and range of the axis of columns that share a panel."""
     first = group[0]
     label = with_unit(", ".join(column.label for column in group), first.unit)
     if len(group) > 1 and text_width(label, 1.0) > _BESIDE:
@@ -155,7 +155,7 @@ def _value_axis(motion: Motion, group: Sequence[Column], curves: Sequence[Curve]
 def _wrapped(
     motion: Motion, axis: Axis, curves: Sequence[Curve], marks: Sequence[Mark]
 ) -> tuple[Axis, list[Curve], list[Mark]]:
-    """The same over one turn: the one that cuts lines least often."""
+    """The panel over one turn, chosen to cut the fewest lines."""
     turn = axis.turn
     pieces = [list(runs(curve.x, rounded(curve.y, turn))) for curve in curves]
     low = origin([y for lines in pieces for _, y in lines], turn)
@@ -174,14 +174,14 @@ def _wrapped(
 
 
 def _joined(pieces: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Pieces of a line behind each other, NaN between them."""
+    """Pieces of a line concatenated with NaN between them."""
     gap = (np.array([np.nan]), np.array([np.nan]))
     parts = [part for piece in pieces for part in (gap, piece)][1:] or [gap]
     return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
 
 
 def across_axis(motion: Motion, across: Column, *, own: bool) -> Axis:
-    """The axis that all panels have in common; an input is shown as far as it was asked for."""
+    """The common axis of all panels; an input is shown over its requested range."""
     axis = Axis(label=with_unit(across.label, across.unit), turn=across.turn, scale=across.scale)
     values = across.values[np.isfinite(across.values)]
     low, high = float(values.min()), float(values.max())

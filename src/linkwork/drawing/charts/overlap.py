@@ -1,4 +1,4 @@
-"""Curves that lie over each other: the lower one is drawn wider, so that both are seen."""
+"""Overlapping curves: the lower one is drawn wider, so that both are visible."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from linkwork.foundation.arrays import Array
 
 __all__ = ["layered"]
 
-_NEAR = 0.004  # of the panel's sides: curves as near as this hide each other
-_LOOKED_AT = 100  # points of a curve, to see whether another one hides it
-_HIDDEN = 0.4  # share of a curve that another one hides, from which on it is drawn wider
+_NEAR = 0.004  # of the panel's sides: nearer curves cover each other
+_LOOKED_AT = 100  # points of a curve checked for cover by another one
+_HIDDEN = 0.4  # a curve with a larger covered share is drawn wider
 
 
 def layered(curves: Sequence[Curve]) -> list[Curve]:
-    """The curves, each with the number of tones drawn later that hide much of it."""
+    """The curves, each with the number of later tones that cover much of it."""
     points = [np.stack([curve.x, curve.y], axis=1) for curve in curves]
     every = np.concatenate(points)
     if not np.isfinite(every).all(axis=1).any():
@@ -37,7 +37,7 @@ def layered(curves: Sequence[Curve]) -> list[Curve]:
 
 
 def _hidden_share(line: Array, other: Array) -> float:
-    """The share of the points of a line (K, 2) that lie on another one (M, 2)."""
+    """The share of points of a line (K, 2) on another line (M, 2)."""
     points = line[np.isfinite(line).all(axis=1)]
     points = points[:: max(1, len(points) // _LOOKED_AT)]
     start, step = other[:-1], np.diff(other, axis=0)

@@ -1,4 +1,4 @@
-"""Where the parts of a chart stand on a page, in inches: nothing covers anything else."""
+"""Layout of the parts of a chart on a page [inches], without overlap."""
 
 from __future__ import annotations
 
@@ -12,37 +12,37 @@ from linkwork.drawing.scene import text_width
 
 __all__ = ["KEY", "SMALL", "TITLE", "Page", "page_of"]
 
-#: Font sizes in points: of the title; of captions, labels, names of panels; of the legend.
+#: Font sizes in points: title; captions, labels and panel names; legend.
 TITLE, SMALL, KEY = 11.0, 9.0, 8.5
 
 _WIDTH = 6.95
 _LEFT, _RIGHT, _ABOVE, _BELOW = 0.85, 0.25, 0.17, 0.6
-_GAP, _BESIDE = 0.22, 0.3  # between panels that have an axis in common
-_LINE, _NAME = 0.19, 0.15  # of a title, of the name of a panel
+_GAP, _BESIDE = 0.22, 0.3  # between panels with a common axis
+_LINE, _NAME = 0.19, 0.15  # heights of a title and of a panel name
 _LEGEND_LINE, _HANDLE = 0.2, 0.4
-_HEIGHTS = (3.4, 2.4, 1.9)  # of a graph over the width of the page: alone, of two, of more
-_CELL = 0.75  # height of a graph by its width, where several stand side by side
-_PLANE = 4.6  # the longer side of a plane or a polar panel, if there is but one
-_FLATTEST, _TALLEST = 0.4, 1.15  # height of a plane by its width
-_LOWEST = 1.7  # height of a plane: its label has room beside it
-_RIM = 0.3  # around a polar panel, for the angles
+_HEIGHTS = (3.4, 2.4, 1.9)  # height of a full-width graph: alone, of two, of more
+_CELL = 0.75  # height-to-width ratio of graphs side by side
+_PLANE = 4.6  # the longer side of a single plane or polar panel
+_FLATTEST, _TALLEST = 0.4, 1.15  # height-to-width ratio of a plane
+_LOWEST = 1.7  # minimum height of a plane, for its label
+_RIM = 0.3  # margin of a polar panel, for angle labels
 
 
 @dataclass(frozen=True, kw_only=True)
 class Page:
-    """A page of a width and a height.
+    """The layout of a page.
 
     Parameters
     ----------
     heading : tuple of (str, float)
-        Lines of the title and of the caption with the height of their middles; as many as
+        Lines of the title and of the caption with the height of their middles; the first
         ``titles`` belong to the title.
     legend : tuple of (float, float)
-        Left end and upper edge of every entry of the legend.
+        Left end and upper edge of every legend entry.
     panels : tuple of (float, float, float, float)
         Left, bottom, width, height of every panel.
     left : float
-        Where headings begin.
+        Left end of the headings.
     """
 
     width: float
@@ -55,14 +55,14 @@ class Page:
 
 
 def page_of(chart: Chart, legend: Sequence[str], ratio: float = 1.0) -> Page:
-    """The page of a chart.
+    """The layout of a chart.
 
     Parameters
     ----------
     legend : sequence of str
         The texts of the legend's entries.
     ratio : float
-        Of planes: the height of what they show by its width.
+        Height-to-width ratio of the area shown by planes.
     """
     room = _WIDTH - _LEFT - _RIGHT
     titles = lines_within(chart.title, room * 72 / TITLE)
@@ -84,7 +84,7 @@ def page_of(chart: Chart, legend: Sequence[str], ratio: float = 1.0) -> Page:
 
 
 def _legend(texts: Sequence[str]) -> list[tuple[float, int]]:
-    """Left end and row of every entry: as many in a row as the page has room for."""
+    """Left end and row of every entry, with as many entries in a row as fit."""
     found: list[tuple[float, int]] = []
     left, row = math.inf, -1
     for text in texts:
@@ -97,7 +97,7 @@ def _legend(texts: Sequence[str]) -> list[tuple[float, int]]:
 
 
 def _cells(chart: Chart, ratio: float) -> tuple[list[tuple[float, float, float, float]], float]:
-    """Left, distance from the top, width and height of every panel; the height of them all."""
+    """Left, distance from the top, width and height of every panel; and the total height."""
     count, columns = len(chart.panels), chart.columns
     room = _WIDTH - _LEFT - _RIGHT
     shape = chart.panels[0].shape

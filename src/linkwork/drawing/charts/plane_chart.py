@@ -1,4 +1,4 @@
-"""Points in the plane: their paths, and hodographs, the paths of their velocities."""
+"""Charts in the plane: paths of points, and hodographs (paths of velocity vectors)."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from linkwork.results.quantity import Kind, Rate
 __all__ = ["hodograph_chart", "path_chart"]
 
 _NO_AXIS = Axis(label="")
-_APART = 0.09  # of the larger side: the least distance of two stations' texts
-_HIDDEN = 1e-3  # of the larger side: a dot as near as this to another one hides it
-_STATIONS = 8  # along an input that is no angle, about
-_USUAL = 80  # percent of the values, which the others are compared with
-_BEYOND, _SHOWN = 4.0, 2.0  # times these: what runs to infinity, and what of it is shown
+_APART = 0.09  # of the larger side: minimum distance of the texts of stations
+_HIDDEN = 1e-3  # of the larger side: nearer dots cover each other
+_STATIONS = 8  # approximate number for an input that is not an angle
+_USUAL = 80  # percentile of the values used as reference
+_BEYOND, _SHOWN = 4.0, 2.0  # multiples of the reference: unbounded curves, and their shown range
 
 
 def path_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
@@ -36,14 +36,14 @@ def path_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
     Parameters
     ----------
     points : sequence of str
-        The traced points if left out.
+        By default the traced points.
 
     Raises
     ------
     InputError
-        If no position was found, or there is no point.
+        If no position was found, or the mechanism has no points.
     UnknownNameError
-        For a point that does not exist.
+        If a point does not exist.
     """
     check_found(motion)
     names = _points(motion, points)
@@ -56,21 +56,21 @@ def path_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
 
 
 def hodograph_chart(motion: Motion, points: Sequence[str] = ()) -> Chart:
-    """Velocities and accelerations of points as vectors from a pole, and the paths of their ends.
+    """Velocities and accelerations of points as vectors from a pole, and the paths of their tips.
 
-    Without a speed of the input these are the derivatives by it.
+    Without an input speed, these are the derivatives with respect to the input.
 
     Parameters
     ----------
     points : sequence of str
-        The first traced point if left out.
+        By default the first traced point.
 
     Raises
     ------
     InputError
-        If no position was found, or there is no point.
+        If no position was found, or the mechanism has no points.
     UnknownNameError
-        For a point that does not exist.
+        If a point does not exist.
     """
     check_found(motion)
     names = _points(motion, points)[: None if points else 1]
@@ -100,7 +100,7 @@ def _points(motion: Motion, asked: Sequence[str]) -> list[str]:
 
 
 def _moving(motion: Motion) -> tuple[str, ...]:
-    """The last point that does not stand still."""
+    """The last moving point."""
     fixed = set(motion.skeleton.fixed)
     return tuple(name for name in motion.points if name not in fixed)[-1:] or (
         next(iter(motion.points)),
@@ -176,7 +176,7 @@ def _plane(
 
 @dataclass(frozen=True, kw_only=True)
 class _Room:
-    """What a plane shows: all of it, or of curves that run to infinity what is near ``centre``."""
+    """The area of a plane: all curves, or for unbounded curves the part near ``centre``."""
 
     centre: complex
     radius: float
@@ -201,9 +201,9 @@ class _Room:
     def stations(
         self, motion: Motion, path: ComplexArray, tone: int, told: list[complex]
     ) -> Iterator[Mark]:
-        """Stations on a path; where there is room, with their input beside them.
+        """Stations on a path, labelled with the input where space permits.
 
-        ``told`` are the places of texts, which grow by those of this path.
+        ``told`` are the positions of texts; those of this path are added.
         """
         found = np.isfinite(path)
         middle = complex(path[found].mean()) if found.any() else 0j
@@ -245,7 +245,7 @@ def _room(motion: Motion, paths: Sequence[ComplexArray], pole: bool) -> _Room:
 
 
 def _outwards(path: ComplexArray, k: int, middle: complex) -> complex:
-    """The unit normal of a path that points away from its middle."""
+    """The unit normal of a path, pointing away from its middle."""
     around = [path[j] for j in (k - 1, k, k + 1) if 0 <= j < len(path) and np.isfinite(path[j])]
     tangent = around[-1] - around[0]
     normal = 1j * tangent / abs(tangent) if abs(tangent) else 0j
@@ -256,7 +256,7 @@ def _outwards(path: ComplexArray, k: int, middle: complex) -> complex:
 
 
 def _stations(motion: Motion) -> Iterator[tuple[int, str]]:
-    """Rows at round values of the leading input with that value; round ones first."""
+    """Rows at round values of the leading input, with these values; rounder ones first."""
     across = abscissa_of(motion)
     values, rows = across.values, motion.asked & motion.found
     span = float(np.ptp(values[motion.asked]))

@@ -1,4 +1,4 @@
-"""Which chart a kind of plot is."""
+"""Selection of the chart for a kind of plot."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["CIRCUIT_KINDS", "MOTION_KINDS", "PlotKind", "circuits_plot", "motion
 
 
 class PlotKind(Enum):
-    """Kinds of plots; the value is what people type."""
+    """Kinds of plots; the values are those of ``kind=`` and ``--kind``."""
 
     CURVES = "curves"
     POLAR = "polar"
@@ -53,16 +53,16 @@ def motion_plot(
     kind : str
         The value of one of :data:`MOTION_KINDS`.
     against : str
-        A column to plot over, or ``time``; the leading input if left out.
+        The column of the abscissa, or ``time``; by default the leading input.
     wrapped : bool
-        Show angles over one turn.
+        Reduce angles to one turn.
 
     Raises
     ------
     InputError
-        If there is nothing to plot, or the kind does not go with what else is asked.
+        If there is nothing to plot, or the other options do not apply to this kind.
     UnknownNameError
-        For a name or a kind that does not exist.
+        If a name or kind does not exist.
     """
     which = _kind(kind, MOTION_KINDS, "of a motion", "circuits().plot")
     if wrapped and which is not PlotKind.CURVES:
@@ -85,14 +85,14 @@ def motion_plot(
 def circuits_plot(
     circuits: Circuits, names: Sequence[str] = (), *, kind: str = PlotKind.CIRCUITS.value
 ) -> Chart:
-    """The chart of all circuits: together, or branch by branch side by side.
+    """The chart of all circuits, together or with one panel per branch.
 
     Raises
     ------
     InputError
-        If there is no circuit, or more branches than stand beside each other.
+        If there is no circuit, or there are too many branches.
     UnknownNameError
-        For a quantity or a kind that does not exist.
+        If a quantity or kind does not exist.
     """
     which = _kind(kind, CIRCUIT_KINDS, "of circuits", "sweep().plot")
     return (
@@ -107,6 +107,6 @@ def _kind(kind: str, known: Sequence[PlotKind], what: str, elsewhere: str) -> Pl
         if which.value == kind:
             return which
     if kind in [which.value for which in PlotKind]:
-        raise InputError(f'there is no plot {what} of kind "{kind}": {elsewhere} makes it')
+        raise InputError(f'there is no plot {what} of kind "{kind}": use {elsewhere}')
     options = choices("kinds", [which.value for which in known], kind)
     raise UnknownNameError(f'there is no plot {what} of kind "{kind}" {options}')

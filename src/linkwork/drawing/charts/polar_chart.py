@@ -20,8 +20,8 @@ from linkwork.results.quantity import Kind, Rate
 
 __all__ = ["polar_chart"]
 
-_AROUND = 12  # rays of a turn
-_RINGS = 4  # about
+_AROUND = 12  # rays per turn
+_RINGS = 4  # approximate number
 
 
 def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "") -> Chart:
@@ -30,17 +30,17 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
     Parameters
     ----------
     names : sequence of str
-        The columns. If left out: the unknown lengths; of a mechanism without any, how fast the
-        traced points are.
+        The columns. By default the unknown lengths, or if there are none the speeds of the traced
+        points.
     against : str
-        Which angle; the leading input if left out.
+        The angle; by default the leading input.
 
     Raises
     ------
     InputError
-        If no position was found, or what is drawn over is no angle.
+        If no position was found, or ``against`` is not an angle.
     UnknownNameError
-        For a column that does not exist.
+        If a column does not exist.
     """
     check_found(motion)
     across = abscissa_of(motion, against)
@@ -64,20 +64,20 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
 
 
 def _usual(motion: Motion) -> list[str]:
-    """Lengths among the unknowns, else the rates of traced points, else all unknowns."""
+    """The default columns: unknown lengths, else rates of traced points, else all unknowns."""
     lengths = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.LENGTH]
     rate = Rate.FIRST if motion.speed is None else Rate.VELOCITY
     return lengths or [f"{p}.{rate.value}" for p in motion.skeleton.traced] or [*motion.unknowns]
 
 
 def _an_angle(motion: Motion) -> str:
-    """One that there is, for the end of a message."""
+    """An existing angle, for the end of a message."""
     angles = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.ANGLE]
     return f', as in "{angles[0]}"' if angles else ""
 
 
 def _round(motion: Motion, panel: Panel) -> Panel:
-    """A panel around its zero: radii start there, or below it where some are negative."""
+    """A polar panel; radii start at zero, or below it if some are negative."""
     axis = panel.axis
     values = np.concatenate([curve.y for curve in panel.curves])
     low, high = axis.ends or (float(np.nanmin(values)), float(np.nanmax(values)))

@@ -1,5 +1,5 @@
-"""What an axis shows, and where its ticks stand: angles at parts of a turn, lengths at round
-numbers, and no axis that magnifies rounding.
+"""Ranges and ticks of axes: angles at fractions of a turn, lengths at round numbers; rounding
+errors are not magnified.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ _RADIANS = (*_FINE[:-1], *(math.pi / part for part in (12, 6, 4, 2)))
 _TURNS = (0.5, *(d * 10.0**k for k in range(9) for d in (1, 2, 5)))
 _MOST_STEPS = 5
 _MOST_ACROSS = 9
-_FREE = 0.1  # of a step: a curve this near to an edge runs along it,
-_ALONG = 0.1  # if as much of it does; it would look like the edge
+_FREE = 0.1  # of a step: a nearer curve runs along an edge,
+_ALONG = 0.1  # if at least this share does, and looks like the edge
 
-_TAIL = 0.1  # of the input's range at either end of the values, where curves run to infinity
-_LEVEL = 1e-9  # of its size: what a quantity varies by at most if it is constant
-_LEVEL_ROOM = 0.1  # of its size: what is shown above and below a constant
+_TAIL = 0.1  # of the input's range, excluded at either end of the values of unbounded curves
+_LEVEL = 1e-9  # of its size: maximum variation of a constant quantity
+_LEVEL_ROOM = 0.1  # of its size: range shown above and below a constant
 
 
 def _steps(unit: AngleUnit) -> tuple[float, ...]:
@@ -35,10 +35,10 @@ def _steps(unit: AngleUnit) -> tuple[float, ...]:
 
 
 def angle_ends(values: Array, unit: AngleUnit) -> tuple[tuple[float, float], float]:
-    """The ends of an axis that shows angles, NaN among them, and the distance of its ticks.
+    """The ends of an axis of angles (which may include NaN), and the distance of its ticks.
 
-    Both are multiples of a round part of a turn; an angle that stays as it is has a degree, or
-    half a radian's tenth, on either side.
+    Both are multiples of a round fraction of a turn; a constant angle gets a margin of a degree or
+    0.05 rad on either side.
     """
     least, most = float(np.nanmin(values)), float(np.nanmax(values))
     smallest = 0.0
@@ -58,30 +58,30 @@ def angle_ends(values: Array, unit: AngleUnit) -> tuple[tuple[float, float], flo
 
 
 def _along(away: Array) -> int:
-    """One step more, if a curve runs along an edge; ``away`` [steps] are its distances."""
+    """An additional step if a curve runs along an edge; ``away`` [steps] are its distances."""
     return int(float((away < _FREE).mean()) > _ALONG)
 
 
 def across_step(span: float, unit: AngleUnit) -> float:
-    """The distance of ticks along an axis that shows a range of angles."""
+    """The distance of ticks along an axis of angles."""
     return next((step for step in _steps(unit) if span <= _MOST_ACROSS * step), 0.0)
 
 
 def round_step(wanted: float) -> float:
-    """The smallest of 1, 2, 5 times a power of ten that is not below what is wanted."""
+    """``wanted`` rounded up to 1, 2 or 5 times a power of ten."""
     power: float = 10.0 ** math.floor(math.log10(wanted))
     return next(step * power for step in (1, 2, 5, 10) if step * power >= wanted)
 
 
 def level_ends(values: Array, size: float) -> tuple[float, float] | None:
-    """What to show of a quantity that stays as it is but for rounding; ``None`` if it does not.
+    """The axis range of a quantity that is constant up to rounding; ``None`` if it varies.
 
     Parameters
     ----------
     values : array
-        NaN among them.
+        May include NaN.
     size : float
-        What is large for the quantity: rounding is a small part of it.
+        The typical size of the quantity; rounding is a small fraction of it.
     """
     least, most = float(np.nanmin(values)), float(np.nanmax(values))
     size = max(size, abs(least), abs(most))
@@ -95,7 +95,7 @@ def level_ends(values: Array, size: float) -> tuple[float, float] | None:
 
 
 def finite_ends(curves: Sequence[Curve]) -> tuple[float, float] | None:
-    """What to show of curves that run to infinity: twice what most of the input's range takes."""
+    """The axis range of unbounded curves: twice that over most of the input's range."""
     y = np.concatenate([0.5 * (curve.y[1:] + curve.y[:-1]) for curve in curves])
     share = np.concatenate([np.abs(np.diff(curve.x)) for curve in curves])
     order = np.argsort(y)[: int(np.isfinite(y * share).sum())]

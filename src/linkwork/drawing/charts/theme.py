@@ -1,8 +1,8 @@
-"""Colours of charts, in the light and in the dark, built on those of drawings.
+"""Light and dark colours of charts, based on those of drawings.
 
-Curves have the colours of Okabe and Ito in an order in which neighbours differ most, in the dark
-lighter ones of the same hues: told apart with every kind of colour blindness. Texts have a
-contrast of at least 4.5 with the page (WCAG 2.2, success criterion 1.4.3).
+Curves have the colours of Okabe and Ito, ordered so that neighbours differ most; the dark theme
+uses lighter colours of the same hues. They are distinguishable with every kind of colour blindness.
+Texts have a contrast of at least 4.5 with the page (WCAG 2.2, success criterion 1.4.3).
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ class ChartTheme:
     ----------
     background : str
     ink, faint : str
-        Of the title, and of labels, ticks and captions.
+        Colour of the title; of labels, ticks and captions.
     rule : str
-        Of the sides of panels, of their grid and of quiet curves.
+        Sides of panels, grid and background curves.
     band : str
-        Of the values that are recommended.
+        Recommended ranges.
     tones : tuple of str
-        Of curves, by their tone.
+        Curves, by tone.
     """
 
     background: str
@@ -44,7 +44,7 @@ class ChartTheme:
 
     @classmethod
     def of(cls, theme: Theme | ChartTheme) -> ChartTheme:
-        """The chart's colours that go with those of drawings."""
+        """The chart colours that match a theme of drawings."""
         if isinstance(theme, ChartTheme):
             return theme
         return LIGHT_CHART if _luminous(theme.background) else DARK_CHART
@@ -73,5 +73,5 @@ DARK_CHART = ChartTheme(
     tones=("#4FB0F2", "#FF8B42", "#2CCB9B", "#E79AC6", "#F5C043", "#A5DBFF"),
 )
 
-#: Themes by the name that people choose them by.
+#: Themes by name.
 THEMES = {"light": LIGHT_CHART, "dark": DARK_CHART}

@@ -1,4 +1,4 @@
-"""Transmission angles over the input, with the band in which forces are passed on well."""
+"""Transmission angles over the input, with the recommended range."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: st
     Parameters
     ----------
     names : sequence of str
-        Pins of dyads, or columns that are angles, folded to half a turn; all dyads if left out.
+        Pins of dyads, or columns of angles, reduced to half a turn; by default all dyads.
     against : str
-        Over which column, or ``time``; over the leading input if left out.
+        The column of the abscissa, or ``time``; by default the leading input.
 
     Raises
     ------
     InputError
         If no position was found, or there is no dyad and no name.
     UnknownNameError
-        For a name that is neither the pin of a dyad nor an angle.
+        If a name is neither the pin of a dyad nor an angle.
     """
     check_found(motion)
     pins = {dyad.pin: dyad for dyad in dyads_of(motion.skeleton)}
@@ -88,7 +88,7 @@ def _band(motion: Motion) -> Band:
 
 
 def _column(motion: Motion, pins: Mapping[str, Dyad], name: str) -> Column:
-    """The angle at the pin of a dyad, or another angle folded to half a turn."""
+    """The angle at the pin of a dyad, or another angle reduced to half a turn."""
     pin = find_spelling(name, pins)
     if pin not in pins and name in motion.points:
         known = choices("pins with a known transmission angle", pins, name)

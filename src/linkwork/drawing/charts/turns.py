@@ -1,4 +1,4 @@
-"""Angles folded into one turn: lines stop at an edge of the panel and go on at the other."""
+"""Angles reduced to one turn: lines leave at one edge of the panel and continue at the other."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from linkwork.foundation.arrays import Array
 
 __all__ = ["ROUNDING", "Window", "origin", "rounded", "turn_axis"]
 
-#: Of a turn: an angle this near to a whole one lies on it.
+#: In turns: tolerance of whole turns.
 ROUNDING = 1e-9
 
-_ORIGINS = (0.0, -0.5, -0.25, -0.75)  # of a turn: where the turn that a panel shows may begin
+_ORIGINS = (0.0, -0.5, -0.25, -0.75)  # in turns: possible starts of the turn shown
 
 
 def rounded(values: Array, turn: float) -> Array:
-    """Values (K,) with those on quarter turns exactly there: rounding must not fold a line."""
+    """Values (K,) rounded to quarter turns if very near, so that rounding does not break a line."""
     if not turn:
         return values
     quarter = turn / 4
@@ -31,9 +31,9 @@ def rounded(values: Array, turn: float) -> Array:
 
 
 def origin(lines: Sequence[Array], turn: float) -> float:
-    """Where the turn begins that cuts lines of angles least often; 0 unless another cuts less.
+    """The start of the turn that cuts the fewest lines of angles; 0 if no other cuts fewer.
 
-    Of turns that cut as often, the one along whose edges fewest positions lie.
+    Among equal ones, that with the fewest positions on its edges.
     """
     if not turn:
         return 0.0
@@ -43,14 +43,14 @@ def origin(lines: Sequence[Array], turn: float) -> float:
 
 
 def _cuts(lines: Sequence[Array]) -> tuple[int, int]:
-    """How often lines of angles [turns] pass a whole turn, and how many positions lie on one."""
+    """Numbers of crossings of whole turns by lines of angles [turns], and of positions there."""
     ends = [(np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:])) for y in lines]
     passed = sum(int(np.maximum(np.ceil(b) - np.floor(a) - 1, 0).sum()) for a, b in ends)
     return passed, sum(int((y == np.round(y)).sum()) for y in lines)
 
 
 def turn_axis(axis: Axis, lines: Sequence[Array], low: float, unit: AngleUnit) -> Axis:
-    """The turn from ``low`` on, or less where all angles lie within half of it."""
+    """The axis over the turn from ``low``, or less if all angles lie within half of it."""
     turn = unit.turn
     values = np.concatenate(lines)
     if np.nanmax(values) - np.nanmin(values) <= turn / 2:
@@ -61,14 +61,14 @@ def turn_axis(axis: Axis, lines: Sequence[Array], low: float, unit: AngleUnit) -
 
 @dataclass(frozen=True, kw_only=True)
 class Window:
-    """The turn of either coordinate that is shown, 0 where it is no angle; y begins at ``low``."""
+    """The shown turn of both coordinates, 0 for one that is not an angle; y begins at ``low``."""
 
     x_turn: float
     y_turn: float
     low: float
 
     def folded(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Both coordinates inside the turn; the line goes on at the other side of the panel."""
+        """Both coordinates inside the turn; the line continues at the other side of the panel."""
         x_turn, y_turn = self.x_turn, self.y_turn
         y = rounded(y - self.low, y_turn)
         cuts = [(x[0], y[0])] if len(x) else []
@@ -96,7 +96,7 @@ class Window:
         return line[:, 0], line[:, 1] + self.low
 
     def places(self, x: float, y: float) -> list[tuple[float, float]]:
-        """Where a point is shown: a whole turn at both edges."""
+        """The positions of a point in the panel: whole turns are at both edges."""
         return [
             (at_x, at_y + self.low)
             for at_x in _edges(x, self.x_turn)
@@ -104,21 +104,21 @@ class Window:
         ]
 
     def tolerance(self, line: Array) -> Array:
-        """How near a point lies to one of a line (K, 2) if they are the same but for rounding."""
+        """The distance below which a point equals a point of a line (K, 2) up to rounding."""
         reach = np.array([self.x_turn, self.y_turn])
         size = np.maximum(1.0, np.nanmax(np.abs(line), 0))
         near: Array = ROUNDING * np.where(reach > 0.0, reach, size)
         return near
 
     def shown_on(self, line: Array, x: float, y: float) -> list[tuple[float, float]]:
-        """The places of a point that are points of a folded line (K, 2)."""
+        """The positions of a point that are points of a folded line (K, 2)."""
         near = self.tolerance(line)
         places = self.places(x, y)
         return [place for place in places if (np.abs(line - place) < near).all(axis=1).any()]
 
 
 def _edges(value: float, turn: float) -> tuple[float, ...]:
-    """Where a value lies inside one turn: a whole turn at both of its edges."""
+    """The positions of a value inside one turn: a whole turn is at both edges."""
     if not turn:
         return (value,)
     folded = float(np.mod(rounded(np.array(value), turn), turn))

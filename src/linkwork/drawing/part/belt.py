@@ -1,4 +1,4 @@
-"""Belts and chains: two straight runs that touch both pulleys, and an arc around each."""
+"""Symbols of belts and chains: two runs tangent to both pulleys, and an arc around each."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["symbols"]
 
 
 def symbols(belt: BeltRun, pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """Radii to both ends of a run are parallel, at ±β from the line of centres.
+    """The runs of a belt; radii to both ends of a run are parallel, at ±β from the line of centres.
 
     cos β = (r1 - r2)/d for an open belt; a crossed one ends on the other side of the second
     pulley: cos β = (r1 + r2)/d.

@@ -1,4 +1,4 @@
-"""Cams: outlines filled as links, flat faces and stems of followers."""
+"""Symbols of cams: outlines filled as links, flat faces and stems of followers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwork.mechanism.part.cam import CamOutline, Follower
 
 __all__ = ["symbols"]
 
-_NORMALS = np.exp(2j * math.pi * np.arange(180) / 180)  # of the faces that touch a cam somewhere
+_NORMALS = np.exp(2j * math.pi * np.arange(180) / 180)  # samples of faces that touch a cam
 
 
 def symbols(figure: CamOutline | Follower, pose: Pose, measures: Measures) -> Iterator[Primitive]:
@@ -51,9 +51,9 @@ def _follower(follower: Follower, pose: Pose, measures: Measures) -> Iterator[Po
 
 
 def _face(pose: Pose, follower: Follower, measures: Measures) -> tuple[complex, complex]:
-    """The ends of a flat face: it reaches as far as the cam ever touches it.
+    """The ends of a flat face, which includes all contact points of the cam.
 
-    Where a face with normal n touches, the outline is furthest in the direction n.
+    At the contact with a face of normal n, the outline is furthest in the direction n.
     """
     place, center = pose.points[follower.point], pose.points[follower.center]
     if follower.pivot is None:

@@ -1,4 +1,4 @@
-"""Curved slots: two lines beside the curve, hatched if it stands still."""
+"""Symbols of curved slots: a line on each side of the curve, hatched on ground."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwork.mechanism.part.curve import CurvedSlot
 
 __all__ = ["symbols"]
 
-_OF_PLATE = 40  # points of a moving curve that its link's plate is laid around
+_OF_PLATE = 40  # points of a moving curve enclosed by its link's plate
 
 
 def symbols(contour: CurvedSlot, pose: Pose, measures: Measures) -> Iterator[Primitive]:
@@ -41,7 +41,7 @@ def symbols(contour: CurvedSlot, pose: Pose, measures: Measures) -> Iterator[Pri
 
 
 def _outwards(line: ComplexArray, closed: bool) -> tuple[ComplexArray, ComplexArray]:
-    """Unit vectors along a curve, and across it to the side that it turns away from."""
+    """Unit tangents of a curve, and unit normals towards its convex side."""
     steps = np.roll(line, -1) - np.roll(line, 1) if closed else np.gradient(line)
     along = steps / np.abs(steps)
     turned = float(np.angle(along[1:] / along[:-1]).sum())
@@ -55,7 +55,7 @@ def _outwards(line: ComplexArray, closed: bool) -> tuple[ComplexArray, ComplexAr
 def _edges(
     line: ComplexArray, along: ComplexArray, width: float, closed: bool
 ) -> list[ComplexArray]:
-    """The lines on both sides of a curve; of an open one they are joined by round ends."""
+    """The lines on both sides of a curve; for an open curve joined by round ends."""
     left, right = line + 1j * width * along, line - 1j * width * along
     if closed:
         return [left, right]
@@ -77,7 +77,7 @@ def _hatching(
 
 
 def _plate(pose: Pose, contour: Contour, line: ComplexArray, tone: int) -> Iterator[Primitive]:
-    """The plate of a moving link that a curve is cut into."""
+    """The plate of a moving link with a curved slot."""
     own = next(bar.points for bar in pose.skeleton.bars if bar.name == contour.link)
     around = [complex(z) for z in line[:: max(1, len(line) // _OF_PLATE)]]
     corners = convex_outline([*around, *(pose.points[name] for name in own)])

@@ -1,4 +1,4 @@
-"""A cylinder: barrel, piston and rod between two points."""
+"""Symbol of a cylinder: barrel, piston and rod between two points."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwork.mechanism.part.cylinder import Strut
 
 __all__ = ["symbols"]
 
-_HELD = 1e-9  # of its length: a cylinder that moves less is held
+_HELD = 1e-9  # of its length: a cylinder with less stroke is constant
 
 
 def symbols(strut: Strut, pose: Pose, measures: Measures) -> Iterator[Primitive]:
@@ -40,14 +40,14 @@ def symbols(strut: Strut, pose: Pose, measures: Measures) -> Iterator[Primitive]
 
 
 def _barrel_end(length: Travel) -> float:
-    """Where the barrel ends, from its base: never beyond the shortest length."""
+    """The length of the barrel, at most the shortest length of the cylinder."""
     stroke = length.high - length.low
     return min(max(0.55 * length.low, 1.2 * stroke), 0.85 * length.low)
 
 
 def _piston(length: Travel, foot: float, mouth: float) -> float:
-    """Where the piston stands, from the base: it runs through the barrel with the stroke."""
+    """The position of the piston from the base; it moves through the barrel with the stroke."""
     stroke = length.high - length.low
-    held = stroke <= _HELD * length.high  # a cylinder at rest: its stroke is rounding
+    held = stroke <= _HELD * length.high  # a constant cylinder: its stroke is rounding
     share = 0.5 if held else (length.now - length.low) / stroke
     return foot + (mouth - foot) * (0.12 + 0.76 * share)

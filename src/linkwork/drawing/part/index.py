@@ -1,4 +1,4 @@
-"""The symbols of a part are drawn by the module that has its part's name."""
+"""The index of part symbols: each part has a module of the same name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["part_symbols"]
 
 
 def part_symbols(figures: Iterable[Figure], pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """The symbols of figures; wheels are drawn together, as their teeth are in mesh."""
+    """The symbols of figures; wheels are drawn together, so that their teeth mesh."""
     for figure in figures:
         if not isinstance(figure, Disc | Mesh):
             module = import_module(f"linkwork.drawing.part.{room_of(type(figure))}")

@@ -1,4 +1,4 @@
-"""Non-circular gears: wheels in the shape of their pitch curves."""
+"""Symbols of non-circular gears: wheels with the shape of their pitch curves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Racks: a bar with its pitch line, as long as its pinion ever needs it."""
+"""Symbols of racks: a bar with its pitch line, as long as the path of the pinion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines that wheels roll on: as long as the wheel's way on them."""
+"""Symbols of rolling lines, as long as the path of the wheel."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["symbols"]
 
 
 def symbols(track: RollingLine, pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """The line, hatched if it stands still."""
+    """The line, hatched on ground."""
     foot, tip = (pose.points[name] for name in track.line)
     along = (tip - foot) / abs(tip - foot)
     center = (pose.points[track.center] - foot) * along.conjugate()

@@ -1,4 +1,4 @@
-"""Springs: a zigzag between two points, its coils closer together the shorter it is."""
+"""Symbols of springs: a zigzag between two points that compresses with the length."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from linkwork.mechanism.part.spring import SpringFigure
 __all__ = ["symbols"]
 
 _COILS = 9
-_END = 0.14  # of the length: straight, at each end
+_END = 0.14  # straight fraction of the length at each end
 
 
 def symbols(spring: SpringFigure, pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """A zigzag; none where the points coincide."""
+    """A zigzag; none if the points coincide."""
     start, end = (pose.points[name] for name in spring.between)
     length = abs(end - start)
     if not length:

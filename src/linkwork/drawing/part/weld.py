@@ -1,4 +1,4 @@
-"""Rigid joints: the corner between two welded links is filled."""
+"""Symbols of rigid joints: a filled corner between two welded links."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from linkwork.mechanism.part.weld import RigidJoint
 
 __all__ = ["symbols"]
 
-_RADIUS = 2.0  # of the filled corner, in radii of the pin
-_NARROWEST = math.radians(50.0)  # what is seen of a corner beside a pin
-_PIECES = 12  # of its arc
+_RADIUS = 2.0  # size of the filled corner, in pin radii
+_NARROWEST = math.radians(50.0)  # visible part of a corner beside a pin
+_PIECES = 12  # points of its arc
 
 
 def symbols(joint: RigidJoint, pose: Pose, measures: Measures) -> Iterator[Primitive]:
-    """The filled corner between the two links, or over both where they are one."""
+    """The filled corner between the two links, or over both if they are in line."""
     points = {bar.name: bar.points for bar in pose.skeleton.bars}
     ways = [_direction(pose, name, points.get(name, ()), joint.point) for name in joint.links]
     turn = cmath.phase(ways[1] / ways[0])
     if turn <= -math.pi + 1e-9:
-        turn = math.pi  # in one line: always on the same side
+        turn = math.pi  # collinear: always on the same side
     middle = ways[0] * cmath.exp(0.5j * turn)
     half = 0.5 * max(abs(turn), _NARROWEST)
     radius = _RADIUS * pin_radius(pose, joint.point, measures)
@@ -39,7 +39,7 @@ def symbols(joint: RigidJoint, pose: Pose, measures: Measures) -> Iterator[Primi
 
 
 def _direction(pose: Pose, link: str, carried: tuple[str, ...], point: str) -> complex:
-    """The unit vector from a point along a link that carries it."""
+    """The unit vector from a point along its link."""
     place = pose.points[point]
     away = [pose.points[name] - place for name in carried if name != point]
     nearest = min(away, key=abs, default=0j)

@@ -1,4 +1,4 @@
-"""A belt ties the angles of its wheels."""
+"""Equation of a belt: relates the angles of its wheels."""
 
 from linkwork.equations.part.wheel_pair import write
 

@@ -1,4 +1,4 @@
-"""A cam ties its follower to its angle, by a law of motion or by its outline."""
+"""Equations of a cam, given by the follower's law of motion or by its outline."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["write"]
 
 
 def write(cam: Cam, key: Key, rows: PartRows) -> None:
-    """By the motion of the follower, or by the outline."""
+    """Write the equations for a given motion or a given outline."""
     (_programmed if cam.segments else _outlined)(rows, cam, key)
 
 
@@ -49,7 +49,7 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
         rows.held(str(cam.link), found.frame, (*key, "link"))
         return
     constant = found.constant + off
-    if not found.length:  # the same angle may be so many turns away
+    if not found.length:  # equal angles may differ by whole turns
         now = sum(weight * frames.start[name] for name, weight in swung.items())
         constant -= math.tau * round((now + constant) / math.tau)
     weights = {**({found.length: 1.0} if found.length else {}), **swung}
@@ -81,7 +81,7 @@ def _programmed(rows: PartRows, cam: Cam, key: Key) -> None:
 
 
 def _outlined(rows: PartRows, cam: Cam, key: Key) -> None:
-    """A cam by its outline."""
+    """A cam given by its outline."""
     linkage = rows.frames.linkage
     numbers = linkage.numbers
     outline = Outline.through(
@@ -105,7 +105,7 @@ def _outlined(rows: PartRows, cam: Cam, key: Key) -> None:
 
 
 def _check_hollows(rows: PartRows, cam: Cam, outline: Outline, key: Key) -> None:
-    """A face or a large roller bridges a hollow and would touch it in two places."""
+    """Reject concave outlines that a face or large roller would touch at two points."""
     place, bend = outline.deepest()
     where = f"({place.real:.4g}, {place.imag:.4g})"
     if cam.contact == "flat" and bend <= 0.0:
@@ -122,7 +122,7 @@ def _check_hollows(rows: PartRows, cam: Cam, outline: Outline, key: Key) -> None
 
 
 def _direction(rows: PartRows, name: str, outline: Outline, tangent: Term) -> None:
-    """T times a direction is the curve's derivative; T itself is the speed along it."""
+    """The curve's derivative as a direction times its magnitude T, the speed along the curve."""
     u = np.array([rows.frames.start[name]])
     slopes = {"dx": outline.x.slope(), "dy": outline.y.slope()}
     for axis, law in slopes.items():
@@ -145,7 +145,7 @@ def _direction(rows: PartRows, name: str, outline: Outline, tangent: Term) -> No
 def _beside(
     rows: PartRows, cam: Cam, at: tuple[str, str], point: str, place: Place, outline: Outline
 ) -> Place:
-    """The centre of a roller: its radius further along the outward normal β."""
+    """The centre of a roller: offset by its radius along the outward normal β."""
     frames = rows.frames
     radius = frames.linkage.numbers(cam.radius)
     u = np.array([frames.start[cam.name]])
@@ -229,5 +229,5 @@ def _motion_text(cam: Cam, sign: float) -> str:
         f"{part.law} over {part.over}" + (f" by {part.lift}" if part.law != "dwell" else "")
         for part in cam.segments
     ]
-    way = "against the direction of its measure, " if sign < 0 else ""
+    way = "in the negative direction, " if sign < 0 else ""
     return f"{cam.name} is the follower's motion {way}as the cam turns: {', '.join(parts)}"

@@ -1,4 +1,4 @@
-"""A point that runs along a curve has two lengths in its frame, given by cubic splines."""
+"""Equations of a point on a curve: its two coordinates are cubic splines."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def write(curve: Curve, key: Key, rows: PartRows) -> None:
 def add_law(
     rows: PartRows, label: str, coordinate: str, law: Piecewise, shown: tuple[str, str, int]
 ) -> None:
-    """coordinate - law(u) = 0; ``shown``: the curve, x or y, and which derivative."""
+    """coordinate - law(u) = 0; ``shown``: the curve, x or y, and the order of the derivative."""
     name, axis, primes = shown
     count, called = len(law.breaks) - 1, f"{axis}_{name}"
     spline = f"{called} is the curve's {axis}, a cubic spline of {count} pieces"
@@ -53,7 +53,7 @@ def add_law(
 def on_outline(
     rows: PartRows, name: str, at: tuple[str, str], point: str, outline: Outline, closed: bool
 ) -> Place:
-    """The place of a point on a curve of a body: its centre, then X and Y in its frame."""
+    """The position of a point on a body's curve: its centre, then X and Y in its frame."""
     body, origin = at
     frames = rows.frames
     u = outline.nearest(rows.sketched_in(body, origin, point))

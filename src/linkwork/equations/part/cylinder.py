@@ -1,4 +1,4 @@
-"""A cylinder is a body of variable length."""
+"""Frame entries of a cylinder: a body of variable length."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ __all__ = ["write"]
 
 
 def write(cylinder: Cylinder, key: Key, rows: PartRows) -> None:
-    """A rod that has an angle and a length."""
+    """Add a rod with an unknown angle and length."""
     rows.frames.add_rod(cylinder.name, cylinder.between, angle=cylinder.angle_name)

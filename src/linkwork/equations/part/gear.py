@@ -1,4 +1,4 @@
-"""A gear pair ties the angles of its wheels."""
+"""Equation of a gear pair: relates the angles of its wheels."""
 
 from linkwork.equations.part.wheel_pair import write
 

@@ -1,4 +1,4 @@
-"""The equations of a part are written by the module that has its part's name."""
+"""The index of part equations: each part has a module of the same name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["rows_of_parts"]
 
 
 def rows_of_parts(frames: Frames, problems: Problems) -> PartRows:
-    """The rows of all parts of a linkage; ``frames`` gets the places and rods that they add."""
+    """The rows of all parts of a linkage; their positions and rods are added to ``frames``."""
     rows = PartRows(frames, problems)
     for key, part in frames.linkage.keyed_parts():
         module = import_module(f"linkwork.equations.part.{room_of(type(part))}")

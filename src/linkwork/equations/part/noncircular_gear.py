@@ -1,4 +1,4 @@
-"""Non-circular gears tie the angles of their wheels by a law ψ(φ) = k φ + g(φ), g periodic."""
+"""Equations of non-circular gears with the law ψ(φ) = k φ + g(φ), g periodic."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from linkwork.mechanism.part.noncircular_gear import NoncircularGear
 
 __all__ = ["write"]
 
-_PIECES = 360  # of a law that is a formula or a pitch curve, each a polynomial of degree five
-_HALVINGS = 24  # of a formula's pieces; where it has a kink no number would do
+_PIECES = 360  # of a formula or pitch curve, each a polynomial of degree five
+_HALVINGS = 24  # of the pieces of a formula; at a kink no number suffices
 _MOST_PIECES = 20_000
-_EXACT = 4e-15  # [rad] between a formula and its pieces, and so many roundings of it:
+_EXACT = 4e-15  # [rad] between a formula and its pieces, and in unit roundoffs:
 _ROUNDINGS = 2.0
-_INSIDE = np.array([0.25, 0.5, 0.75])  # of a piece: where it is compared with the formula
+_INSIDE = np.array([0.25, 0.5, 0.75])  # of a piece, for the comparison with the formula
 _DRAWN = 720  # points of a pitch curve
 _MOST_LOBES = 12
-_CLOSED = 1e-7  # relative; how well a law closes after one turn of each wheel
-_NEARLY = 1e-4  # the same of a pitch curve by its points
+_CLOSED = 1e-7  # relative closing error of a law after one turn of each wheel
+_NEARLY = 1e-4  # the same for a pitch curve given by points
 
 
 class _Misfit(Exception):
-    """A law that no pair of closed pitch curves has: the key, and why."""
+    """A law that does not give closed pitch curves: the key and the reason."""
 
 
 def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
@@ -62,7 +62,7 @@ def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
     offset = at - linkage.numbers(gear.start) * radians
     law = rest.times(q)
     if gear.phase is not None:
-        begin = uniform_value(offset - at)  # the law's argument where the first wheel's angle is 0
+        begin = uniform_value(offset - at)  # argument of the law at angle 0 of the first wheel
         constant = held - q * linkage.numbers(gear.phase) * radians + _at(law, begin)
     else:
         angle = sum(weight * frames.start[name] for name, weight in inner.items()) + offset
@@ -77,7 +77,7 @@ def write(gear: NoncircularGear, key: Key, rows: PartRows) -> None:
             shown=canonical(gear.name),
             inner=tuple((canonical(name), weight) for name, weight in inner.items()),
             offset=uniform_value(offset),
-            meaning=f"{gear.name} is what the second wheel is ahead of a uniform turn",
+            meaning=f"{gear.name} is the lead of the second wheel over uniform rotation",
             kind="angle",
         )
     )
@@ -107,9 +107,9 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     jet = _rolled(gear, phi, linkage)
     _check_falling(jet, "pitch_curve")
     over = float(jet.v[-1] - jet.v[0])
-    # points of a curve close only nearly: the rest is spread over the turn
+    # the closing error of a curve's points is distributed over the turn
     ratio = _ratio(over, "pitch_curve", _NEARLY)
-    # the curve was closed nearly; the law has to be exact
+    # the curve closes only approximately; the law must close exactly
     jet = jet * (float(ratio) * math.tau / over)
     return ratio, _through(phi, jet, float(ratio))
 
@@ -117,7 +117,7 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
 def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     """The mean ratio and the rest of a formula, in pieces that are halved until they agree with it.
 
-    A proof holds for the law that is solved: that has to be the one that was given.
+    Proofs are valid for these pieces, so they must equal the given law to rounding.
     """
     for _ in range(_HALVINGS):
         jet = _formula(law, phi, linkage)
@@ -133,7 +133,7 @@ def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction,
         coarse = (off > _EXACT + _ROUNDINGS * EPSILON * rounding).any(axis=1)
         if not coarse.any():
             return ratio, rest
-        # the middle one of the places inside a piece
+        # the middle of the points inside a piece
         halves = inside[coarse, 1]
         if len(phi) + len(halves) > _MOST_PIECES:
             break
@@ -144,7 +144,7 @@ def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction,
 
 def _check_falling(jet: Jet, field: str) -> None:
     if not np.all(np.isfinite(jet.v)) or jet.d1.max() >= 0.0:
-        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
+        raise _Misfit(field, "is not decreasing: external gears turn in opposite directions")
 
 
 def _ratio(over: float, field: str, within: float = _CLOSED) -> Fraction:
@@ -154,14 +154,14 @@ def _ratio(over: float, field: str, within: float = _CLOSED) -> Fraction:
     if abs(turns - found) > within or not found or abs(found.numerator) > _MOST_LOBES:
         raise _Misfit(
             field,
-            f"turns the second wheel by {turns:.8g} of a turn while the first one turns once: that "
-            f"is no ratio of whole numbers up to {_MOST_LOBES}, so the pitch curves do not close",
+            f"turns the second wheel by {turns:.8g} of a turn while the first one turns once: "
+            f"not a ratio of whole numbers up to {_MOST_LOBES}, so the pitch curves do not close",
         )
     return found
 
 
 def _formula(law: str | None, phi: Array, linkage: Bodies) -> Jet:
-    """ψ [rad] of a formula with its derivatives by φ [rad]."""
+    """ψ [rad] of a formula with its derivatives with respect to φ [rad]."""
     radians = linkage.angle.radians
     tree, known = parse(str(law)), linkage.numbers.known
     used = {node.name for node in names_in(tree)} & known.keys()
@@ -189,7 +189,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
     z = outline.at(u)
     around = np.unwrap(np.angle(z))
     if np.abs(z).min() <= 0.0 or np.diff(around).min() <= 0.0:
-        raise _Misfit("pitch_curve", "is not seen in one direction only once from its centre")
+        raise _Misfit("pitch_curve", "is not star-shaped about its centre")
     if np.abs(z).max() >= distance:
         raise _Misfit("pitch_curve", f"reaches beyond the other centre, {distance:.6g} away")
 
@@ -217,7 +217,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
 def _line_of_centres(
     gear: NoncircularGear, linkage: Bodies, one: Callable[[float], float]
 ) -> complex:
-    """From the first centre to the second one in the arm."""
+    """The vector from the first centre to the second in the arm."""
     a, b = (linkage.shapes.local[gear.arm][center] for center in gear.centers)
     return complex(one((b - a).real), one((b - a).imag))
 
@@ -251,18 +251,18 @@ def _shifted(law: Piecewise, by: float) -> Piecewise:
 
 
 def _check_closed(gear: NoncircularGear, ratio: Fraction, rest: Piecewise) -> None:
-    """The second pitch curve closes where g repeats itself with each of its turns."""
+    """Check that the second pitch curve closes: g must have the period of its turn."""
     field = next(f for f in ("law", "table", "pitch_curve") if getattr(gear, f))
     phi = np.linspace(0.0, math.tau, _DRAWN)
     if (float(ratio) + rest.jet(phi)[1]).max() >= 0.0:
-        raise _Misfit(field, "does not fall everywhere: external gears turn against each other")
+        raise _Misfit(field, "is not decreasing: external gears turn in opposite directions")
     turns = abs(ratio.numerator)
     gap = np.abs(rest(phi) - rest(phi + math.tau / turns)).max()
     if gap > 1e3 * _CLOSED:
         raise _Misfit(
             field,
             f"turns the second wheel {turns} times while the first one turns "
-            f"{ratio.denominator} times, but not alike: its pitch curve does not close",
+            f"{ratio.denominator} times, but each time differently: its pitch curve does not close",
         )
 
 
@@ -274,7 +274,7 @@ def _draw(
     ψ = k φ + g(φ - start) + ``shift`` [rad].
     """
     linkage = rows.frames.linkage
-    # families draw nothing: any of their designs will do
+    # families are not drawn, so any design can be used
     way, radians = _line_of_centres(gear, linkage, leader_value), linkage.angle.radians
     start = uniform_value(linkage.numbers(gear.start)) * radians
     spans = (1.0, abs(1.0 / ratio))

@@ -1,4 +1,4 @@
-"""The pitch line of a rack moves with the circumference of its pinion."""
+"""Equation of a rack: its pitch line moves with the circumference of the pinion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["write"]
 
 
 def write(rack: Rack, key: Key, rows: PartRows) -> None:
-    """The rack's pitch line moves with the pinion's circumference."""
+    """Write the equation of the rack's displacement and the pinion's angle."""
     linkage = rows.frames.linkage
     slider = rack.guide(linkage)
     assert slider is not None

@@ -1,4 +1,4 @@
-"""A wheel that rolls ties its angle to its way on a line, or to the angle of a circle."""
+"""Equations of a rolling wheel: its angle against its path on a line or around a circle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["write"]
 
 
 def write(rolling: Rolling, key: Key, rows: PartRows) -> None:
-    """Rolling on a line or on a circle."""
+    """Write the equations for a line or a circle."""
     if rolling.line is not None:
         _roll_on_line(rolling, key, rows)
     else:
@@ -30,7 +30,7 @@ def _roll_on_line(rolling: Rolling, key: Key, rows: PartRows) -> None:
 
 
 def _roll_on_circle(rolling: Rolling, rows: PartRows) -> None:
-    """A rod joins the centres; wheel and circle mesh as gears on it."""
+    """Join the centres by a rod; wheel and circle mesh as gears on it."""
     assert rolling.circle is not None
     assert rolling.circle_radius is not None
     frames, numbers = rows.frames, rows.frames.linkage.numbers

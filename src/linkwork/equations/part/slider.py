@@ -1,4 +1,4 @@
-"""A slider leads its first point along a line; its link has the angle of the line."""
+"""Frame entries of a slider: its first point moves along a line of known angle."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["write"]
 
 
 def write(slider: Slider, key: Key, rows: PartRows) -> None:
-    """The displacement is a length in the frame of the link with the line."""
+    """Add the displacement as a length in the frame of the link with the line."""
     offset, name = rows.frames.linkage.numbers(slider.offset), f"{slider.name}_offset"
     guide = (slider.name, slider.on, slider.line)
     rows.frames.add_guide(guide, slider.points[0], offset, name)

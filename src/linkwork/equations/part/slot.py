@@ -1,4 +1,4 @@
-"""A slot leads its point along a line."""
+"""Frame entries of a slot: its point moves along a line."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ __all__ = ["write"]
 
 
 def write(slot: Slot, key: Key, rows: PartRows) -> None:
-    """The displacement is a length in the frame of the link with the line."""
+    """Add the displacement as a length in the frame of the link with the line."""
     rows.frames.add_guide((slot.name, slot.on, slot.line), slot.point)

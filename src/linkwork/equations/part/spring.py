@@ -1,4 +1,4 @@
-"""A spring constrains nothing."""
+"""Springs have no equations."""
 
 from __future__ import annotations
 
@@ -10,4 +10,4 @@ __all__ = ["write"]
 
 
 def write(spring: Spring, key: Key, rows: PartRows) -> None:
-    """Nothing is left to write."""
+    """Write no equation."""

@@ -1,4 +1,4 @@
-"""A weld makes no equation: both links have one angle (see ``Frames``)."""
+"""Welds have no equations: both links share one angle variable (see ``Frames``)."""
 
 from __future__ import annotations
 
@@ -10,4 +10,4 @@ __all__ = ["write"]
 
 
 def write(weld: Weld, key: Key, rows: PartRows) -> None:
-    """Nothing is left to write."""
+    """Write no equation."""

@@ -1,4 +1,4 @@
-"""Two wheels that roll on each other, or that a belt joins, tie their angles linearly."""
+"""The linear equation between the angles of two wheels in mesh or with a belt."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from linkwork.mechanism.part.wheel_pair import WheelPair
 __all__ = ["ratio", "write"]
 
 
-_RATIO = 1e-13  # relative: two sizes this near to a ratio of small whole numbers have that ratio
-_LARGEST = 10_000  # of those whole numbers
+_RATIO = 1e-13  # relative: sizes this near to a ratio of small integers have that ratio
+_LARGEST = 10_000  # of these integers
 
 
 def write(pair: WheelPair, key: Key, rows: PartRows) -> None:
@@ -33,9 +33,9 @@ def write(pair: WheelPair, key: Key, rows: PartRows) -> None:
 
 
 def ratio(first: float, second: float, *, whole: bool = False) -> tuple[float, float]:
-    """Two sizes as the smallest whole numbers in their ratio, if there are such; else as they are.
+    """Two sizes as the smallest integers of their ratio if these exist, otherwise unchanged.
 
-    With whole numbers a whole number of turns of one wheel is exactly one of the other.
+    With integers, whole turns of one wheel give exactly whole turns of the other.
     """
     if is_batched(first) or is_batched(second):
         p, q = ratio(leader_value(first), leader_value(second), whole=whole)

@@ -1,1 +1,1 @@
-"""Links and joints read off loop equations, as a textbook reads them off the page."""
+"""Derivation of links and joints from loop equations."""

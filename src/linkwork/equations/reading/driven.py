@@ -1,4 +1,4 @@
-"""What the inputs of loop equations drive in the linkage that was read off them."""
+"""The joints driven by the inputs of loop equations, in the derived linkage."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ __all__ = ["driven_pair", "inputs_at_joints"]
 
 
 def driven_pair(joints: Joints, variable: Variable) -> tuple[int, int, float]:
-    """The link that an angle turns, against which other one, by how many times the angle.
+    """The two links whose relative angle is a multiple of an input angle, and the factor.
 
-    Links that are pinned to each other are preferred.
+    Pairs of links with a common pin are preferred.
 
     Raises
     ------
     NotRead
-        If it is the angle between no two links.
+        If it is not the angle between two links.
     """
     pairs = list(_pairs(joints, variable))
     if not pairs:
@@ -52,7 +52,7 @@ def _pinned(joints: Joints, link: int, other: int) -> bool:
 
 
 def inputs_at_joints(equations: LoopEquations, joints: Joints) -> int:
-    """How many inputs drive a joint."""
+    """The number of inputs that drive a joint."""
     count = 0
     for variable in equations.inputs:
         if variable.kind == "angle":

@@ -1,14 +1,14 @@
-"""Which vectors of which loops are one link, and which corners of them are one pin.
+"""Identification of links and pins from the vectors of loops.
 
-Vectors of one direction are one link, unless a variable length lies between them: that is a sliding
-joint, and the same length in another loop is the same joint. Then
+Vectors of the same direction are one link, unless a variable length is between them: that is a
+sliding joint, and the same length in another loop is the same joint. Then
 
-1. what turns alike and meets at a pin is one link;
-2. two links that turn against each other share one pin at most;
-3. two pins at the same place of one link are one pin;
+1. bodies that rotate equally and meet at a pin are one link;
+2. two links with relative rotation share one pin at most;
+3. two pins at the same position of a link are one pin;
 
-and, where these leave it open, loops begin at ground, and what meets once in each of two loops
-meets at one pin.
+and, if this is ambiguous, loops begin at ground, and links that meet once in each of two loops meet
+at the same pin.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from linkwork.foundation.disjoint_sets import DisjointSets
 
 __all__ = ["Corner", "Joints", "NotRead", "Slide", "joints_of"]
 
-_ALIKE = 1e-9  # part by which places and directions differ by rounding at most
-_APART = 7.3 + 4.1j  # far from any pin, and in no direction that a loop has
+_ALIKE = 1e-9  # relative tolerance of equal positions and directions
+_APART = 7.3 + 4.1j  # far from any pin, in a direction of no loop
 
 
 class NotRead(Exception):
-    """Why loops cannot be read as links and joints."""
+    """The reason why loops cannot be read as links and joints."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Slide:
-    """A sliding joint: ``after`` stands at ``foot + along·s`` in ``before``.
+    """A sliding joint: the origin of ``after`` is at ``foot + along·s`` in ``before``.
 
-    Places in a link are complex, along and across the direction that its phase gives.
+    Positions in a link are complex, relative to the direction of its phase.
     """
 
     variable: str
@@ -44,12 +44,12 @@ class Slide:
     along: complex
 
     def follows(self, other: Slide) -> bool:
-        """Whether the length is measured the same way round as in ``other``.
+        """Whether the length is measured in the same sense as in ``other``.
 
         Raises
         ------
         NotRead
-            If it has another direction or another scale there.
+            If direction or scale differ.
         """
         if abs(other.along - self.along) <= _ALIKE * abs(other.along):
             return True
@@ -60,17 +60,17 @@ class Slide:
 
 @dataclass(frozen=True)
 class Corner:
-    """A pin: the links that meet there, and where it is in each of them."""
+    """A pin: the links that meet there, and its position in each of them."""
 
     places: dict[int, complex]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Joints:
-    """Links by number with their phases, pins, sliding joints; ``ground`` stands still.
+    """Links by index with their phases, pins, sliding joints; ``ground`` is the fixed link.
 
-    ``origin`` is where in the ground the first equation begins. ``loose``: links on which the
-    equations do not tell how far the pins of one loop are from those of another.
+    ``origin`` is the start of the first equation in the ground. ``loose``: links on which the
+    equations do not determine the distance between pins of different loops.
     """
 
     phases: dict[int, Phase]
@@ -82,12 +82,12 @@ class Joints:
 
     @property
     def still(self) -> int:
-        """How many links do not turn."""
+        """The number of links without rotation."""
         return sum(phase == FRAME for phase in self.phases.values())
 
     @property
     def pins(self) -> int:
-        """How many pins there are, one of k links counted as k - 1."""
+        """The number of pins; a pin of k links counts as k - 1."""
         return sum(len(corner.places) - 1 for corner in self.corners)
 
     @property
@@ -97,17 +97,17 @@ class Joints:
 
 
 def joints_of(walks: Sequence[Walk], size: float) -> Joints:
-    """The links and joints of loops that are walked in these orders.
+    """The links and joints of loops for given walks.
 
     Parameters
     ----------
     size : float
-        A length of the mechanism: places this far apart, but for rounding, are told apart.
+        A length of the mechanism, the reference of tolerances.
 
     Raises
     ------
     NotRead
-        If no links and joints fit the loops, or more than one set of them does.
+        If no set of links and joints fits the loops, or more than one does.
     """
     found = _Joining(tolerance=_ALIKE * size, apart=_APART * size)
     for loop, walk in enumerate(walks):
@@ -118,11 +118,11 @@ def joints_of(walks: Sequence[Walk], size: float) -> Joints:
 
 @dataclass
 class _Joining:
-    """Pieces of links, corners between them, and what has turned out to be the same.
+    """Pieces of links, corners between them, and the identifications found so far.
 
-    ``link`` tells which pieces are of one link; ``rigid`` and ``shift`` where they are in it, as
-    far as known: the place z of a piece is z + shift in the first piece of its part. ``apart`` is
-    how parts of one link are laid out whose distance is not known.
+    ``link`` groups pieces of one link; ``rigid`` and ``shift`` are their positions in it, as far as
+    known: the position z of a piece is z + shift in the first piece of its part. ``apart`` is the
+    arbitrary layout of parts of a link at unknown distance.
     """
 
     tolerance: float
@@ -138,7 +138,7 @@ class _Joining:
     origins: list[tuple[int, complex]] = field(default_factory=list)
 
     def add(self, loop: int, walk: Walk) -> None:
-        """The pieces of a loop, their corners and slides."""
+        """Add the pieces of a loop, their corners and slides."""
         if len(walk.runs) < 2:
             raise NotRead("all vectors of a loop have one direction, so that it has no pin")
         corners = [self.corner.add() for _ in walk.runs]
@@ -173,7 +173,7 @@ class _Joining:
         return self.link.add()
 
     def join(self) -> None:
-        """Unite what is the same, as far as the rules go."""
+        """Merge pieces and corners as far as the rules apply."""
         sliding = {self.phase[slide.before] for slide in self.slides}
         first: dict[Phase, int] = {}
         for piece, phase in enumerate(self.phase):
@@ -190,7 +190,7 @@ class _Joining:
             changed = any(step() for step in steps)
 
     def _place(self, piece: int, other: int, offset: complex) -> bool:
-        """``other`` is the link of ``piece``, its zero at ``offset`` there."""
+        """Merge ``other`` with the link of ``piece``, with its origin at ``offset``."""
         known = self.rigid[piece] == self.rigid[other]
         gap = self.shift[piece] + offset - self.shift[other]
         if known:
@@ -211,7 +211,7 @@ class _Joining:
         return found
 
     def _at_corners(self) -> bool:
-        """What turns alike and meets at a pin is one link."""
+        """Merge bodies that rotate equally and meet at a pin."""
         changed = False
         for met in self._by_corner().values():
             first: dict[Phase, tuple[int, complex]] = {}
@@ -221,7 +221,7 @@ class _Joining:
         return changed
 
     def _same_slides(self) -> bool:
-        """A variable length is one sliding joint, in whatever loop it stands."""
+        """Merge the sliding joints of a variable length in all loops."""
         changed = False
         first: dict[str, Slide] = {}
         for slide in self.slides:
@@ -244,7 +244,7 @@ class _Joining:
         return changed
 
     def _one_pin(self) -> bool:
-        """Two links share one pin at most."""
+        """Merge pins between the same two links."""
         changed = False
         first: dict[Hashable, int] = {}
         for corner, met in self._by_corner().items():
@@ -254,7 +254,7 @@ class _Joining:
         return changed
 
     def _same_place(self) -> bool:
-        """Two pins at the same place of one link are one."""
+        """Merge pins at the same position of a link."""
         changed = False
         on: dict[int, list[tuple[int, complex]]] = {}
         for corner, piece, place in self.ends:
@@ -267,7 +267,7 @@ class _Joining:
         return changed
 
     def _same_vector(self) -> bool:
-        """A variable length leads from the same point to the same point in whatever loop it is."""
+        """Merge the end points of a variable length in all loops."""
         first: dict[str, Slide] = {}
         for slide in self.slides:
             one = first.setdefault(slide.variable, slide)
@@ -282,14 +282,14 @@ class _Joining:
         return False
 
     def _begin_at_ground(self) -> bool:
-        """All loops that begin at a link that does not turn begin at the same one."""
+        """Merge the fixed links at which loops begin."""
         first = self.origins[0][0] if self.origins else 0
         return any(self.link.unite(first, piece) for piece, _ in self.origins[1:])
 
     def _meet_once(self) -> bool:
-        """What meets once in each of several loops meets at one pin, if it may.
+        """Merge the corners of pairs that meet once in each of several loops, if possible.
 
-        A link and a direction, else two directions.
+        A pair is a link and a direction, otherwise two directions.
         """
         ends = self._by_corner()
         loops: dict[int, set[int]] = {}
@@ -321,7 +321,7 @@ class _Joining:
         yield from met.values()
 
     def joints(self) -> Joints:
-        """What has come out."""
+        """The resulting joints."""
         links = dict.fromkeys(self.link.root(piece) for piece in range(len(self.phase)))
         loose = self._lay_out()
         corners: dict[int, dict[int, complex]] = {}
@@ -342,7 +342,7 @@ class _Joining:
         )
 
     def _lay_out(self) -> frozenset[int]:
-        """Lay out the parts of a link whose distance is not known: the links that have such."""
+        """Lay out parts of links at unknown distance; returns these links."""
         parts: dict[int, list[int]] = {}
         for k, part in enumerate(self.rigid):
             known = parts.setdefault(self.link.root(k), [])
@@ -352,7 +352,7 @@ class _Joining:
         return frozenset(link for link, known in parts.items() if len(known) > 1)
 
     def _slide(self, slide: Slide) -> Slide:
-        """Between links instead of pieces."""
+        """A slide between links instead of pieces."""
         return Slide(
             variable=slide.variable,
             before=self.link.root(slide.before),
@@ -362,17 +362,17 @@ class _Joining:
         )
 
     def _check_slides(self, links: list[int], slides: list[Slide]) -> None:
-        """Links that turn alike hang together by their sliding joints, without a loop of them."""
+        """Check that links of equal rotation are connected by slides, without loops of slides."""
         held = DisjointSets(len(self.phase))
         for slide in slides:
             if not held.unite(slide.before, slide.after):
                 raise NotRead(f'"{slide.variable}" slides in a loop of sliding joints')
         groups = {held.root(link) for link in links}
         if len(groups) > len({self.phase[link] for link in groups}):
-            raise NotRead("two links would stay parallel though no sliding joint holds them so")
+            raise NotRead("two links stay parallel without a sliding joint between them")
 
     def _ground(self) -> tuple[int, complex]:
-        """The link at which the equations begin, among those that do not turn."""
+        """The link without rotation at which the equations begin."""
         still = dict.fromkeys(
             self.link.root(k) for k, phase in enumerate(self.phase) if phase == FRAME
         )

@@ -1,4 +1,4 @@
-"""The linkage that loop equations describe, with the names that the file gives."""
+"""The linkage described by loop equations, with the names of the file."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from linkwork.mechanism.part.slider import Slider
 
 __all__ = ["ReadLinkage", "read_linkage"]
 
-_MOST_WAYS = 64  # of walking along all loops that are tried
+_MOST_WAYS = 64  # combinations of walks that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReadLinkage:
-    """A linkage read off loops.
+    """A linkage derived from loops.
 
     Parameters
     ----------
     turning : Mapping[str, tuple of str]
-        The variables that give the direction of every link, by the file's names.
+        The variables of every link's direction, by the file's names.
     loose : tuple of str
-        Links on which the equations do not tell how far the pins of one loop are from those of
-        another. They do not matter for the chain, and are laid out anyhow.
+        Links on which the equations do not determine the distance between the pins of different
+        loops. The chain does not depend on it; an arbitrary distance is used.
     """
 
     linkage: Linkage
@@ -48,12 +48,12 @@ class ReadLinkage:
 
 
 def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkage:
-    """The points and links of a mechanism that is given by its loops.
+    """Derive the points and links of a mechanism given by its loops.
 
     Parameters
     ----------
     v : (N,)
-        Unknowns and inputs of a position: there the sketch is drawn.
+        Unknowns and inputs of the position used for the sketch.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkag
     drawing = _Drawing(loops, equations, joints, poses, names)
     try:
         linkage = drawing.linkage()
-    except MechanismError as error:  # what was read contradicts itself
+    except MechanismError as error:  # the derived linkage contradicts itself
         raise NotRead(str(error.problems[0].message)) from None
     shown = {variable.symbol: variable.name for variable in equations.variables}
     turning = {
@@ -79,19 +79,19 @@ def read_linkage(loops: Loops, equations: LoopEquations, v: Array) -> ReadLinkag
 
 
 def _check_directions(equations: LoopEquations) -> None:
-    """Every direction turns by itself, as links do that nothing but pins and slides joins."""
+    """Check that directions are independent, as for links joined by pins and slides only."""
     phases = {phase_of(term) for loop in equations.loops for term in loop.terms} - {()}
     angles = [variable.symbol for variable in equations.variables if variable.kind == "angle"]
     weights = [[dict(phase).get(angle, 0.0) for angle in angles] for phase in sorted(phases)]
     if phases and np.linalg.matrix_rank(np.array(weights)) < len(phases):
-        raise NotRead("the angles of its vectors depend on each other, as those of wheels do")
+        raise NotRead("the angles of its vectors depend on each other, as for gears")
 
 
 def _best(equations: LoopEquations, poses: Poses) -> Joints:
-    """The links and joints as the loops are written, or otherwise if that fits better.
+    """The links and joints with vectors in the written order, or in another order that fits better.
 
-    Something else fits better if more pins are points of the file; or if more inputs drive a joint,
-    unless it then depends on the order of vectors which link stands still.
+    Another order fits better if more pins are points of the file, or if more inputs drive a joint,
+    unless the fixed link would then depend on the order of vectors.
     """
     freedom = len(equations.variables) - 2 * len(equations.loops)
     best: tuple[int, int, Joints] | None = None
@@ -121,7 +121,7 @@ def _best(equations: LoopEquations, poses: Poses) -> Joints:
 
 @dataclass
 class _Drawing:
-    """The parts of the linkage as they are found; ``places``: of the points of every link."""
+    """The parts of the linkage found so far; ``places``: coordinates of every link's points."""
 
     loops: Loops
     equations: LoopEquations
@@ -131,10 +131,10 @@ class _Drawing:
     places: dict[int, dict[str, complex]] = field(default_factory=dict)
 
     def linkage(self) -> Linkage:
-        """All of it."""
+        """The whole linkage."""
         self.places = {link: dict(self._pins_of(link)) for link in self.names.links}
         rails = [self._rail(*slide) for slide in self._outwards()]
-        if not self.places[self.joints.ground]:  # nothing but a line of a slide stands still
+        if not self.places[self.joints.ground]:  # only a slide's line is fixed
             raise NotRead("no vector begins at a fixed link")
         self._move_ground()
         names, shapes = self.names.links, self.places
@@ -151,22 +151,22 @@ class _Drawing:
         )
 
     def _pins_of(self, link: int) -> list[tuple[str, complex]]:
-        """The pins of a link with their places, as the file lists them if it draws the link."""
+        """The pins of a link with coordinates, in the file's order if the file draws the link."""
         pins = zip(self.names.pins, self.joints.corners, strict=True)
         found = [(name, corner.places[link]) for name, corner in pins if link in corner.places]
         drawn = self.loops.links.get(self.names.links[link], ())
         return sorted(found, key=lambda pin: drawn.index(pin[0]) if pin[0] in drawn else len(drawn))
 
     def _move_ground(self) -> None:
-        """To where the file has its points."""
+        """Move the ground to the file's coordinates."""
         own = self.places[self.joints.ground]
         for name in own:
             own[name] += self.names.begin - self.joints.origin
 
     def _outwards(self) -> Iterator[tuple[Slide, int, int]]:
-        """Every slide with its guide and the link that slides.
+        """Every slide with its guide and its sliding link.
 
-        From ground outwards; elsewhere from a link that is pinned to ground, or that has most pins.
+        The order is from ground outwards; otherwise from a link pinned to ground or with most pins.
         """
         left = list(self.joints.slides)
         reached = {self.joints.ground}
@@ -186,7 +186,7 @@ class _Drawing:
             yield slide, guide, sliding
 
     def _standing(self, link: int) -> tuple[int, int]:
-        """How well a link serves as a guide."""
+        """The rank of a link as a guide."""
         pins = [corner.places for corner in self.joints.corners if link in corner.places]
         return sum(self.joints.ground in links for links in pins), len(pins)
 
@@ -212,7 +212,7 @@ class _Drawing:
         )
 
     def _point_at(self, own: dict[str, complex], place: complex, wanted: str) -> str:
-        """The point of a link at a place, a new one if there is none."""
+        """The point of a link at a position; a new point if none exists."""
         near = self.poses.tolerance
         for name, there in own.items():
             if abs(there - place) <= near:
@@ -222,7 +222,7 @@ class _Drawing:
         return name
 
     def _slider(self, rail: Slider) -> Slider:
-        """With the angle from the line to the link, now that it has all its points."""
+        """The slider with the angle from the line to the link, whose points are complete."""
         number = {name: link for link, name in self.names.links.items()}
         own, guide = (self.places[number[name]] for name in (rail.link, rail.on))
         if len(own) < 2:
@@ -234,7 +234,7 @@ class _Drawing:
         found: dict[str, tuple[Number, Number]] = {}
         begin = self.names.begin
         origins = {link: begin + zero for link, zero in self.poses.links(self.joints).items()}
-        origins[self.joints.ground] = 0j  # its places are coordinates already
+        origins[self.joints.ground] = 0j  # positions on ground are coordinates already
         for link in (self.joints.ground, *self.places):
             turn = self.poses.turn(self.joints.phases[link])
             for name, place in self.places[link].items():
@@ -255,14 +255,14 @@ class _Drawing:
                     yield f"{second} {first} {name}", self._in_file_units(angle)
 
     def _moving(self) -> Iterator[tuple[str, str, dict[str, complex]]]:
-        """Second and first point of moving links, and the vectors from it to the others."""
+        """Second and first point of moving links, and vectors from the first to the others."""
         for link, own in self.places.items():
             if link != self.joints.ground and len(own) > 1:
                 (first, start), *others = own.items()
                 yield others[0][0], first, {name: place - start for name, place in others}
 
     def _input(self, variable: Variable, which: Input) -> Input:
-        """The same quantity, as the linkage counts it."""
+        """The input as a quantity of the linkage."""
         part: dict[str, str]
         if variable.kind == "angle":
             link, other, scale = driven_pair(self.joints, variable)
@@ -288,7 +288,7 @@ class _Drawing:
 
 
 def _direction(own: Mapping[str, complex]) -> float:
-    """From the first to the second point of a link [rad]."""
+    """The direction from the first to the second point of a link [rad]."""
     if len(own) < 2:
         raise NotRead("the input turns a block, which has one point and no direction")
     first, second, *_ = own.values()

@@ -1,4 +1,4 @@
-"""Names of links and pins that were read off loops: the file's, as far as it has any."""
+"""Names of links and pins derived from loops: those of the file where they exist."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from linkwork.mechanism.loops import Loops
 
 __all__ = ["PartNames"]
 
-_CANCELLED = 1e-12  # part of the largest vector: the rounding of vectors that add up to nothing
+_CANCELLED = 1e-12  # relative to the largest vector: rounding of vectors with sum zero
 
 
 @dataclass(frozen=True, kw_only=True)
 class PartNames:
     """The name of every pin, in order, and of every link, ground first.
 
-    ``begin`` is where the equations begin among the file's points; ``taken`` are all names.
+    ``begin`` is the point of the file at which the equations begin; ``taken`` are all names.
     """
 
     pins: tuple[str, ...]
@@ -31,7 +31,7 @@ class PartNames:
 
     @classmethod
     def of(cls, loops: Loops, equations: LoopEquations, joints: Joints, poses: Poses) -> PartNames:
-        """Pins by the file's points, links by its links, else by the angle that they turn by."""
+        """Pins named by the file's points, links by its links, otherwise by their angles."""
         drawn = [*loops.points, *(name for name in loops.links if name != GROUND)]
         named = [*drawn, *loops.dimensions, *loops.outputs, GROUND]
         named += [variable.name for variable in equations.variables]
@@ -51,7 +51,7 @@ class PartNames:
 def _drawn_links(
     loops: Loops, equations: LoopEquations, joints: Joints, pins: Sequence[str]
 ) -> dict[int, str]:
-    """Links that the file draws, in its order: most of their points are pins of the link."""
+    """Links drawn by the file, in its order; most of their points are pins of the link."""
     found = {joints.ground: GROUND}
     for name, points in loops.links.items():
         if name == GROUND:
@@ -70,7 +70,7 @@ def _drawn_links(
 
 
 def _direction(equations: LoopEquations, points: Sequence[str]) -> Phase | None:
-    """The direction from the first to the second point, if there is only one on the way."""
+    """The direction from the first to the second point, if it is unique along the path."""
     total: dict[tuple[Phase, str | None], complex] = {}
     for sign, point in zip((-1, 1), points[:2], strict=False):
         for term in equations.points[point].terms:
@@ -82,7 +82,7 @@ def _direction(equations: LoopEquations, points: Sequence[str]) -> Phase | None:
 
 
 def _called(joints: Joints, link: int, phase: Phase, shown: dict[str, str]) -> str:
-    """A block by its slide, another link by the angles that give its direction."""
+    """The name of a block from its slide, of another link from the angles of its direction."""
     pins = sum(link in corner.places for corner in joints.corners)
     slides = [s.variable for s in joints.slides if link in (s.before, s.after)]
     if slides and pins < 2:

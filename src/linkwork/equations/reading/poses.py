@@ -1,4 +1,4 @@
-"""Where links and pins that were read off loops are at one position."""
+"""Coordinates of derived links and pins at one position."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from linkwork.foundation.arrays import Array
 
 __all__ = ["Poses"]
 
-_NEAR = 1e-6  # part of a length: a closed position is far nearer, no two pins are as near as this
+_NEAR = 1e-6  # relative: closing errors are much smaller, distances of pins much larger
 
 
 @dataclass(frozen=True)
 class Poses:
-    """A position: the value of every variable by its symbol, and the file's points there."""
+    """A position: values of variables by symbol, and coordinates of the file's points."""
 
     values: Mapping[str, float]
     points: Mapping[str, complex]
@@ -50,7 +50,7 @@ class Poses:
         return cmath.exp(1j * sum(weight * self.values[name] for name, weight in phase))
 
     def links(self, joints: Joints) -> dict[int, complex]:
-        """Where the zero of every link is, seen from where the equations begin."""
+        """The origin of every link, relative to the start of the equations."""
         turn = {link: self.turn(phase) for link, phase in joints.phases.items()}
         found = {joints.ground: -joints.origin}
         last = 0
@@ -73,9 +73,9 @@ class Poses:
         return found
 
     def named(self, joints: Joints) -> tuple[complex, tuple[str | None, ...]]:
-        """Where the equations begin, and the file's point at every pin.
+        """The start of the equations, and the file's point at every pin.
 
-        They begin at the origin unless more pins are points if they begin elsewhere.
+        The start is the origin unless another start makes more pins points of the file.
         """
         origins = self.links(joints)
         pins = []
@@ -85,19 +85,19 @@ class Poses:
         begins = [0j, *(point - pin for point in self.points.values() for pin in pins)]
         found = [tuple(self._point_at(pin + begin) for pin in pins) for begin in begins]
         best = max(range(len(begins)), key=lambda k: _distinct(found[k]))
-        if _distinct(found[best]) < 2:  # a single point lies at any pin
+        if _distinct(found[best]) < 2:  # a single point could be at any pin
             best = 0
         return begins[best], found[best]
 
     def _point_at(self, place: complex) -> str | None:
-        """The file's point at a place."""
+        """The file's point at a position."""
         for name, there in self.points.items():
             if abs(there - place) <= self.tolerance:
                 return name
         return None
 
     def fit(self, joints: Joints) -> int:
-        """How many pins, a pin of k links counted as k - 1, are points of the file."""
+        """The number of pins that are points of the file; a pin of k links counts as k - 1."""
         _, names = self.named(joints)
         pins = zip(names, joints.corners, strict=True)
         return sum({name: len(c.places) - 1 for name, c in pins if name is not None}.values())

@@ -1,8 +1,8 @@
-"""A loop as a walk along its vectors: where one direction ends and the next begins is a pin.
+"""A loop as a walk along its vectors, with a pin wherever the direction changes.
 
-A sum has no order, a loop has one. Both sides of an equation lead from one point to another, so
-that the walk goes along the left side and comes back along the right one; or everything was moved
-to one side, and the order is that in which it stands there.
+A sum has no order, a loop has one. Both sides of an equation are paths between the same two points:
+the walk follows the left side and returns along the right side. If all terms are on one side, their
+written order is used.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from linkwork.equations.model import LoopEquation, Term
 
 __all__ = ["FRAME", "Phase", "Run", "Walk", "phase_of", "walks"]
 
-#: The variable angles of a direction, each with its weight, in the order of their names.
+#: The variable angles of a direction with their weights, ordered by name.
 Phase = tuple[tuple[str, float], ...]
 
-#: The direction of vectors that do not turn.
+#: The direction of fixed vectors.
 FRAME: Phase = ()
 
 
 def phase_of(term: Term) -> Phase:
-    """The direction of a vector but for a constant angle."""
+    """The direction of a vector up to a constant angle."""
     return tuple(sorted(term.phase))
 
 
 @dataclass(frozen=True)
 class Run:
-    """Vectors of one direction that follow each other."""
+    """Consecutive vectors of the same direction."""
 
     phase: Phase
     terms: tuple[Term, ...]
@@ -37,9 +37,9 @@ class Run:
 
 @dataclass(frozen=True)
 class Walk:
-    """A closed walk: its runs in order, no two neighbours of one direction.
+    """A closed walk: its runs in order, adjacent runs with different directions.
 
-    The equation's first point is in the first run, behind ``begun`` of its vectors.
+    The equation's first point is in the first run, after ``begun`` of its vectors.
     """
 
     runs: tuple[Run, ...]
@@ -47,10 +47,10 @@ class Walk:
 
 
 def walks(loop: LoopEquation) -> list[Walk]:
-    """The walks that a loop may be meant as, the one that it is written as first.
+    """The possible walks of a loop, beginning with the written one.
 
-    With both sides as two ways from one point, or with all on one side; a direction that is met
-    more than once may have its vectors brought together.
+    Either both sides are two paths from one point, or all terms are on one side; repeated
+    directions may have their vectors merged.
     """
     right = [term.negated() for term in loop.right]
     found: dict[Walk, None] = {}

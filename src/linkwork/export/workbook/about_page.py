@@ -14,12 +14,12 @@ from linkwork.foundation.certification import Certification
 
 __all__ = ["notices", "write_about"]
 
-_WIDTH = 110  # characters of a line of equations
-_LINE, _LINE_LENGTH = 15.0, 95  # height of a line of text, and characters in one
+_WIDTH = 110  # characters per line of equations
+_LINE, _LINE_LENGTH = 15.0, 95  # height of a text line, and its characters
 
 
 def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> None:
-    """Title, how to use it, what is values only, Linkwork's evidence, the equations."""
+    """Write title, instructions, parts that do not recalculate, Linkwork's evidence, equations."""
     style, description = book.style, book.model.description
     sheet.hide_gridlines(2)
     sheet.set_column(0, 0, 30)
@@ -73,7 +73,7 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
 
 
 def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
-    """What the cells say about themselves, as formulas."""
+    """Checks of the cells, as formulas."""
     style = book.style
     rows = f"{FIRST + 1}", f"{book.last}"
 
@@ -108,13 +108,13 @@ def _listed(book: Book, sheet: Any, row: int, title: str, lines: list[str], look
 
 
 def _wrapped(sheet: Any, row: int, text: str, look: Any) -> None:
-    """A long text in as many lines as it needs."""
+    """A long text broken into lines."""
     sheet.write(row, 1, text, look)
     sheet.set_row(row, _LINE * -(-len(text) // _LINE_LENGTH))
 
 
 def notices(book: Book) -> Iterator[str]:
-    """What does not follow the yellow cells, and why."""
+    """The parts that do not follow the yellow cells, with reasons."""
     unknowns = book.model.equations.unknowns
     for block in book.closure.blocks:
         if block.reason:

@@ -1,4 +1,4 @@
-"""The workbook that its sheets share: names of cells, numbers, first and last rows."""
+"""The data shared by the sheets of a workbook: names of cells, values, first and last rows."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 DIMENSIONS, CYCLE, NEWTON, LINKWORK = "Dimensions", "Cycle", "Newton", "Linkwork"
-FIRST = 6  # rows above the first position, on every sheet with a row for every position
+FIRST = 6  # rows above the first position, on sheets with a row for every position
 
 
 def column_name(column: int) -> str:
@@ -46,7 +46,7 @@ def column_name(column: int) -> str:
     shown = ""
     column += 1
     while column:
-        # digits from 1 to 26: there is no zero in A, B, … AA
+        # digits from 1 to 26: A, B, … AA has no zero
         column, rest = divmod(column - 1, 26)
         shown = chr(ord("A") + rest) + shown
     return shown
@@ -54,10 +54,10 @@ def column_name(column: int) -> str:
 
 @dataclass
 class Book:
-    """A workbook while its sheets are written.
+    """A workbook under construction.
 
-    ``values`` holds what formulas come to: numbers of dimensions, arrays (R,) of what
-    every row has. ``further``: further quantities for the sheet of Linkwork's own values.
+    ``values`` are the results of formulas: numbers of dimensions, arrays (R,) of quantities of
+    every row. ``further``: further quantities for the sheet of Linkwork's values.
     """
 
     workbook: Any
@@ -97,8 +97,8 @@ class Book:
 
     @cached_property
     def dimensions(self) -> list[Dimension]:
-        """The dimensions that have cells: those of the file, and points that formulas use."""
-        used = set(self._used())  # a sketch has many points that nothing follows from
+        """The dimensions with cells: those of the file, and points used by formulas."""
+        used = set(self._used())  # a sketch has many points that formulas do not use
         kept = ("dimensions", "lengths", "angles")
         return [d for d in self.traced.dimensions if d.kind in kept or d.key in used]
 
@@ -115,7 +115,7 @@ class Book:
 
     @cached_property
     def linkwork_columns(self) -> dict[str, int]:
-        """Where the sheet of Linkwork's own values has which quantity."""
+        """The columns of quantities on the sheet of Linkwork's values."""
         return {name: k for k, name in enumerate(self.motion.table().columns)}
 
     @cached_property
@@ -125,21 +125,21 @@ class Book:
         return [(d.name, d.center, d.radius) for d in discs if d.center in self.closure.points]
 
     def solved(self, unknown: int) -> bool:
-        """Whether cells solve for an unknown; else they hold its values."""
+        """Whether cells solve for an unknown; otherwise they contain its values."""
         return any(block.rows and unknown in block.unknowns for block in self.closure.blocks)
 
     @property
     def count(self) -> int:
-        """R: how many rows were asked for."""
+        """R: the number of requested rows."""
         return len(self.iterations.rows)
 
     @property
     def last(self) -> int:
-        """The number of the last position's row, as spreadsheets count."""
+        """The row number of the last position, from 1."""
         return FIRST + self.count
 
     def unit(self, kind: str) -> str:
-        """The unit of what a variable measures."""
+        """The unit of a variable."""
         return self.model.units.of(Kind(kind))
 
     def scale(self, variable: Variable) -> float:
@@ -147,19 +147,19 @@ class Book:
         return self.model.units.scale(Kind(variable.kind))
 
     def text(self, formula: CellFormula, **instead: str) -> str:
-        """A formula as a cell has it."""
+        """The text of a formula in a cell."""
         return "=" + formula.text({**self.names.cells, **instead})
 
     def shown(self, variable: Variable) -> str:
-        """A variable as headings show it."""
+        """The name of a variable in headings."""
         return pretty(variable.name)
 
     def define(self, key: str, sheet: str, place: str) -> None:
-        """Give a cell its name; ``$B1`` is column B of the row that asks."""
+        """Define the name of a cell; ``$B1`` is column B of the row of the formula."""
         self.workbook.define_name(self.names.cells[key], f"={sheet}!{place}")
 
     def head(self, sheet: Any, column: int, title: str, unit: str) -> None:
-        """A heading with its unit, above the rows of a sheet with a row for every position."""
+        """Write a heading with unit above the rows of positions."""
         sheet.write(FIRST - 2, column, title, self.style["head"])
         sheet.write(FIRST - 1, column, unit, self.style["unit"])
 
@@ -177,14 +177,14 @@ def _cell_stem(dimension: Dimension) -> str:
 
 
 def cached(value: float) -> float | str:
-    """What a cell shows until it is calculated."""
+    """The value shown in a cell until it is calculated."""
     return float(value) if math.isfinite(value) else ""
 
 
 def apart(formula: str, row: int) -> str:
-    """A formula whose column must not be calculated as one: every other row is in parentheses.
+    """A formula whose column must not be calculated in parallel: every other row is in parentheses.
 
-    Every row of Newton-Raphson needs the row above. LibreOffice calculates a column of the same
-    formula at once, in several threads, and 7.4 comes to #VALUE! where that column needs itself.
+    Every row of Newton-Raphson needs the row above. LibreOffice calculates a column of equal
+    formulas in several threads, and version 7.4 returns #VALUE! if the column depends on itself.
     """
     return f"=({formula[1:]})" if row % 2 else formula

@@ -23,32 +23,32 @@ _CONVERSIONS: dict[str, Callable[..., Any]] = {"radians": np.radians, "degrees":
 
 @dataclass(frozen=True)
 class CellFormula:
-    """A formula with the unit of the angles in it.
+    """A formula with its angle unit.
 
     Parameters
     ----------
     node : Node
         May call ``radians`` and ``degrees``.
     unit : AngleUnit
-        Of what sin, cos, tan take and asin, acos, atan, atan2 give.
+        Unit of the arguments of sin, cos, tan and of the results of asin, acos, atan, atan2.
     """
 
     node: Node
     unit: AngleUnit = AngleUnit.RADIAN
 
     def text(self, cells: Mapping[str, str]) -> str:
-        """As a spreadsheet reads it, without the equals sign; ``cells`` by the names used."""
+        """The formula in spreadsheet notation without equals sign; ``cells`` by name."""
         return _Writer(cells, self.unit is AngleUnit.DEGREE).text(self.node)
 
     def value(self, names: Mapping[str, Any]) -> Any:
-        """Its value, element by element, NaN where it has none."""
+        """The value, element by element; NaN if undefined."""
         with np.errstate(all="ignore"):
             return _value(self.node, names, self.unit.radians)
 
 
 @dataclass(frozen=True)
 class _Writer:
-    """Precedence of spreadsheets: a sign binds more tightly than ``^``, and ``^`` to the left."""
+    """Spreadsheet precedence: a sign binds tighter than ``^``, which is left-associative."""
 
     cells: Mapping[str, str]
     degrees: bool
@@ -97,7 +97,7 @@ class _Writer:
 
 
 def _begins_with_power(node: Node) -> bool:
-    """Whether a sign written before a formula would be raised to a power with it."""
+    """Whether a sign before the formula would be included in a power."""
     while isinstance(node, Binary) and node.operator != "^":
         node = node.left
     return isinstance(node, Binary)

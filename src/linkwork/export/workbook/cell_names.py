@@ -9,7 +9,7 @@ from linkwork.foundation.names import canonical
 
 __all__ = ["CellNames"]
 
-#: What spreadsheets read as a cell, a row, a column or a truth.
+#: Names that spreadsheets read as a cell, row, column or Boolean.
 _TAKEN = re.compile(r"[a-z]{1,3}[0-9]+|[rc][0-9]*([rc][0-9]*)?|true|false", re.IGNORECASE)
 _ODD = re.compile(r"[^\w.]")
 _LONGEST = 200
@@ -17,13 +17,13 @@ _LONGEST = 200
 
 @dataclass
 class CellNames:
-    """Names that a spreadsheet takes, all different; upper and lower case are the same there."""
+    """Unique valid names of cells; spreadsheets ignore case."""
 
     cells: dict[str, str] = field(default_factory=dict)
     _used: set[str] = field(default_factory=set)
 
     def claim(self, key: str, wanted: str) -> str:
-        """A name for what formulas call ``key``, as near as possible to the one that is wanted."""
+        """A cell name for ``key``, as similar as possible to the preferred one."""
         stem = _ODD.sub("_", canonical(wanted).replace("'", "_prime"))[:_LONGEST]
         if not (stem[0].isalpha() or stem[0] == "_"):
             stem = f"_{stem}"

@@ -13,7 +13,7 @@ _WIDTH, _HEIGHT, _ROWS = 860, 400, 21
 
 
 def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
-    """One chart for each unit; ``columns`` are those of the positions."""
+    """Write one chart for each unit; ``columns`` are those of the positions."""
     sheet.write(0, 0, f"{book.model.description.name}: charts", book.style["title"])
     sheet.hide_gridlines(2)
     row = 2
@@ -26,7 +26,7 @@ def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
 
 
 def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
-    """Key and name of everything of one kind."""
+    """Keys and names of all quantities of one kind."""
     equations = book.model.equations
     named = book.motion.unknowns
     found = [

@@ -1,7 +1,7 @@
 """The rows of Newton-Raphson as formulas: equations, Jacobian, points, outputs.
 
-Formulas call an unknown or input by its symbol, in file units, and a dimension by its key.
-Coefficients that are long to write get a cell of their own.
+Formulas refer to unknowns and inputs by symbol, in file units, and to dimensions by key. Long
+coefficients have their own cells.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from linkwork.results import quantities
 
 __all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "Row"]
 
-_MOST_NODES = 7  # a longer coefficient gets a cell of its own
+_MOST_NODES = 7  # longer coefficients get their own cell
 
 
 @dataclass(frozen=True, kw_only=True)
 class Coefficient:
-    """A number that follows from dimensions and has its own cell; ``key`` is its name there."""
+    """A number computed from dimensions in its own cell; ``key`` is its name in formulas."""
 
     key: str
     wanted: str
@@ -37,7 +37,7 @@ class Coefficient:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One real equation F = 0: its name, formula, and derivatives by the block's unknowns."""
+    """One real equation F = 0: name, formula, and derivatives by the block's unknowns."""
 
     name: str
     formula: CellFormula
@@ -46,9 +46,9 @@ class Row:
 
 @dataclass(frozen=True, kw_only=True)
 class BlockFormulas:
-    """A block of the equations: its unknowns' numbers, and its rows; none if it has no formulas.
+    """A block of the equations: indices of its unknowns, and its rows; none without formulas.
 
-    ``reason`` says why there are none.
+    ``reason`` explains missing formulas.
     """
 
     unknowns: tuple[int, ...]
@@ -88,7 +88,7 @@ class ClosureFormulas:
             self.links[link] = self._link(link)
         for name, output in self.traced.equations.outputs.items():
             if any(quantities.row_quantity(node.name) for node in names_in(output.formula)):
-                continue  # a value on Linkwork's own sheet
+                continue  # a value on the sheet Linkwork
             self.outputs[name] = CellFormula(output.formula, self._angle)
             for node in names_in(output.formula):
                 self._need_link(node.name)
@@ -100,7 +100,7 @@ class ClosureFormulas:
     # Coefficients
 
     def _coefficient(self, form: LinearForm, wanted: str) -> LinearForm:
-        """The form, or the name of a cell that holds it."""
+        """The form, or the name of its cell."""
         if form.fixed and _is_short(form.constant):
             return form
         if not form.fixed and _size(form.node) <= _MOST_NODES and _plain(form.node):
@@ -114,7 +114,7 @@ class ClosureFormulas:
         return LinearForm.named(self.coefficients[node].key) * weight
 
     def _parts(self, term: Term) -> tuple[LinearForm, LinearForm]:
-        """Both parts of a term's coefficient."""
+        """Real and imaginary part of a term's coefficient."""
         stem = term.magnitude.name if isinstance(term.magnitude, Name) else "u"
         if stem == "u" and term.length is not None:
             stem = f"{term.length}_way"
@@ -217,7 +217,7 @@ class ClosureFormulas:
             slopes=tuple(CellFormula(slope, self._angle) for slope in slopes),
         )
 
-    # What a position means
+    # Links, points and outputs
 
     def _place_points(self) -> None:
         order = getattr(self.model.description, "points", {})
@@ -232,7 +232,7 @@ class ClosureFormulas:
             self.points[point] = (CellFormula(x.node), CellFormula(y.node))
 
     def _need_link(self, name: str) -> None:
-        """A link whose angle an output uses and that is no unknown itself."""
+        """Add a link whose angle is used by an output but is not an unknown."""
         for link in self.traced.equations.links:
             if canonical(link) == name and name not in self.variables:
                 self.links[link] = self._link(link)
@@ -247,7 +247,7 @@ class ClosureFormulas:
 
 
 class _NoFormula(Exception):
-    """An equation that cannot be written into cells."""
+    """An equation without a cell formula."""
 
 
 def _total(parts: Iterator[tuple[LinearForm, LinearForm]]) -> tuple[LinearForm, LinearForm]:
@@ -281,7 +281,7 @@ def _size(node: Node) -> int:
 
 
 def _plain(node: Node) -> bool:
-    """Whether a formula is short and sweet: no functions, no long numbers, no quotients."""
+    """Whether a formula is simple: no functions, long numbers or quotients."""
     return all(
         not isinstance(part, Call)
         and not (isinstance(part, Number) and not _is_short(part.value))

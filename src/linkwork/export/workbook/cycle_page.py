@@ -32,7 +32,7 @@ _WIDTH = 13
 
 @dataclass(frozen=True, kw_only=True)
 class CycleColumns:
-    """Where the sheet has what; ``largest`` is the column of differences."""
+    """The columns of the sheet; ``largest`` is the column of differences."""
 
     of: dict[str, int]
     equations: tuple[int, ...]
@@ -86,7 +86,7 @@ def planned_cycle(book: Book) -> CycleColumns:
 
 
 def write_cycle(book: Book, sheet: Any, columns: CycleColumns, newton: NewtonColumns) -> None:
-    """Write every position."""
+    """Write all positions."""
     _Page(book, sheet, columns, newton).write()
 
 
@@ -98,7 +98,7 @@ class _Page:
     newton: NewtonColumns
 
     def write(self) -> None:
-        """Headings, then column by column."""
+        """Write the headings, then column by column."""
         book, sheet, style = self.book, self.sheet, self.book.style
         sheet.set_column(0, 0, 6)
         sheet.set_column(1, self.columns.closes, _WIDTH)
@@ -153,7 +153,7 @@ class _Page:
                 self.sheet.write_formula(FIRST + k, column, formula, book.style["number"], value)
 
     def _formulas(self, column: int, formula: CellFormula, look: str) -> Any:
-        """One formula in every row that has a position; its values (R,)."""
+        """Write a formula in every row with a position; returns its values (R,)."""
         book = self.book
         shown = book.text(formula)
         values = book.over_rows(formula.value(book.values))
@@ -182,7 +182,7 @@ class _Page:
         )
 
     def _written(self, column: int, formula: Callable[[int], str], values: Any, look: str) -> None:
-        """A formula of its own row's cells in every row that has a position."""
+        """Write a formula of cells of the same row in every row with a position."""
         book = self.book
         for k in np.flatnonzero(book.iterations.found).tolist():
             value = values[k] if isinstance(values[k], str) else cached(values[k])
@@ -191,7 +191,7 @@ class _Page:
             )
 
     def _rest(self) -> None:
-        """Points, links and outputs, each from those before it."""
+        """Write points, links and outputs, each from preceding ones."""
         book, closure = self.book, self.book.closure
         for point, pair in closure.points.items():
             for axis, formula in zip("xy", pair, strict=True):
@@ -238,7 +238,7 @@ class _Page:
             self.sheet.write(FIRST + k, columns.status, self._said(int(row), k))
 
     def _difference(self, row: int) -> str:
-        """The largest difference of a row's unknowns from Linkwork's own."""
+        """The largest difference of a row's unknowns from Linkwork's values."""
         book = self.book
         parts = []
         source = int(book.iterations.rows[row - FIRST - 1]) + FIRST + 1

@@ -15,8 +15,8 @@ from linkwork.foundation.arrays import Array
 
 __all__ = ["input_table", "write_dimensions"]
 
-_CLOSED = 1e-9  # of the longest link: a row whose equations are off by more does not close
-_EVEN = 1e-12  # of the largest value: rounding of a table that is spaced evenly
+_CLOSED = 1e-9  # of the longest link: a row with larger equation errors does not close
+_EVEN = 1e-12  # of the largest value: rounding of an evenly spaced table
 _HEADS = ("name", "value", "unit", "cell name", "note")
 
 
@@ -52,7 +52,7 @@ class _Page:
     row: int = 2
 
     def write(self) -> None:
-        """All sections one below the other."""
+        """Write all sections, one below the other."""
         self._dimensions()
         self._inputs()
         self._estimates()
@@ -71,7 +71,7 @@ class _Page:
         self.row += 1
 
     def _line(self, shown: str, unit: str, key: str, note: str) -> int:
-        """Everything but the value; the row for it."""
+        """Write a line without its value; returns its row."""
         row, name = self.row, self.book.names.cells[key]
         self.sheet.write(row, 0, shown)
         self.sheet.write(row, 2, unit, self.book.style["unit_right"])
@@ -145,7 +145,7 @@ class _Page:
                 self.row += 1
 
     def _estimates(self) -> None:
-        """Where Newton-Raphson starts in the first row that has a position."""
+        """Write the estimates for the first row with a position."""
         book = self.book
         live = np.flatnonzero(book.iterations.live)
         if not len(live):

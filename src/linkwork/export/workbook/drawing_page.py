@@ -15,29 +15,29 @@ from linkwork.export.workbook.book import CYCLE, FIRST, Book, cached, column_nam
 __all__ = ["has_drawing", "write_drawing"]
 
 SHEET = "Drawing"
-_SIDE = 640  # of the chart, pixels
-_ROUND = 36  # corners of a circle
+_SIDE = 640  # size of the chart [pixels]
+_ROUND = 36  # points of a circle
 _CHART = "E2"
 _COLOURS = (
     "#1f6fb4", "#c8553d", "#3a8f5d", "#7d5ba6", "#b8860b", "#2a9d9d", "#a23b72", "#5f6c7b",
 )  # fmt: skip
 _ROW = 16.0  # height of a row, points
-_TABLE = 60  # rows above the tables behind the picture
+_TABLE = 60  # rows above the tables of the picture
 
 
 def has_drawing(book: Book) -> bool:
-    """Whether there is something to draw."""
+    """Whether the mechanism can be drawn."""
     return bool(book.closure.points) and bool(book.iterations.found.any())
 
 
 def write_drawing(book: Book, sheet: Any, columns: dict[str, int]) -> None:
-    """Row number, points, and the picture; ``columns`` are those of the positions."""
+    """Write row number, points and picture; ``columns`` are those of the positions."""
     _Page(book, sheet, columns).write()
 
 
 @dataclass(frozen=True)
 class _Line:
-    """A drawn line: its name, its points, and how it looks."""
+    """A drawn line: name, points and style."""
 
     name: str
     points: tuple[str, ...]
@@ -51,11 +51,11 @@ class _Page:
     columns: dict[str, int]
 
     def write(self) -> None:
-        """The row's number, its input, its points, the lines behind the picture."""
+        """Write the row number, its input, its points and the lines of the picture."""
         book, sheet, style = self.book, self.sheet, self.book.style
         found = np.flatnonzero(book.iterations.found)
         self.shown = int(found[len(found) // 6])
-        sheet.set_default_row(_ROW)  # its own, lest a program with another one distorts the chart
+        sheet.set_default_row(_ROW)  # explicit row height, since other defaults distort the chart
         sheet.set_column(0, 0, 18)
         sheet.set_column(1, 2, 14)
         sheet.write(0, 0, f"{book.model.description.name}: drawing", style["title"])
@@ -75,7 +75,7 @@ class _Page:
         self._chart()
 
     def _picked(self, row: int, column: int, key: str) -> None:
-        """A cell with a column's value in the row that is shown."""
+        """A cell with a column's value in the displayed row."""
         letter = column_name(self.columns[key])
         source = f"INDEX({CYCLE}!${letter}${FIRST + 1}:${letter}${self.book.last},row_shown)"
         formula = f"=IF(ISNUMBER({source}),{source},NA())"
@@ -144,7 +144,7 @@ class _Page:
         self._placed(chart, line.name, known, {"name": line.name, **line.look})
 
     def _placed(self, chart: Any, name: str, points: Sequence[str], look: dict[str, Any]) -> None:
-        """A curve through points, which stand below each other for it."""
+        """A curve through points, listed below each other."""
         if not points:
             return
         first = self.bottom
@@ -161,7 +161,7 @@ class _Page:
         self.bottom += 1
 
     def _circle(self, chart: Any, name: str, center: str, radius: float) -> None:
-        """A wheel: its rim by points about its centre."""
+        """The rim of a wheel, by points about its centre."""
         first = self.bottom
         x, y = (
             self.book.over_rows(self.book.values[coordinate_name(center, axis)])[self.shown]
@@ -185,7 +185,7 @@ class _Page:
         self.bottom += 1
 
     def _ground(self, chart: Any) -> None:
-        """The points that stand still as dark squares."""
+        """The fixed points as dark squares."""
         known = [p for p in self.book.model.skeleton.fixed if p in self.place]
         dark = {"color": "#1f2933"}
         marker = {"type": "square", "size": 8, "fill": dark, "border": dark}
@@ -216,7 +216,7 @@ class _Page:
         )
 
     def _box(self) -> tuple[float, float, float, float]:
-        """A square around everything in all rows: its corner, side and gridlines."""
+        """A square around all rows: its corner, side and gridlines."""
         book = self.book
         lows, highs = [], []
         for axis in "xy":
@@ -240,6 +240,6 @@ class _Page:
 
 
 def _nice(size: float) -> float:
-    """The next of 1, 2, 5 times a power of ten."""
+    """The next larger 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(size))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= size)

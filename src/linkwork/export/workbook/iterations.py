@@ -1,4 +1,4 @@
-"""The values of the Newton cells: every row is iterated from the row above."""
+"""The values of the Newton cells, in which every row starts from the row above."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from linkwork.results.motion import Motion
 __all__ = ["Iterations", "iterated"]
 
 _FEWEST, _MOST = 3, 8  # iterations in a row of cells
-_SPARE = 1  # more than this mechanism needs, for another one that is tried in the sheet
-_DONE = 1e-11  # weighted: a correction this small was the last that was needed
-_RIGHT = 1e-10  # weighted: how near the cells come to the position itself
+_SPARE = 1  # additional iterations, for changed dimensions
+_DONE = 1e-11  # weighted: a correction of this size is the last one needed
+_RIGHT = 1e-10  # weighted: tolerance between the cells and the position
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Iterations:
-    """The iterations of R rows that were asked for.
+    """The iterations of R requested rows.
 
     Parameters
     ----------
     rows : (R,)
-        Numbers of the rows among those of the motion.
+        Row numbers in the motion.
     values : (K + 1, R, N)
-        Unknowns at every iterate, inputs behind them, in file units; NaN without a position.
+        Unknowns at every iterate, then inputs, in file units; NaN without a position.
     above : (R,)
-        The row from which each row starts, -1 where it starts from an estimate of its own.
+        The row from which each row starts, -1 for a separate estimate.
     found, live : (R,) bool
-        Rows that have a position, and those whose cells find it themselves.
+        Rows with a position, and those whose cells find it.
     """
 
     rows: IndexArray
@@ -44,15 +44,15 @@ class Iterations:
 
     @property
     def count(self) -> int:
-        """K: how many iterations every row has."""
+        """K: the number of iterations of every row."""
         return len(self.values) - 1
 
 
 def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iterations:
     """Simulate the cells.
 
-    A row that does not come to its position from the row above starts from a rounded estimate of
-    it; where that fails as well, as at a change point, its cells hold the values only.
+    A row that does not converge to its position from the row above starts from a rounded estimate
+    of it; if that fails too, as at a change point, its cells contain values only.
     """
     rows = np.flatnonzero(motion.asked)
     scale = _file_units(model)
@@ -107,7 +107,7 @@ def _sizes(model: Model) -> Array:
 
 
 def _rounded(model: Model, right: Array) -> Array:
-    """Estimates as a person would write them: three digits of a variable's size."""
+    """Estimates rounded to three digits of a variable's size."""
     digits = [
         int(2 - np.floor(np.log10(size / unit)))
         for size, unit in zip(_sizes(model), _file_units(model), strict=True)
@@ -117,7 +117,7 @@ def _rounded(model: Model, right: Array) -> Array:
 
 
 def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) -> Array:
-    """Iterates of the cells, (K + 1, B, N): block by block, each with the values before it."""
+    """Iterates of the cells, (K + 1, B, N), block by block with the values of earlier blocks."""
     scale = _file_units(model)
     known = right.copy()
     values = np.repeat(right[None], _MOST + 1, axis=0)
@@ -139,7 +139,7 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
 
 
 def _needed(model: Model, values: Array) -> int:
-    """After how many iterations nothing changes any more."""
+    """The number of iterations until convergence."""
     scale = _file_units(model) / _sizes(model)
     changes: AnyArray = np.abs(np.diff(values, axis=0) * scale).max(axis=(1, 2), initial=0.0)
     large = np.flatnonzero(changes > _DONE)

@@ -1,7 +1,7 @@
 """Real numbers with formulas: sums of weighted terms, simplified as they are built.
 
-A term is a formula without a numerical factor. Functions take and give radians here;
-``radians`` and ``degrees`` are functions among them, because cells hold angles in the file's unit.
+A term is a formula without a numerical factor. Functions use radians; ``radians`` and ``degrees``
+are functions too, because cells contain angles in the file's unit.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from linkwork.foundation.operand import Arithmetic, Operand
 __all__ = ["LinearForm", "call", "cosine", "sine"]
 
 _DEGREE = math.pi / 180.0
-_SHORT = 1e-13  # relative: a factor this near to a short number is that number
+_SHORT = 1e-13  # relative: nearer factors are rounded to a short number
 
 
 class _FormArithmetic(Arithmetic["LinearForm"]):
@@ -75,17 +75,17 @@ class LinearForm(Operand):
 
     @classmethod
     def of(cls, node: Node) -> LinearForm:
-        """One term."""
+        """A form with one term."""
         return cls(0.0, ((node, 1.0),))
 
     @classmethod
     def named(cls, name: str) -> LinearForm:
-        """A cell by its key."""
+        """A form with the value of a cell, by key."""
         return cls.of(Name(name))
 
     @property
     def fixed(self) -> bool:
-        """Whether it is a plain number."""
+        """Whether it is a constant."""
         return not self.terms
 
     @property
@@ -114,7 +114,7 @@ class LinearForm(Operand):
         return found
 
     def per(self, unit: float) -> LinearForm | None:
-        """The form with all numbers divided by a unit, if they are short numbers then."""
+        """The form with all numbers divided by a unit, if the results are short numbers."""
         weights = [_short(weight / unit) for _, weight in self.terms]
         constant = _short(self.constant / unit)
         if constant is None or None in weights:
@@ -125,7 +125,7 @@ class LinearForm(Operand):
 
     @property
     def angle(self) -> Node:
-        """The formula of an angle in radians; ``radians(…)`` of what is short in degrees."""
+        """The formula of an angle in radians; ``radians(…)`` if it is shorter in degrees."""
         turned = self.per(1.0 / _DEGREE)
         if turned is not None and not self.fixed:
             return Call("degrees", (turned.node,))
@@ -140,7 +140,7 @@ class LinearForm(Operand):
 
     @property
     def in_degrees(self) -> Node:
-        """The formula of an angle in radians, in degrees."""
+        """The formula in degrees of an angle in radians."""
         in_file_unit = self.per(_DEGREE)
         return Call("degrees", (self.angle,)) if in_file_unit is None else in_file_unit.node
 
@@ -166,7 +166,7 @@ def _factored(form: LinearForm) -> tuple[Node, float]:
 
 
 def _without(node: Node, factor: Node) -> LinearForm | None:
-    """A term without a factor; ``None`` if it has not got it."""
+    """A term without a factor; ``None`` if it does not contain the factor."""
     if node == factor:
         return LinearForm(1.0)
     match node:

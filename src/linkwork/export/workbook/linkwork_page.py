@@ -13,7 +13,7 @@ _WIDEST = 24
 
 
 def write_linkwork(book: Book, sheet: Any) -> None:
-    """All columns of the motion's table and those asked for, every row, at full precision."""
+    """Write all columns of the motion's table and further quantities at full precision."""
     motion, style = book.motion, book.style
     table = motion.table()
     further = motion.table(*book.further) if book.further else table

@@ -16,10 +16,10 @@ __all__ = ["NewtonColumns", "planned_newton", "write_newton"]
 
 @dataclass
 class NewtonColumns:
-    """Columns of one block after the other.
+    """Column numbers, block by block.
 
-    ``x[k, i]``: unknown i after k iterations; ``last[i]`` its last one. ``start[b, k]``: first
-    column of iteration k of block b, where the equations stand.
+    ``x[k, i]``: unknown i after k iterations; ``last[i]``: its last iterate. ``start[b, k]``: first
+    column of iteration k of block b, that of the equations.
     """
 
     x: dict[tuple[int, int], int] = field(default_factory=dict)
@@ -82,7 +82,7 @@ class _Block:
     cycle: dict[str, int]
 
     def write(self) -> None:
-        """The start, then one iteration beside the other."""
+        """Write the start, then the iterations from left to right."""
         self.live = [int(k) for k in np.flatnonzero(self.book.iterations.live)]
         self._start()
         for k in range(self.book.iterations.count):
@@ -123,7 +123,7 @@ class _Block:
                     self.sheet.write_number(FIRST + k, column, value, look)
 
     def _cell(self, k: int, column: int, formula: str, look: str, value: float) -> None:
-        """One formula of one row."""
+        """Write a formula of one row."""
         own = apart(formula, FIRST + k)
         self.sheet.write_formula(FIRST + k, column, own, self.book.style[look], cached(value))
 
@@ -191,9 +191,9 @@ class _Block:
 
 
 def _correction(place: int, n: int, c: int, row: int) -> str:
-    """Entry c of -J⁻¹ F of one row: its Jacobian stands line after line beside the equations.
+    """Entry c of -J⁻¹ F of one row; its Jacobian follows the equations line by line.
 
-    A plain formula, no array formula: MMULT, MINVERSE and SUMPRODUCT take arrays as they are.
+    A plain formula, not an array formula: MMULT, MINVERSE and SUMPRODUCT accept arrays directly.
     """
 
     def span(first: int, count: int) -> str:

@@ -25,10 +25,10 @@ __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]
 
 @dataclass(frozen=True, kw_only=True)
 class Dimension:
-    """A number of the mechanism's description that has a cell.
+    """A number of the mechanism's description with a cell.
 
-    ``key`` is what formulas call it, ``kind`` the table of the file it stands in, ``formula`` how
-    the file derives it from other dimensions, ``live`` whether the equations follow its cell.
+    ``key`` is its name in formulas, ``kind`` its table in the file, ``formula`` its formula of
+    other dimensions in the file, ``live`` whether the equations follow its cell.
     """
 
     key: str
@@ -43,7 +43,7 @@ class Dimension:
 class TracedEquations:
     """Equations whose coefficients are traced numbers.
 
-    ``settled``: keys of dimensions that had to become plain numbers somewhere, as ratios of gears.
+    ``settled``: keys of dimensions that had to be evaluated as numbers, such as gear ratios.
     """
 
     equations: LoopEquations
@@ -52,7 +52,7 @@ class TracedEquations:
 
 
 def forms_of(z: object) -> tuple[LinearForm, LinearForm]:
-    """The formulas of both parts of a coefficient."""
+    """The formulas of the real and imaginary part of a coefficient."""
     if isinstance(z, TracedNumber):
         return z.re, z.im
     assert isinstance(z, int | float | complex)
@@ -61,7 +61,7 @@ def forms_of(z: object) -> tuple[LinearForm, LinearForm]:
 
 
 def traced(description: Description) -> TracedEquations:
-    """The equations with every dimension traced for which the builder has formulas."""
+    """The equations with all dimensions traced for which the builder has formulas."""
     plain = _without_tables(description)
     asked = list(_dimensions(description))
     live = asked
@@ -83,7 +83,7 @@ def traced(description: Description) -> TracedEquations:
 
 
 def _without_tables(description: Description) -> Description:
-    """The mechanism with inputs that need no formula: their rows are no part of the equations."""
+    """The mechanism with plain input ranges, which are not part of the equations."""
     numbers = description.numbers
 
     def plain(number: Number | None) -> float | None:
@@ -103,7 +103,7 @@ def _without_tables(description: Description) -> Description:
 
 
 def _dimensions(description: Description) -> Iterator[Quantity]:
-    """Every number that has a cell; ground's lengths follow from its points."""
+    """All numbers with cells; ground lengths follow from its points."""
     ground = set(description.links[GROUND]) if isinstance(description, Linkage) else set()
     for quantity in quantities(description):
         if quantity.table == "guess":
@@ -112,7 +112,7 @@ def _dimensions(description: Description) -> Iterator[Quantity]:
             if ground.issuperset(quantity.key.split()):
                 continue
             if isinstance(_formula(description, quantity), Name):
-                continue  # a dimension by its name
+                continue  # a named dimension
         yield quantity
 
 
@@ -142,7 +142,7 @@ def _dimension(description: Description, quantity: Quantity, live: bool) -> Dime
 def _built(
     description: Description, asked: Sequence[Quantity]
 ) -> tuple[LoopEquations, Trace] | None:
-    """The equations with these numbers traced; ``None`` where the builder has no formulas."""
+    """The equations with these numbers traced; ``None`` if the builder has no formulas."""
     trace = Trace()
     numbers = {
         quantity: trace.number(quantity.of(description), LinearForm.named(_key(quantity)))

@@ -31,7 +31,7 @@ _A4 = 9
 
 @dataclass(frozen=True, kw_only=True)
 class WrittenWorkbook:
-    """The bytes of an .xlsx file, and what in it does not follow its dimensions."""
+    """The bytes of an .xlsx file, and its parts that do not recalculate."""
 
     content: bytes
     notices: tuple[str, ...]
@@ -44,22 +44,22 @@ def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> Wr
     ----------
     model : Model
     motion : Motion
+        A sweep of this mechanism.
     further : sequence of str
-        Further quantities, as values on the sheet of Linkwork's own table.
-        A sweep of that mechanism.
+        Further quantities, as values on the sheet Linkwork.
 
     Raises
     ------
     InputError
-        If the motion is another mechanism's, or has too many rows for a workbook.
+        If the motion belongs to another mechanism, or has too many rows for a workbook.
     MissingPackageError
-        Without XlsxWriter.
+        If XlsxWriter is not installed.
 
     Notes
     -----
     Sheets: About, Dimensions, Cycle (a row for every position), Drawing, Charts, Newton (the
-    iterations), Linkwork (its own values). Cells hold what they come to, so that programs which do
-    not calculate show it as well.
+    iterations), Linkwork (its values). Cells contain their results, for programs that do not
+    calculate.
     """
     _check(model, motion)
     version = metadata.version("linkwork")

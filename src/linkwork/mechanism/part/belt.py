@@ -40,7 +40,7 @@ class Belt(WheelPair):
     wheels : (str, str)
         The two links that turn.
     centers : (str, str)
-        The points about which they turn on ``arm``.
+        Their centres of rotation on ``arm``.
     arm : str
         The link with both centres.
     radii : (number, number), optional
@@ -81,11 +81,11 @@ class Belt(WheelPair):
         return not self.crossed
 
     def modules_apart(self, first: float, second: float) -> float:
-        """Pulleys by their teeth fill half of the distance."""
+        """Pulleys given by teeth fill half of the centre distance."""
         return 2.0 * (first + second)
 
     def check_shapes(self, checks: PartChecks) -> None:
-        """Whether wheels fit between their centres."""
+        """Check that the wheels fit between their centres."""
         if self.radii is None:
             return
         distance = self.distance(checks.linkage)

@@ -1,4 +1,4 @@
-"""Cam: it moves a follower, by the follower's motion or by the cam's own outline."""
+"""Cams, given by the motion of the follower or by the outline of the cam."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from linkwork.mechanism.part.slot import Slot
 __all__ = ["Cam", "CamOutline", "Follower", "Segment", "follower_frame"]
 
 _CONTACTS = ("knife", "roller", "flat")
-_SHORTEST = 1e-6  # of a turn: parts of a cam's motion are longer
+_SHORTEST = 1e-6  # minimum length of a segment, in turns
 _SEGMENT = (
     Key("law", Text(LAWS), "Motion law of the follower", required=True),
     Key("over", NumberKey(), "Angle by which the cam turns", required=True),
@@ -48,9 +48,9 @@ class CamOutline(Contour):
 
 @dataclass(frozen=True, kw_only=True)
 class Follower(Figure):
-    """What a cam moves: ``point`` of a link is the knife edge, the roller's centre or on the face.
+    """The follower of a cam: ``point`` is the knife edge, the roller's centre or on the face.
 
-    The follower moves on a ``slider`` or swings about ``pivot``. ``center`` is the cam's.
+    It moves on a ``slider`` or swings about ``pivot``. ``center`` is that of the cam.
     """
 
     shown_again: ClassVar[bool] = True
@@ -97,13 +97,13 @@ class Cam(NamedPart):
     name : str
         The name of the cam.
     cam, center : str
-        The link that turns, and the point about which it turns.
+        The rotating link and its centre of rotation.
     slider : str, optional
         A translating follower: the slider that moves. Its first point is the knife edge, the centre
         of the roller, or on the flat face.
     link, pivot, point : str, optional
-        An oscillating follower: the link, the point about which it turns, and its knife edge or the
-        centre of its roller; a flat face runs from the pivot to ``point``.
+        An oscillating follower: the link, its pivot, and its knife edge or the centre of its
+        roller; a flat face runs from the pivot to ``point``.
     contact : str
         ``knife``, ``roller`` or ``flat``.
     radius : number
@@ -132,10 +132,10 @@ class Cam(NamedPart):
     doc = "A cam and its follower"
     keys = (
         Key("name", Text(), "Name of the cam", required=True),
-        Key("cam", LINK, "The link that turns", required=True),
-        Key("center", POINT, "The point about which it turns", required=True),
-        Key("slider", SLIDER, "The slider that it moves"),
-        Key("link", LINK, "Or the oscillating link that it moves"),
+        Key("cam", LINK, "The rotating link", required=True),
+        Key("center", POINT, "Its centre of rotation", required=True),
+        Key("slider", SLIDER, "The slider moved by the cam"),
+        Key("link", LINK, "Or the oscillating link moved by the cam"),
         Key("pivot", POINT, "With link: the point about which it oscillates"),
         Key(
             "point",
@@ -190,7 +190,7 @@ class Cam(NamedPart):
         return self.cam, str(self.link) if guide is None else pinned(linkage, guide.point_on_line)
 
     def check(self, checks: PartChecks) -> None:
-        """A cam with one follower and one shape."""
+        """Check that the cam has one follower and one shape."""
         if not checks.link(self.cam, "cam"):
             return
         checks.on(self.center, self.cam, "center")
@@ -283,11 +283,11 @@ class Cam(NamedPart):
                 checks.add("must be 0: a dwell has no rise", "segments", k, "lift")
             overs.append(over)
             lifts.append(lift)
-        # NaN where a number is wrong already, which is reported
+        # NaN for invalid numbers, which are reported already
         total = sum(overs)
         if not math.isnan(total) and abs(total - unit.turn) > AGREE * unit.turn:
             checks.add(
-                f"turn the cam by {total:.10g} altogether: a closed cam needs {unit.turn:.10g}",
+                f"turn the cam by {total:.10g} in total: a closed cam needs {unit.turn:.10g}",
                 "segments",
             )
         height = sum(lifts)
@@ -334,7 +334,7 @@ class Cam(NamedPart):
         )
 
     def size_of(self, link: str, linkage: Bodies) -> float | None:
-        """The base circle, or how far the outline's first point is away."""
+        """The radius of the base circle or of the first point of the outline."""
         if link != self.cam:
             return super().size_of(link, linkage)
         if self.base is not None:
@@ -342,7 +342,7 @@ class Cam(NamedPart):
         return abs(complex(*map(linkage.numbers, self.profile[0])))
 
     def inverted(self, inversion: Inversion) -> Self:
-        """Angles from the old ground count from the direction of the line that it has now."""
+        """Measure angles of the old ground from the line of its first two points."""
         linkage, turn = inversion.linkage, inversion.turn
         same = super().inverted(inversion)
         if self.cam == GROUND and self.profile:
@@ -355,13 +355,13 @@ class Cam(NamedPart):
 
 
 def follower_frame(linkage: Bodies, cam: Cam) -> str:
-    """The link on which a cam's follower slides, or that carries its pivot and the cam's centre."""
+    """The link on which the follower slides, or with its pivot and the cam's centre."""
     guide = guide_named(linkage, cam.slider)
     return next(_swinging_frames(linkage, cam)) if guide is None else guide.on
 
 
 def _swinging_frames(linkage: Bodies, cam: Cam) -> Iterator[str]:
-    """Links that carry both a cam's centre and the pivot of its follower."""
+    """Links with both the cam's centre and the pivot of its follower."""
     both = {cam.center, cam.pivot}
     for name, points in linkage.links.items():
         if name not in (cam.cam, cam.link) and both <= set(points):

@@ -24,7 +24,7 @@ _Pairs = tuple[tuple[Number, Number], ...]
 
 @dataclass(frozen=True, kw_only=True)
 class CurvedSlot(Contour):
-    """A curve that the pin ``point`` runs along."""
+    """A curve along which the pin ``point`` moves."""
 
     filled: ClassVar[bool] = False
 
@@ -42,17 +42,17 @@ class Curve(NamedPart):
     Parameters
     ----------
     name : str
-        The place on the curve: an angle from 0 to a full turn if the curve is closed, otherwise a
-        length.
+        The coordinate along the curve: an angle from 0 to a full turn if the curve is closed,
+        otherwise a length.
     point : str
-        The point that moves, of another link.
+        The moving point, on another link.
     on : str
         The link with the curve.
     origin : str
         A point of that link; the coordinates of the curve are relative to it in the link's own
         frame.
     through : tuple of (x, y)
-        Points of the curve [length]; a spline runs through them.
+        Interpolation points of the spline [length].
     closed : bool
         Whether the curve returns to its first point.
 
@@ -94,7 +94,7 @@ class Curve(NamedPart):
         return pinned(linkage, self.point), self.on
 
     def check(self, checks: PartChecks) -> None:
-        """A curve of one link and a point of another."""
+        """Check that curve and point are on different links."""
         if not checks.link(self.on, "on"):
             return
         checks.on(self.origin, self.on, "origin")
@@ -118,7 +118,7 @@ class Curve(NamedPart):
             )
 
     def inverted(self, inversion: Inversion) -> Self:
-        """A curve on the same link; one of the old ground is seen from where its angle counts."""
+        """The curve on the same link; one of the old ground is given in its new axes."""
         same = super().inverted(inversion)
         if self.on != GROUND:
             return same
@@ -126,7 +126,7 @@ class Curve(NamedPart):
 
 
 def turned_back(pairs: _Pairs, turn: float) -> _Pairs:
-    """Coordinates in axes that are turned by ``turn`` [rad]."""
+    """Coordinates in axes rotated by ``turn`` [rad]."""
     if not turn:
         return pairs
     c, s = math.cos(turn), math.sin(turn)

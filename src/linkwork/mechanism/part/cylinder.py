@@ -31,7 +31,7 @@ class Cylinder(NamedPart):
     Parameters
     ----------
     name : str
-        The variable length.
+        The name of the variable length.
     between : (str, str)
         The two points.
 
@@ -54,9 +54,9 @@ class Cylinder(NamedPart):
 
     @property
     def angle_name(self) -> str:
-        """The name of its angle in results."""
+        """The name of the cylinder's angle in results."""
         stem = self.name.rstrip("'")
-        return f"{stem}_angle{self.name[len(stem) :]}"  # primes stand at the end of a name
+        return f"{stem}_angle{self.name[len(stem) :]}"  # primes are at the end of a name
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -72,7 +72,7 @@ class Cylinder(NamedPart):
 
     @property
     def ends(self) -> tuple[str, str]:
-        """The two links of a cylinder: that of its first point, and that of its second one."""
+        """The two links of a cylinder, at its first and at its second point."""
         return f"{self.name} barrel", f"{self.name} rod"
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:

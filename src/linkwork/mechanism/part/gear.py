@@ -28,7 +28,7 @@ class Gear(WheelPair):
     wheels : (str, str)
         The two links that turn.
     centers : (str, str)
-        The points about which they turn on ``arm``.
+        Their centres of rotation on ``arm``.
     arm : str
         The link with both centres: ground, or the carrier of a planetary gear.
     radii : (number, number), optional
@@ -76,7 +76,7 @@ class Gear(WheelPair):
         return abs(first - second) if self.internal else first + second
 
     def check_shapes(self, checks: PartChecks) -> None:
-        """Whether wheels fit between their centres."""
+        """Check that the wheels fit between their centres."""
         if self.radii is None:
             return
         distance = self.distance(checks.linkage)

@@ -1,4 +1,4 @@
-"""A guide: a part that leads something along the line through two points of a link."""
+"""Guides: parts that guide a point along the line through two points of a link."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class GuidePart(NamedPart):
 
     @property
     def point_on_line(self) -> str:
-        """The point that runs along the line."""
+        """The guided point."""
         raise NotImplementedError
 
 
 def guide_named(linkage: Bodies, name: str | None) -> GuidePart | None:
-    """The slider or slot of that name."""
+    """The slider or slot with this name."""
     return next((guide for guide in linkage.of(GuidePart) if guide.name == name), None)

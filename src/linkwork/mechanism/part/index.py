@@ -28,7 +28,7 @@ __all__ = ["PARTS", "JoinedBodies", "room_of"]
 
 @dataclass(frozen=True, kw_only=True)
 class _Tables:
-    """One field for every table of parts; type hints give all fields, most have no other reader."""
+    """One field for each table of parts; most fields are read through type hints only."""
 
     slots: tuple[Slot, ...] = ()
     sliders: tuple[Slider, ...] = ()
@@ -53,13 +53,13 @@ PARTS: Mapping[str, type[Part]] = {
 
 
 def room_of(kind: type) -> str:
-    """The module name that a part has in every package: its figures and equations are there too."""
+    """The module name of a part, the same in the packages of its figures and equations."""
     return kind.__module__.rpartition(".")[2]
 
 
 @dataclass(frozen=True, kw_only=True)
 class JoinedBodies(_Tables, Bodies):
-    """Rigid links and the parts that join them."""
+    """Rigid links and the parts between them."""
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -67,7 +67,7 @@ class JoinedBodies(_Tables, Bodies):
         return tuple(part for _, part in self.keyed_parts())
 
     def keyed_parts(self) -> Iterator[tuple[Key, Part]]:
-        """Every part with its key path in a file."""
+        """All parts with their key paths in a file."""
         for table in PARTS:
             for k, part in enumerate(getattr(self, table)):
                 yield (table, k), part

@@ -1,4 +1,4 @@
-"""Non-circular gears: a pair that rolls by its law of angles, such as elliptical gears."""
+"""Non-circular gears, such as elliptical gears, given by their transmission law."""
 
 from __future__ import annotations
 
@@ -31,29 +31,29 @@ class PitchCurve(Contour):
 
     @property
     def laid_by(self) -> tuple[str, ...]:
-        """The centre is a pin."""
+        """The centre."""
         return ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class NoncircularGear(ArmPair):
-    """Two external gears that roll on each other by a law of angles ψ(φ).
+    """Two external gears that roll on each other with the transmission law ψ(φ).
 
-    φ and ψ are the angles of the first and of the second wheel against the arm; the pitch curve of
-    the first has the radius -ψ'/(1 - ψ') times the distance of the centres where it rolls.
+    φ and ψ are the angles of the first and the second wheel relative to the arm; the pitch radius
+    of the first at the contact is -ψ'/(1 - ψ') times the centre distance.
 
     Parameters
     ----------
     wheels, centers, arm, phase
         As of :class:`~linkwork.mechanism.part.gear.Gear`.
     law : str, optional
-        ψ as a formula of phi and of dimensions; it falls.
+        ψ as a decreasing function of phi; a formula of phi and dimensions.
     table : tuple of (φ, ψ), optional
-        Else pairs of angles over one turn of the first wheel, the first and the last included.
+        Alternatively pairs of angles over one turn of the first wheel, both ends included.
     pitch_curve : tuple of (x, y), optional
-        Else points of the first wheel's pitch curve, closed, in its own frame about its centre.
+        Alternatively points of the first wheel's closed pitch curve about its centre, in its frame.
     start : number
-        φ where the formula or the table has its angle 0.
+        Angle of the first wheel at which φ is 0 in the formula or table.
 
     References
     ----------
@@ -68,14 +68,14 @@ class NoncircularGear(ArmPair):
     """
 
     title = "Non-circular gears"
-    doc = "Two non-circular gears, such as ellipses, by the law of their angles"
+    doc = "Two non-circular gears, such as ellipses, given by their transmission law"
     keys = (
         Key("name", Text(), "Name of the gear pair", required=True),
         *ARM_KEYS,
         Key("law", Formula(), "Angle of the second wheel as a formula of phi, the first one's"),
         Key("table", _PAIRS, "Or pairs of both angles over one turn of the first wheel"),
         Key("pitch_curve", COORDINATES, "Or the first wheel's pitch curve about its centre"),
-        Key("start", NumberKey(), "Angle of the first wheel where the law has its 0"),
+        Key("start", NumberKey(), "Angle of the first wheel at which phi is 0"),
         PHASE_KEY,
     )
     kind = JointKind("G", 2, "non-circular gear pair")
@@ -87,7 +87,7 @@ class NoncircularGear(ArmPair):
     start: Number = 0
 
     def check(self, checks: PartChecks) -> None:
-        """Two wheels on an arm and one law."""
+        """Check the wheels, the arm and the law."""
         super().check(checks)
         given = [field for field in _LAWS if getattr(self, field)]
         if len(given) != 1:
@@ -112,7 +112,7 @@ class NoncircularGear(ArmPair):
         try:
             value(parse(law), {**known, "phi": 0.0}, checks.linkage.angle, law)
         except ExpressionError as error:
-            # a wrong dimension is reported at its own place
+            # an invalid dimension is reported at its own key
             if not checks.linkage.numbers.wrong:
                 checks.add(str(error), "law")
 
@@ -127,7 +127,7 @@ class NoncircularGear(ArmPair):
         for k, (before, after) in enumerate(pairwise(pairs), 1):
             # external gears turn in opposite directions
             if after[0] <= before[0] or after[1] >= before[1]:
-                checks.add("the first angle must rise, the second must fall", "table", k)
+                checks.add("the first angle must increase, the second must decrease", "table", k)
         turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
         if abs(over - turn) > AGREE * turn:
             checks.add(f"covers {over:.10g}: one turn of the first wheel is {turn:g}", "table")
@@ -142,11 +142,11 @@ class NoncircularGear(ArmPair):
                 )
 
     def size_of(self, link: str, linkage: Bodies) -> float | None:
-        """Half of the distance of the centres."""
+        """Half of the centre distance."""
         return self.distance(linkage) / 2.0 if link in self.wheels else None
 
     def inverted(self, inversion: Inversion) -> Self:
-        """Angles of the old ground count from the direction of the line that it has now."""
+        """Measure angles of the old ground from the line of its first two points."""
         same, turn = super().inverted(inversion), inversion.turn
         if self.pitch_curve:
             own = turned_back(self.pitch_curve, turn) if self.wheels[0] == GROUND else None

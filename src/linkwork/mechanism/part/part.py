@@ -1,4 +1,4 @@
-"""A part that joins links: what its file keys, checks, counts, inversion and figures are."""
+"""The base class of parts: file keys, checks, mobility, inversion and figures."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ __all__ = [
     "Inversion", "NamedPart", "Part", "PartChecks", "carriers", "pinned", "turning_links",
 ]  # fmt: skip
 
-#: Relative: numbers that are given twice must agree to this.
+#: Relative tolerance of redundant numbers.
 AGREE = 1e-9
-_LARGEST = 1e100  # so that squares and quotients of lengths stay numbers
+_LARGEST = 1e100  # keeps squares and quotients of lengths finite
 
 POINT, LINK, SLIDER = Text(of="point"), Text(of="link"), Text(of="slider")
 POINT_PAIR = ListOf(Text(), "point", 2, 2)
@@ -32,110 +32,110 @@ NUMBER_PAIR = ListOf(NumberKey(), "number", 2, 2)
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """A part of a mechanism besides points and links.
+    """A part of a mechanism other than points and links.
 
-    ``title`` and ``doc`` name its kind on the page and in the file's schema, ``keys`` are those of
-    its table, ``kind`` is the joint of two links that it is, if it is one.
+    ``title`` and ``doc`` describe its kind on the page and in the schema, ``keys`` are those of its
+    table, ``kind`` is the kind of joint, if the part is a joint of two links.
     """
 
     title: ClassVar[str]
     doc: ClassVar[str]
     keys: ClassVar[tuple[FileKey, ...]]
     kind: ClassVar[JointKind | None] = None
-    holders: ClassVar[str] = "joints"  # what may contradict an angle that it keeps
+    holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:
-        """Turn lists into tuples, so that parts compare and cannot change."""
+        """Convert lists to tuples, so that parts are comparable and immutable."""
         for field, entry in vars(self).items():
-            # the class is frozen: only this way may it set its own fields
+            # the class is frozen: fields can only be set this way
             object.__setattr__(self, field, _frozen(entry))
 
     @classmethod
     def of_table(cls, table: Mapping[str, Any]) -> Self:
-        """The part that a table of a file describes."""
+        """The part described by a table of a file."""
         return cls(**table)
 
     @property
     def label(self) -> str:
-        """What the part is called in lists."""
+        """The name of the part in lists."""
         raise NotImplementedError
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The name of the part and those of what it adds to results."""
+        """The names of the part and of its results."""
         return ()
 
     @property
     def drive(self) -> str:
-        """The key of an input that can drive the part: slider or cylinder."""
+        """The input key that drives the part: slider or cylinder."""
         return ""
 
     @property
     def turning(self) -> tuple[str, ...]:
-        """Links that one point is enough for: wheels and cams, which have no direction to see."""
+        """Links that may have one point only: wheels and cams."""
         return ()
 
     @property
     def body(self) -> tuple[str, ...]:
-        """The points of a body that the part is itself."""
+        """The points of the part, if it is a body."""
         return ()
 
     @property
     def ends(self) -> tuple[str, ...]:
-        """The links of the chain at these points, where the body is two that slide."""
+        """The two sliding links of such a body at these points."""
         return ()
 
     @property
     def mobility(self) -> int:
-        """What the part adds to Grübler's count: f - 3 for a joint of f freedoms, 3 for a link."""
-        # a joint of f freedoms takes 3 - f from the plane
+        """Its contribution to Grübler's count: f - 3 for a joint of f freedoms, 3 for a link."""
+        # a joint of f freedoms removes 3 - f
         joint = 0 if self.kind is None else self.kind.freedom - 3
         return joint + 3 * len(self.ends)
 
     def joint(self, linkage: Bodies) -> Joint | None:
-        """The joint that the part is in the chain."""
+        """The joint of the chain."""
         if self.kind is None:
             return None
         return Joint(kind=self.kind, name=self.label, links=self.joined(linkage))
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
-        """The links that the joint joins."""
+        """The links of the joint."""
         return ()
 
     def kept_angle(self, linkage: Bodies) -> tuple[str, str, float] | None:
-        """A link that keeps its angle against another one, that one, and the angle [rad]."""
+        """Two links whose relative angle is fixed, and this angle [rad]."""
         return None
 
     @property
     def guided(self) -> tuple[str, str, str] | None:
-        """The key of a point that the part leads along a line, the point, and the line's link."""
+        """The key of the guided point, the point, and the link with the line."""
         return None
 
     def check(self, checks: PartChecks) -> None:
-        """Report what is wrong without looking at the links' shapes."""
+        """Report problems that do not depend on link shapes."""
 
     def check_shapes(self, checks: PartChecks) -> None:
-        """Report what does not fit the links' shapes."""
+        """Report conflicts with the link shapes."""
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
-        """What the part looks like."""
+        """The figures of the part."""
         return iter(())
 
     def size_of(self, link: str, linkage: Bodies) -> float | None:
-        """The radius that a link has by this part."""
+        """The radius of a link given by this part."""
         discs = (f for f in self.figures(linkage, {}) if isinstance(f, Disc))
         return next((disc.radius for disc in discs if disc.link == link), None)
 
     def inverted(self, inversion: Inversion) -> Self:
-        """The same part where another link is the ground."""
+        """The part after inversion to another ground."""
         return self._renamed("link", inversion.name)
 
     def find_spelling(self, same: Callable[[str], str]) -> Self:
-        """A copy in which every name has the spelling of its declaration."""
+        """A copy with all names spelled as declared."""
         return self._renamed("", same)
 
     def _renamed(self, of: str, rename: Callable[[str], str]) -> Self:
-        """A copy with other names of links, or of all that it names."""
+        """A copy with new names of links, or of all names used."""
         changed: dict[str, object] = {}
         for key in self.keys:
             entry = getattr(self, key.name)
@@ -149,7 +149,7 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True)
 class NamedPart(Part):
-    """A part with a name of its own."""
+    """A part with a name."""
 
     name: str
 
@@ -167,7 +167,7 @@ def _frozen(entry: object) -> object:
 
 
 def carriers(linkage: Bodies) -> dict[str, list[str]]:
-    """For every point the links and cylinders that carry it, in the file's order."""
+    """The links and cylinders at every point, in the file's order."""
     found: dict[str, list[str]] = {point: [] for point in linkage.points}
     for link, points in linkage.links.items():
         for point in points:
@@ -179,7 +179,7 @@ def carriers(linkage: Bodies) -> dict[str, list[str]]:
 
 
 def pinned(linkage: Bodies, point: str) -> str:
-    """The first link that carries a point, a cylinder by its end."""
+    """The first link or cylinder end at a point."""
     for link in linkage.bodies_at(point):
         return link
     ends = (dict(zip(part.body, part.ends, strict=True)) for part in linkage.of(Part))
@@ -187,16 +187,16 @@ def pinned(linkage: Bodies, point: str) -> str:
 
 
 def turning_links(linkage: Bodies) -> frozenset[str]:
-    """Links that one point is enough for: wheels and cams, which have no direction to see."""
+    """Links that may have one point only: wheels and cams."""
     return frozenset(link for part in linkage.of(Part) for link in part.turning)
 
 
 @dataclass(kw_only=True)
 class Inversion:
-    """The linkage that is inverted, and the new ground while it is written.
+    """The state of an inversion.
 
-    ``link`` becomes ground and the old ground the link ``frame``, whose angle counts from the
-    direction ``turn`` [rad] of the old one. ``seen`` are places in the new ground's coordinates,
+    ``link`` becomes ground and the old ground the link ``frame``, whose angle is measured from the
+    direction ``turn`` [rad] of the old one. ``seen`` are points in the new ground's coordinates,
     ``fixed`` its points, ``taken`` the names in use.
     """
 
@@ -210,54 +210,54 @@ class Inversion:
     taken: set[str]
 
     def name(self, link: str) -> str:
-        """What a link is called now."""
+        """The new name of a link."""
         return {self.ground: self.frame, self.link: self.ground}.get(link, link)
 
     def shifted(self, number: Number, turn: float) -> Number:
-        """A number or formula and an angle [rad] more."""
+        """A number or formula plus an angle [rad]."""
         more = self.linkage.angle.from_radians(turn)
         return f"({number}) + ({more!r})" if isinstance(number, str) else number + more
 
     def free_name(self, name: str) -> str:
-        """A name that nothing has yet, from now on taken."""
+        """Reserve an unused name."""
         return free_name(name, self.taken)
 
 
 class PartChecks:
-    """Checks of one part, adding to its linkage's problems under the part's key.
+    """Checks of one part; problems are added to the linkage under the part's key.
 
-    Fields are given as they stand below that key.
+    Fields are relative to that key.
     """
 
     def __init__(self, linkage: Bodies, problems: Problems, key: Key) -> None:
         self.linkage, self.problems, self.key = linkage, problems, key
 
     def add(self, message: str, *field: str | int) -> None:
-        """Note a problem of a field, or of the whole part."""
+        """Add a problem of a field, or of the whole part."""
         self.problems.add((*self.key, *field), message)
 
     def defined(self, point: str, *field: str | int) -> bool:
-        """Whether there is such a point; reported if not."""
+        """Whether the point exists; reported if not."""
         if point not in self.linkage.points:
             known = choices("points", self.linkage.points, point)
             self.add(f'point "{point}" is not defined {known}', *field)
         return point in self.linkage.points
 
     def link(self, link: str, *field: str | int) -> bool:
-        """Whether there is such a link; reported if not."""
+        """Whether the link exists; reported if not."""
         if link not in self.linkage.links:
             known = choices("links", self.linkage.links, link)
             self.add(f'link "{link}" is not defined {known}', *field)
         return link in self.linkage.links
 
     def on(self, point: str, link: str, *field: str | int) -> None:
-        """The point has to be one of the link's."""
+        """Check that the point is on the link."""
         if self.defined(point, *field) and point not in self.linkage.links[link]:
             known = choices("points", self.linkage.links[link])
             self.add(f'point "{point}" is not on link "{link}" {known}', *field)
 
     def two(self, names: Sequence[str], noun: str, *field: str | int) -> bool:
-        """Two different names."""
+        """Check for two different names."""
         if len(names) != 2:
             self.add(f"needs two {noun}s, got {len(names)}", *field)
             return False
@@ -267,7 +267,7 @@ class PartChecks:
         return True
 
     def line(self, on: str, line: Sequence[str]) -> None:
-        """A link and two points of it."""
+        """Check a link and two of its points."""
         if not self.link(on, "on"):
             return
         if len(line) != 2:
@@ -279,7 +279,7 @@ class PartChecks:
             self.add(f"needs two different points, got {line[0]} twice", "line")
 
     def ends(self, between: Sequence[str]) -> None:
-        """The two points of a cylinder or spring."""
+        """Check the two points of a cylinder or spring."""
         if len(between) != 2:
             self.add(f"needs two points, got {len(between)}", "between")
         elif between[0] == between[1]:
@@ -288,12 +288,12 @@ class PartChecks:
             self.defined(point, "between")
 
     def number(self, number: Number, *field: str | int) -> float:
-        """The number, or NaN after reporting why there is none."""
+        """The number, or NaN after reporting a problem."""
         key = (*self.key, *field)
         return self.linkage.numbers.check_number(self.problems.add, key, number)
 
     def length(self, number: Number, *field: str | int) -> float:
-        """A length or coordinate whose square is a number too."""
+        """A length or coordinate, limited so that its square is finite."""
         amount = self.number(number, *field)
         if abs(amount) > _LARGEST:
             self.add(f"{amount:g} is too large: at most {_LARGEST:g} {self.linkage.length}", *field)
@@ -309,7 +309,7 @@ class PartChecks:
         return amount
 
     def outline(self, points: Sequence[Sequence[Number]], field: str, *, closed: bool) -> None:
-        """Enough different points in a row."""
+        """Check for enough distinct consecutive points."""
         least = 4 if closed else 3
         if len(points) < least:
             self.add(f"needs at least {least} points, got {len(points)}", field)

@@ -1,4 +1,4 @@
-"""Rack and pinion: a slider's displacement is rolled off by a pinion."""
+"""Rack and pinion: a pinion rolls along a slider."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Rack", "RackBar"]
 
 @dataclass(frozen=True, kw_only=True)
 class RackBar(Figure):
-    """The rack that the slider of this name is, and the pinion that meshes with it."""
+    """A slider as a rack, and the pinion that meshes with it."""
 
     slider: str
     link: str
@@ -29,20 +29,20 @@ class RackBar(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Rack(NamedPart):
-    """A rack and pinion: the displacement of a slider is the rolled arc of the pinion.
+    """A rack and pinion: the displacement of a slider equals the arc rolled by the pinion.
 
-    The sketch decides on which side of the rack the pinion is.
+    The sketch selects the side of the rack on which the pinion is.
 
     Parameters
     ----------
     name : str
         The name of the rack and pinion.
     pinion : str
-        The link that turns.
+        The rotating link.
     center : str
-        The point about which it turns, on the link along which the rack slides.
+        Its centre of rotation, on the link along which the rack slides.
     slider : str
-        The name of the slider of the rack.
+        The slider that is the rack.
     radius : number
         Pitch radius of the pinion [length].
 
@@ -62,8 +62,8 @@ class Rack(NamedPart):
     doc = "A rack that slides and the pinion that drives it"
     keys = (
         Key("name", Text(), "Name of the rack and pinion", required=True),
-        Key("pinion", LINK, "The link that turns", required=True),
-        Key("center", POINT, "The point at which it turns", required=True),
+        Key("pinion", LINK, "The rotating link", required=True),
+        Key("center", POINT, "Its centre of rotation", required=True),
         Key("slider", SLIDER, "The slider of the rack", required=True),
         Key("radius", NumberKey(), "Pitch radius of the pinion", required=True),
     )
@@ -88,7 +88,7 @@ class Rack(NamedPart):
         return self.pinion, slider.link
 
     def check(self, checks: PartChecks) -> None:
-        """A pinion on the link along which the rack slides."""
+        """Check that the pinion is on the link along which the rack slides."""
         linkage = checks.linkage
         known = checks.link(self.pinion, "pinion")
         slider = self.guide(linkage)
@@ -106,7 +106,7 @@ class Rack(NamedPart):
         elif self.center in linkage.points and self.center not in linkage.links.get(slider.on, ()):
             checks.add(
                 f'"{slider.on}", along which the rack slides, does not carry {self.center}: a '
-                "pinion that moves against the rack's guide rolls ([[rolling]])",
+                "pinion on another link is written as [[rolling]]",
                 "center",
             )
 

@@ -1,4 +1,4 @@
-"""Rolling: a wheel rolls without slipping on a line or a circle of a link."""
+"""Wheels that roll without slip on a line or a circle of a link."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class RollingLine(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling(NamedPart):
-    """A wheel that rolls without slipping on a line or on a circle of another link.
+    """A wheel that rolls without slip on a line or circle of another link.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Rolling(NamedPart):
     """
 
     title = "Rolling wheel"
-    doc = "A wheel that rolls without slipping"
+    doc = "A wheel that rolls without slip"
     keys = (
         Key(
             "name",
@@ -118,7 +118,7 @@ class Rolling(NamedPart):
         return self.wheel, self.on
 
     def check(self, checks: PartChecks) -> None:
-        """A wheel on a line or a circle of another link."""
+        """Check that the wheel is on a line or circle of another link."""
         known = [checks.link(self.wheel, "wheel"), checks.link(self.on, "on")]
         radius = checks.positive(self.radius, "radius", "radius")
         if (self.line is None) == (self.circle is None):
@@ -154,7 +154,7 @@ class Rolling(NamedPart):
             return
         both = {self.center, self.circle}
         links = checks.linkage.links
-        # with an arm the distance is kept twice: the pair would be overconstrained
+        # an arm fixes the distance already: the pair would be overconstrained
         arm = next((name for name, own in links.items() if both <= set(own)), None)
         if arm is not None:
             checks.add(

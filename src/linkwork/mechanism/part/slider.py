@@ -1,4 +1,4 @@
-"""Slider: a link translates along a line of another without turning against it."""
+"""Slider: a link translates along a line of another link without relative rotation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["Slider"]
 
 @dataclass(frozen=True, kw_only=True)
 class Slider(GuidePart):
-    """A prismatic joint: a link slides along a line of another link without turning.
+    """A prismatic joint: a link slides along a line of another link without rotation.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ class Slider(GuidePart):
     """
 
     title = "Slider"
-    doc = "A link slides along a line of another without turning"
+    doc = "A link slides along a line of another without rotation"
     keys = (
         Key("name", Text(), "Name of the displacement, zero at the first point of the line", True),
-        Key("link", LINK, "The link that slides without turning", required=True),
+        Key("link", LINK, "The link that slides without rotation", required=True),
         Key(
             "points",
             ListOf(Text(), "point", 1, 2),
@@ -89,20 +89,20 @@ class Slider(GuidePart):
         return self.link, self.on, self._angle_against(linkage)
 
     def _angle_against(self, linkage: Bodies) -> float:
-        """The link's angle minus the carrier's, from the line and the sliding points."""
+        """The angle of the link relative to its carrier, from the line and the sliding points."""
         s, t = (linkage.shapes.local[self.on][p] for p in self.line)
         line = phase(t - s)
         local = linkage.shapes.local[self.link]
         if len(self.points) == 2:
             own = phase(local[self.points[1]] - local[self.points[0]])
             d, e, a, b = (linkage.sketched(p) for p in (*self.points, *self.line))
-            # two points on a line leave two directions half a turn apart: that of the sketch is
-            # taken
+            # two points on a line allow two directions half a turn apart: use that of the
+            # sketch
             along = ((e - d) * (b - a).conjugate()).real >= 0
             return line - own + choose(along, 0.0, math.pi)
         if self.angle is not None:
             return line + linkage.numbers(self.angle) * linkage.angle.radians
-        # a block of one point has no direction of its own: it takes that of the line
+        # a one-point block has no direction: use that of the line
         if self.link != GROUND and len(linkage.links[self.link]) < 2:
             return line
         a, b = (linkage.sketched(p) for p in self.line)
@@ -146,10 +146,10 @@ class Slider(GuidePart):
             )
 
     def inverted(self, inversion: Inversion) -> Self:
-        """The slider; one of the new ground turns round, so that the other link slides on it.
+        """The slider; if the sliding link is the new ground, the roles of both links are exchanged.
 
-        Its displacement stays the same: the new line runs the other way. The guide of a cam's
-        follower or of a rack stays the guide.
+        The displacement stays the same, since the new line has the opposite direction. The guide of
+        a cam's follower or of a rack remains the guide.
         """
         linkage, seen, fixed = inversion.linkage, inversion.seen, inversion.fixed
         led = {getattr(part, "slider", None) for part in linkage.of(Part)}
@@ -165,7 +165,7 @@ class Slider(GuidePart):
         for name, place in (("foot", foot), ("guide", foot - (end - start))):
             line.append(inversion.free_name(f"{self.name}_{name}"))
             seen[line[-1]] = place
-        if foot == own:  # then the block's own point is the foot
+        if foot == own:  # then the block's point is the foot of the normal
             del seen[line[0]]
             line[0] = self.points[0]
         fixed += [point for point in line if point not in fixed]
@@ -178,7 +178,7 @@ class Slider(GuidePart):
         )
 
     def _angle_from_line(self, inversion: Inversion) -> Number | None:
-        """The angle of a slider of one point; ground's is counted from its x axis."""
+        """The angle of a one-point slider; that of ground is measured from the x axis."""
         angle = self.angle
         if angle is None or self.link != inversion.ground or not inversion.turn:
             return angle

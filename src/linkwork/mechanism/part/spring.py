@@ -1,4 +1,4 @@
-"""Spring: drawn between two points, and no constraint."""
+"""Springs: drawn between two points, without constraint."""
 
 from __future__ import annotations
 

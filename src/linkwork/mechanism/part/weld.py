@@ -18,7 +18,7 @@ __all__ = ["RigidJoint", "Weld"]
 
 @dataclass(frozen=True, kw_only=True)
 class RigidJoint(Figure):
-    """Two links that are welded together at a point that both carry."""
+    """Two links welded together at a common point."""
 
     over: ClassVar[bool] = True
 
@@ -46,7 +46,7 @@ class Weld(Part):
     """
 
     title = "Weld"
-    doc = "Two links that share a point and turn together"
+    doc = "Two links that share a point and rotate together"
     keys = (
         Key("links", ListOf(Text(), "link", 2, 2), "Two links that share a point", required=True),
         Key("angle", NumberKey(), "From the first link's direction to the second's"),
@@ -61,7 +61,7 @@ class Weld(Part):
 
     @property
     def mobility(self) -> int:
-        """The pin of its two links has lost its freedom."""
+        """The weld removes the freedom of the pin between its two links."""
         return -1
 
     def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
@@ -83,7 +83,7 @@ class Weld(Part):
                 "they are welded",
                 "links",
             )
-        # their angles are unknowns of their own; other links are directed by two points
+        # their angles are separate unknowns; other links have a direction by two points
         directed = {GROUND, *turning_links(checks.linkage)}
         for name, points in zip(self.links, (first, second), strict=True):
             if len(points) < 2 and name not in directed:

@@ -1,4 +1,4 @@
-"""A pair of wheels on a common arm, by radii or numbers of teeth: what gears and belts share."""
+"""A pair of wheels on a common arm, given by radii or teeth: the base of gears and belts."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ __all__ = ["ARM_KEYS", "PHASE_KEY", "SIZE_KEYS", "ArmPair", "WheelPair"]
 _MOST_TEETH = 1_000_000
 
 ARM_KEYS = (
-    Key("wheels", ListOf(Text(), "link", 2, 2), "The two links that turn", required=True),
-    Key("centers", ListOf(Text(), "point", 2, 2), "The points at which they turn", required=True),
+    Key("wheels", ListOf(Text(), "link", 2, 2), "The two rotating links", required=True),
+    Key("centers", ListOf(Text(), "point", 2, 2), "Their centres of rotation", required=True),
     Key("arm", LINK, "The link with both centres; default ground"),
 )
 SIZE_KEYS = (
@@ -31,7 +31,7 @@ PHASE_KEY = Key("phase", NumberKey(), "Angle of the second wheel where the first
 
 @dataclass(frozen=True, kw_only=True)
 class ArmPair(NamedPart):
-    """Two links that turn about points of an arm, their angles tied to each other."""
+    """Two links that rotate about points of an arm with coupled angles."""
 
     wheels: tuple[str, str]
     centers: tuple[str, str]
@@ -46,12 +46,12 @@ class ArmPair(NamedPart):
         return self.wheels
 
     def check(self, checks: PartChecks) -> None:
-        """Two wheels on a common arm."""
+        """Check for two wheels on a common arm."""
         if self.check_arm(checks) and self.phase is not None:
             checks.number(self.phase, "phase")
 
     def check_arm(self, checks: PartChecks) -> bool:
-        """Whether there are two wheels and an arm."""
+        """Check for two wheels and an arm."""
         links = checks.linkage.links
         if not checks.two(self.wheels, "link", "wheels"):
             return False
@@ -73,18 +73,18 @@ class ArmPair(NamedPart):
         return True
 
     def distance(self, linkage: Bodies) -> float:
-        """The distance of the centres."""
+        """The centre distance."""
         a, b = (linkage.shapes.local[self.arm][center] for center in self.centers)
         return abs(b - a)
 
     def inverted(self, inversion: Inversion) -> Self:
-        """Angles between the links are those of the assembled position."""
+        """The pair with its phase from the assembled position."""
         return replace(super().inverted(inversion), phase=None)
 
 
 @dataclass(frozen=True, kw_only=True)
 class WheelPair(ArmPair):
-    """Two round wheels, by radii or by numbers of teeth."""
+    """Two round wheels, given by radii or teeth."""
 
     disc_kind: ClassVar[str]
 
@@ -93,7 +93,7 @@ class WheelPair(ArmPair):
 
     @property
     def together(self) -> bool:
-        """Whether both wheels turn the same way."""
+        """Whether both wheels rotate in the same direction."""
         raise NotImplementedError
 
     @property
@@ -127,7 +127,7 @@ class WheelPair(ArmPair):
             checks.add("are equal: a wheel inside a ring is smaller than the ring", field)
 
     def pitch_radii(self, linkage: Bodies) -> tuple[float, float]:
-        """Given, or from the teeth."""
+        """The given radii, or those computed from the teeth."""
         if self.radii is not None:
             return linkage.numbers(self.radii[0]), linkage.numbers(self.radii[1])
         assert self.teeth is not None
@@ -137,7 +137,7 @@ class WheelPair(ArmPair):
         return module * first, module * second
 
     def modules_apart(self, first: float, second: float) -> float:
-        """The distance of the centres, divided by 2 r/z."""
+        """The centre distance divided by the module 2 r/z."""
         raise NotImplementedError
 
     def discs(self, linkage: Bodies) -> Iterator[Disc]:

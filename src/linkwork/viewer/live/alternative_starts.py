@@ -12,15 +12,15 @@ from linkwork.viewer.live.solvable import Solvable
 
 __all__ = ["closing_input", "sketch_at"]
 
-_LOOKED_AT = 24  # rows at which it is tried whether a mechanism closes
-_CLOSED = 1e-9  # of the gap at the start: no gap
+_LOOKED_AT = 24  # rows at which closure is tried
+_CLOSED = 1e-9  # relative to the gap at the start: closed
 
 
 def closing_input(mechanism: Solvable) -> Mapping[str, float]:
-    """The value of a single input at which a mechanism closes that stays open at its start.
+    """The value of a single input at which a mechanism closes that is open at its start.
 
-    Some rows of the table are tried, those next to the start first. Nothing is returned where none
-    of them closes, or where the start is not that of a sketch.
+    Some rows of the table are tried, those next to the start first. Empty if none of them closes,
+    or if the start is not that of a sketch.
     """
     description = mechanism.description
     if not isinstance(description, Linkage) or len(description.inputs) != 1:
@@ -36,12 +36,12 @@ def closing_input(mechanism: Solvable) -> Mapping[str, float]:
 
 
 def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, ...]:
-    """What moves the points of a sketch to where they are at input values.
+    """The edits that move the points of a sketch to their positions at input values.
 
     Raises
     ------
     InputError
-        If the points follow from equations; for values that fit no input.
+        If the points are given by equations, or values do not match the inputs.
     """
     description = mechanism.description
     if not isinstance(description, Linkage):

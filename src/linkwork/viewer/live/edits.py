@@ -22,18 +22,18 @@ __all__ = ["Before", "Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
-_DIGITS = 12  # of dimensions measured from a picture; given ones must agree to nine
+_DIGITS = 12  # digits of measured dimensions; redundant ones must agree to nine
 
 
 @dataclass(frozen=True, kw_only=True)
 class Before:
-    """The mechanism that is changed, and where its points are at its start (x, y)."""
+    """The mechanism before a change, and coordinates of its points at the start (x, y)."""
 
     description: Description
     places: Mapping[str, tuple[float, float]]
 
     def place(self, point: str) -> complex:
-        """Where a point is: as assembled, or as sketched where nothing is."""
+        """The coordinates of a point: assembled, or as sketched if it cannot be assembled."""
         if point in self.places:
             return complex(*self.places[point])
         assert isinstance(self.description, Linkage)
@@ -42,7 +42,7 @@ class Before:
 
 @dataclass(frozen=True, kw_only=True)
 class Followed:
-    """The dimensions that followed a point, and those beside it that stayed."""
+    """The dimensions changed with a point, and those that stayed."""
 
     followed: tuple[str, ...] = ()
     stayed: tuple[str, ...] = ()
@@ -50,12 +50,12 @@ class Followed:
 
 @singledispatch
 def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
-    """Make a change in a text.
+    """Apply a change to a text.
 
     Raises
     ------
     InputError, UnknownNameError
-        For names that do not exist, or exist already; the text is then invalid.
+        If a name does not exist, or exists already; the text is then invalid.
     """
     raise TypeError(f"{type(edit).__name__} is not an edit of a file")
 
@@ -71,7 +71,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         text.put(("lengths", measured), edit.value)
         return Followed()
     written = quantity.written(description)
-    # a number in place of a formula would silently cut its tie to the dimensions
+    # a number in place of a formula would silently remove the dependence on dimensions
     if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
         raise InputError(
             f'"{quantity.name}" is the formula {written}: change a dimension in '
@@ -84,7 +84,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
 
 
 def _path(quantity: Quantity, text: TextEdits) -> tuple[str | int, ...]:
-    """Where a number stands in the text."""
+    """The key path of a number in the text."""
     if quantity.table == "points":
         return ("points", quantity.key, quantity.axis)
     if quantity.table == "sliders":
@@ -94,7 +94,7 @@ def _path(quantity: Quantity, text: TextEdits) -> tuple[str | int, ...]:
 
 
 def _measured(description: Description, name: str) -> str | None:
-    """The length between sketched points that a name means, as a key of [lengths]."""
+    """The key of [lengths] for a named length between sketched points."""
     if not isinstance(description, Linkage):
         return None
     wanted = sorted(map(canonical, name.split()))
@@ -107,7 +107,7 @@ def _measured(description: Description, name: str) -> str | None:
 def _move_pivot(
     quantity: Quantity, length: float | str, text: TextEdits, description: Description
 ) -> bool:
-    """A given distance on ground moves its second point along the line between the two."""
+    """Set a distance on ground by moving its second point along the line between the two."""
     assert isinstance(description, Linkage)
     first, second = quantity.key.split()
     pair = (*description.points[first], *description.points[second])
@@ -142,7 +142,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
         for key, number in getattr(linkage, table).items():
             if point not in key.split():
                 continue
-            # a formula keeps its tie to the dimensions
+            # a formula keeps its dependence on dimensions
             if isinstance(number, str) or not edit.lengths_follow:
                 stayed.append(key)
                 continue
@@ -153,7 +153,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
 
 
 def _measure(key: str, places: Mapping[str, complex], linkage: Linkage) -> float:
-    """A length, or an angle in the file's unit, between points that are somewhere."""
+    """A measured length, or angle in the file's unit, between points with coordinates."""
     match key.split():
         case [a, b]:
             return _rounded(abs(places[b] - places[a]))
@@ -334,7 +334,7 @@ def _carry(text: TextEdits, link: str, point: str) -> None:
 
 
 def _drop_loose_dimensions(text: TextEdits) -> None:
-    """Lengths and angles between points that no link has together any more."""
+    """Remove lengths and angles between points that are no longer on one link."""
     links = [{canonical(p) for p in _points_of(text, link)} for link in text.keys(("links",))]
     for table in ("lengths", "angles"):
         for key in text.keys((table,)):

@@ -1,6 +1,6 @@
 """Events for the page: one frozen dataclass per event, ``kind`` is its name in snake case.
 
-Numbers are in the file's units; what does not exist is ``None``, never NaN.
+Numbers are in the file's units; missing values are ``None``, never NaN.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class ChangeableNumber:
-    """A number that can be changed by its name.
+    """A named number that can be changed.
 
     ``table``: dimensions, lengths, angles, sliders, guess, points, or measured. ``formula`` is
-    what stands in the file where that is no plain number: such a number follows others.
+    its formula in the file, if it has one: such a number depends on others.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Unknown:
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenInput:
-    """An input: what it drives, and its range as it stands in the file."""
+    """An input: the driven quantity, and its range as in the file."""
 
     name: str
     unit: str
@@ -80,7 +80,7 @@ class DrivenInput:
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """What could be an input: link, slider, cylinder or variable, and its name."""
+    """A possible input: link, slider, cylinder or variable, and its name."""
 
     kind: str
     name: str
@@ -88,7 +88,7 @@ class Drive:
 
 @dataclass(frozen=True, kw_only=True)
 class Link:
-    """A link and the points it carries."""
+    """A link and its points."""
 
     name: str
     points: tuple[str, ...]
@@ -96,11 +96,11 @@ class Link:
 
 @dataclass(frozen=True, kw_only=True)
 class PaletteField:
-    """One thing to fill in: a key of a table, what it is for, and how it is entered.
+    """A field of a form: a key of a table, its description and kind of entry.
 
-    ``entry``: ``text``, ``number``, ``flag``, ``choice`` of some ``words``; the name of a
+    ``entry``: ``text``, ``number``, ``flag``, ``choice`` among ``words``; the name of a
     ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
-    ``lines`` of numbers, or of words that are ``named`` in this order.
+    ``lines`` of numbers, or of words in the order of ``named``.
     """
 
     name: str
@@ -113,7 +113,7 @@ class PaletteField:
 
 @dataclass(frozen=True, kw_only=True)
 class PalettePart:
-    """A kind of part: the table of the file where it belongs."""
+    """A kind of part, with its table in the file."""
 
     table: str
     title: str
@@ -123,17 +123,17 @@ class PalettePart:
 
 @dataclass(frozen=True, kw_only=True)
 class PaletteShown:
-    """Every kind of part that can be added, in the order of the tables of a file."""
+    """All kinds of parts that can be added, in the order of the tables of a file."""
 
     parts: tuple[PalettePart, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class FileState:
-    """The file as it is being edited.
+    """The edited file.
 
-    ``parts``: names of sliders, gears, cams, …; of a weld its two links. ``drives``: what could be
-    an input. ``traceable``: points whose path can be shown.
+    ``parts``: names of sliders, gears, cams, …; for a weld its two links. ``drives``: possible
+    inputs. ``traceable``: points whose paths can be shown.
     """
 
     file: str
@@ -160,7 +160,7 @@ class FileState:
 
 @dataclass(frozen=True, kw_only=True)
 class LimitFound:
-    """Where the motion ends: a dead point or change point of the input."""
+    """An end of the motion: a dead point or change point of the input."""
 
     what: str
     input: float
@@ -172,9 +172,9 @@ class LimitFound:
 class MotionFound:
     """The whole cycle.
 
-    ``live``: found from the cycle before while something is dragged, nothing proved. ``missing``,
-    ``certified``: how many of the rows. ``page``: all rows with their numbers, as they are drawn,
-    its equations only where the cycle is not ``live``; ``None`` where there is nothing to draw.
+    ``live``: computed from the previous cycle during a drag, without proofs. ``missing``,
+    ``certified``: numbers of rows. ``page``: all drawn rows with their numbers, with equations only
+    if not ``live``; ``None`` if there is nothing to draw.
     """
 
     live: bool
@@ -188,7 +188,7 @@ class MotionFound:
 
 @dataclass(frozen=True, kw_only=True)
 class PositionFound:
-    """One position, or why there is none."""
+    """One position, or the reason why there is none."""
 
     status: str
     message: str
@@ -216,9 +216,9 @@ class OpenEnd:
 
 @dataclass(frozen=True, kw_only=True)
 class CannotClose:
-    """No position at these input values: as near as it gets, and how much is missing [length].
+    """No position at these input values: the position nearest to closure, and its gap [length].
 
-    ``elsewhere``: input values of the table at which it closes, if some were looked for and found.
+    ``elsewhere``: input values of the table at which it closes, if any were found.
     """
 
     message: str
@@ -243,7 +243,7 @@ class Way:
 
 @dataclass(frozen=True, kw_only=True)
 class ConfigurationsFound:
-    """Every way to put the mechanism together, and whether these are all."""
+    """All assembly configurations, and whether the list is complete."""
 
     input: dict[str, float]
     ways: tuple[Way, ...]
@@ -267,9 +267,9 @@ class NewtonIterate:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonShown:
-    """Newton-Raphson from a guess: every iterate, where it ended, and which trouble it met.
+    """Newton-Raphson from a guess: every iterate, the final status, and the kind of failure.
 
-    ``guess``: what was asked for, as it was dragged; ``guessed``: points that can be dragged.
+    ``guess``: the guess, after dragging; ``guessed``: points that can be dragged.
     ``trouble``: SINGULAR_DERIVATIVE, INFLECTION,
     ANOTHER_ROOT, LOCAL_EXTREMUM, or "".
     """
@@ -287,7 +287,7 @@ class NewtonShown:
 
 @dataclass(frozen=True, kw_only=True)
 class PointMoved:
-    """What followed a point that was moved, and what stayed although it is between its points."""
+    """The dimensions that followed a moved point, and those that stayed."""
 
     point: str
     followed: tuple[str, ...]
@@ -296,7 +296,7 @@ class PointMoved:
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemShown:
-    """One thing that is wrong: its line in the text, its key and what to do."""
+    """A problem: its line in the text, its key and the remedy."""
 
     line: int | None
     key: str
@@ -305,7 +305,7 @@ class ProblemShown:
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemsFound:
-    """A change, or the file on disk, that is no mechanism; what was shown before stays."""
+    """Problems of a change or of the file on disk; the display does not change."""
 
     where: str
     problems: tuple[ProblemShown, ...]
@@ -313,14 +313,14 @@ class ProblemsFound:
 
 @dataclass(frozen=True, kw_only=True)
 class Refused:
-    """A request that could not be met: what, where and what to do."""
+    """A rejected request: problem, place and remedy."""
 
     message: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class FileChanged:
-    """Another program changed the file: ``reloaded``, or to be decided because of ``unsaved``."""
+    """Another program changed the file: ``reloaded``, unless there are ``unsaved`` changes."""
 
     message: str
     reloaded: bool
@@ -330,7 +330,7 @@ class FileChanged:
 
 @dataclass(frozen=True, kw_only=True)
 class Saved:
-    """The file is written."""
+    """The file was saved."""
 
     file: str
 

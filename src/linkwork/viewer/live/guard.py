@@ -1,8 +1,8 @@
-"""Access control of the live page, decided from the header of a request.
+"""Access control of the live page, based on the request header.
 
-The server listens on this machine only, but every web site that is open in a browser of this
-machine can send requests to it. The Host must be this server's (otherwise a foreign name could
-resolve to this machine), so must the Origin, and the WebSocket needs the token of the address.
+The server listens on this machine only, but any web site open in a browser of this machine can send
+requests to it. Host and Origin must be those of this server (a foreign name could resolve to this
+machine), and the WebSocket needs the token of the address.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 __all__ = ["SUBPROTOCOL", "Guard", "Refusal"]
 
-#: What a page offers when it connects; ``token.`` with the token is offered beside it.
+#: Subprotocol offered by a page, together with ``token.`` + token.
 SUBPROTOCOL = "linkwork"
 _TOKEN = "token."
 
@@ -22,7 +22,7 @@ Headers = Iterable[tuple[bytes, bytes]]
 
 @dataclass(frozen=True, kw_only=True)
 class Refusal:
-    """An HTTP status, and a sentence that tells nothing which the asker does not know."""
+    """An HTTP status, and a sentence without information unknown to the client."""
 
     status: int
     message: str
@@ -35,11 +35,11 @@ class Guard:
     Parameters
     ----------
     port : int
-        Where it listens.
+        The port of the server.
     token : str
-        What a connection has to know.
+        The token that a connection must present.
     paths : collection of str
-        What can be read.
+        The paths that can be read.
     """
 
     port: int
@@ -48,12 +48,12 @@ class Guard:
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """The names under which the server answers."""
+        """The host names of the server."""
         return (f"127.0.0.1:{self.port}", f"localhost:{self.port}")
 
     @property
     def security_headers(self) -> dict[str, str]:
-        """Sent with every answer: nothing from elsewhere, shown nowhere else, kept by nobody."""
+        """Headers of every answer: no foreign content, no embedding, no caching."""
         sockets = " ".join(f"ws://{host}" for host in self.hosts)
         return {
             "content-security-policy": (
@@ -70,7 +70,7 @@ class Guard:
         }
 
     def refused(self, method: str, raw_path: bytes, headers: Headers) -> Refusal | None:
-        """Why a request for a page is not answered; ``None`` if it is."""
+        """The reason to refuse a request for a page; ``None`` to answer it."""
         given = list(headers)
         if (refusal := self._foreign(given)) is not None:
             return refusal
@@ -85,7 +85,7 @@ class Guard:
     def connection_refused(
         self, path: str, headers: Headers, subprotocols: Iterable[str]
     ) -> Refusal | None:
-        """Why a connection is not made; ``None`` if it is."""
+        """The reason to refuse a connection; ``None`` to accept it."""
         given = list(headers)
         if (refusal := self._foreign(given)) is not None:
             return refusal
@@ -95,16 +95,16 @@ class Guard:
             return Refusal(status=404, message="there is nothing here")
         offered = list(subprotocols)
         tokens = [offer.removeprefix(_TOKEN) for offer in offered if offer.startswith(_TOKEN)]
-        # compared in constant time, so that the time of an answer reveals nothing of the token
+        # constant-time comparison: response times must not reveal the token
         known = [hmac.compare_digest(token.encode(), self.token.encode()) for token in tokens]
-        # a browser cannot send headers of its own with a WebSocket: the token comes as a
+        # browsers cannot send custom headers with a WebSocket: the token is a
         # subprotocol
         if SUBPROTOCOL not in offered or known != [True]:
             return Refusal(status=403, message="the token is missing or wrong")
         return None
 
     def _foreign(self, headers: list[tuple[bytes, bytes]]) -> Refusal | None:
-        """Requests under another name, or from a page of another origin."""
+        """Refuse requests for another host name, or from another origin."""
         hosts = [host.encode() for host in self.hosts]
         named = _all(headers, b"host")
         # a foreign name that resolves to this machine (DNS rebinding) is refused

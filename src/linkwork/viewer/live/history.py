@@ -18,12 +18,12 @@ class _Step:
 
 
 class History:
-    """A sequence of texts and the current place in it.
+    """A sequence of texts and the current position in it.
 
     Parameters
     ----------
     text : str
-        The first one.
+        The initial text.
     """
 
     def __init__(self, text: str) -> None:
@@ -32,12 +32,12 @@ class History:
 
     @property
     def text(self) -> str:
-        """The text at this place."""
+        """The current text."""
         return self._steps[self._here].text
 
     @property
     def undo_what(self) -> str:
-        """The change that undo takes back; "" if there is none."""
+        """The change that undo reverts; "" if there is none."""
         return self._steps[self._here].what
 
     @property
@@ -47,12 +47,12 @@ class History:
         return ahead[0].what if ahead else ""
 
     def add(self, text: str, what: str) -> None:
-        """Add a text after the current place; later texts are dropped."""
+        """Add a text after the current one; later texts are dropped."""
         if text == self.text:
             return
         self._steps[self._here + 1 :] = [_Step(text, what)]
         self._here += 1
-        # the current text and the one before it are always kept
+        # always keep the current text and the previous one
         while self._here > 1 and sum(len(s.text) for s in self._steps) > _MOST_CHARACTERS:
             del self._steps[0]
             self._here -= 1

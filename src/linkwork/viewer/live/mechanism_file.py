@@ -12,15 +12,15 @@ from linkwork.textfile.writer import save_text
 
 __all__ = ["FileConflictError", "MechanismFile", "OnDisk"]
 
-_MOST_COPIES = 100  # names tried for a copy beside the file
+_MOST_COPIES = 100  # names tried for a copy next to the file
 
 
 class FileConflictError(InputError):
-    """The file on disk is not the one that was read."""
+    """The file on disk differs from the version that was read."""
 
 
 class OnDisk(Enum):
-    """The file on disk, beside the version that is being edited."""
+    """State of the file on disk relative to the edited version."""
 
     SAME = "same"
     CHANGED = "changed"
@@ -28,17 +28,17 @@ class OnDisk(Enum):
 
 
 class MechanismFile:
-    """A mechanism file on disk, and which version of it is being edited.
+    """A mechanism file on disk, and the version of it that is edited.
 
     Parameters
     ----------
     path : str or Path
-        A link is followed once, here.
+        A symbolic link is resolved once, here.
 
     Raises
     ------
     MechanismFileError
-        If there is no such file, or it cannot be read.
+        If the file does not exist or cannot be read.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -49,18 +49,18 @@ class MechanismFile:
         self.accept(self.text)
 
     def read(self) -> str:
-        """The text on disk; the version being edited is still the one accepted last."""
+        """The text on disk; does not change the edited version."""
         return text_of(bytes_of(self._path, self.name), self.name)
 
     def accept(self, text: str) -> None:
-        """A text of this file is what is being edited from now on."""
+        """Set the edited version to a text of this file."""
         self.text = text
         self._known = self._reported = _digest(text.encode())
 
     def news(self) -> OnDisk | None:
-        """What another program did since the last call; ``None``: nothing.
+        """The change by another program since the last call; ``None`` without a change.
 
-        The content decides, not the date.
+        Contents are compared, not dates.
         """
         stamp = self._stamp_now()
         if stamp == self._stamp:
@@ -79,7 +79,7 @@ class MechanismFile:
         return OnDisk.CHANGED if digest else OnDisk.MISSING
 
     def _digest_now(self) -> bytes:
-        """Of the content on disk; empty if there is no file."""
+        """Digest of the content on disk; empty if there is no file."""
         try:
             return _digest(bytes_of(self._path, self.name))
         except MechanismFileError:
@@ -91,11 +91,11 @@ class MechanismFile:
         Raises
         ------
         FileConflictError
-            If another program changed or removed it meanwhile, unless ``overwrite``.
+            If another program has changed or removed the file, unless ``overwrite``.
         InputError
-            If it cannot be written; what is on disk is then unchanged.
+            If the file cannot be written; it is then unchanged.
         """
-        state = self._state(self._digest_now())  # whatever the date says
+        state = self._state(self._digest_now())  # compares contents, not dates
         if state is not OnDisk.SAME and not overwrite:
             what = "has been removed" if state is OnDisk.MISSING else "has been changed"
             raise FileConflictError(
@@ -103,7 +103,7 @@ class MechanismFile:
                 "or save again and overwrite it"
             )
         save_text(text, self._path)
-        # this program's own writing is no news
+        # changes by this program are not reported
         self._stamp = self._stamp_now()
         self.accept(text)
 
@@ -119,7 +119,7 @@ class MechanismFile:
             number = "" if k == 1 else f"-{k}"
             beside = self._path.with_name(f"{self._path.stem}.unsaved{number}.toml")
             try:
-                # "x" fails if the file exists, also if it was made a moment ago
+                # "x" fails if the file exists, even if just created
                 with beside.open("x", encoding="utf-8", newline="") as file:
                     file.write(text)
                 return beside

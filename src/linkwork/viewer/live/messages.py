@@ -1,8 +1,8 @@
 """Requests from JSON, strictly, and events to JSON.
 
-A message is an object with its ``kind``, an optional whole number ``id`` that the answers repeat,
-and the fields of its dataclass. Nothing is guessed: a field that is missing, unknown, of another
-type, not finite or too long is rejected with its path in the message.
+A message is an object with its ``kind``, an optional integer ``id`` that the answers repeat, and
+the fields of its dataclass. A field that is missing, unknown, of another type, not finite or too
+long is rejected with its path in the message.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from linkwork.viewer.live.requests import REQUESTS, Request, SetText
 
 __all__ = ["LARGEST_MESSAGE", "MessageError", "decoded", "encoded", "kind_of"]
 
-#: Bytes of the largest message: a file of the largest size that is read, escaped as JSON.
+#: Maximum size of a message [bytes]: a file of maximum size, escaped as JSON.
 LARGEST_MESSAGE = 2_500_000
-_LARGEST_ID = 2**53  # whole numbers that JavaScript can hold
+_LARGEST_ID = 2**53  # largest exact integer in JavaScript
 _LONGEST_TEXT = 1_000  # characters of a name or formula
 _LONGEST_FILE = 1_000_000
 _MOST_ENTRIES = 1_000  # of a list or table
 
 
 class MessageError(InputError):
-    """A message that is no request; ``id`` is that of the message, if it can be read."""
+    """A message that is not a valid request; ``id`` is that of the message, if readable."""
 
     def __init__(self, message: str, id: int | None = None) -> None:
         super().__init__(message)
@@ -55,7 +55,7 @@ def decoded(text: str | bytes) -> tuple[Request, int | None]:
     Raises
     ------
     MessageError
-        What is wrong with it, and where.
+        If it is not a valid request; with problem and path.
     """
     data = _object(text)
     number = _id(data.pop("id", None))
@@ -66,7 +66,7 @@ def decoded(text: str | bytes) -> tuple[Request, int | None]:
 
 
 def encoded(event: Event, answers: int | None = None) -> str:
-    """An event as JSON; ``answers`` is the id of the request that it answers."""
+    """An event as JSON; ``answers`` is the id of its request."""
     fields = {"kind": kind_of(type(event)), "answers": answers, **_own_fields(event)}
     return json.dumps(
         fields, allow_nan=False, ensure_ascii=False, separators=(",", ":"), default=_own_fields
@@ -117,7 +117,7 @@ def _id(entry: Any) -> int | None:
 
 
 def _message(data: Any, known: tuple[type, ...], where: str) -> Any:
-    """The dataclass of a JSON object that carries its kind."""
+    """The dataclass selected by the kind of a JSON object."""
     kinds = {kind_of(each): each for each in known}
     kind = data.get("kind") if isinstance(data, dict) else None
     if not isinstance(kind, str) or kind not in kinds:
@@ -129,7 +129,7 @@ def _message(data: Any, known: tuple[type, ...], where: str) -> Any:
 
 @cache
 def _fields(message: type) -> Mapping[str, tuple[Any, bool]]:
-    """Type of every field, and whether it has to be given."""
+    """Type of every field, and whether it is required."""
     types_ = typing.get_type_hints(message)
     return {
         field.name: (types_[field.name], field.default is dataclasses.MISSING)
@@ -155,7 +155,7 @@ def _filled(message: type, entries: dict[str, Any], where: str) -> Any:
 
 
 def _value(entry: Any, kind: Any, where: str, longest: int) -> Any:
-    """An entry as the type of its field."""
+    """An entry converted to the type of its field."""
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin in (types.UnionType, typing.Union):
         return _one_of(entry, parts, where, longest)
@@ -237,7 +237,7 @@ def _check_few(entries: list[Any] | dict[str, Any], where: str) -> None:
 
 
 def _shown(entry: Any) -> str:
-    """An entry for a message: short, whatever it is."""
+    """A short text of any entry, for messages."""
     match entry:
         case dict():
             return "an object"

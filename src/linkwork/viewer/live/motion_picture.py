@@ -15,8 +15,8 @@ __all__ = ["MotionPicture"]
 
 
 class MotionPicture:
-    """One motion after the other, each drawn like the one before as long as the shapes are the
-    same: names stay where they are.
+    """Draws successive motions with the layout of the preceding one as long as the shapes are
+    equal, so that names keep their positions.
     """
 
     def __init__(self) -> None:
@@ -30,10 +30,10 @@ class MotionPicture:
         *,
         brief: bool = False,
     ) -> PageData | None:
-        """The data of a page; ``None`` where no position was found, or nothing has a place.
+        """The data of a page; ``None`` without positions or points.
 
-        ``brief``: numbers to seven digits and no vectors, for a picture that is soon renewed;
-        vectors between points stay with them.
+        ``brief``: seven digits and no vectors, for a picture that is replaced soon; vectors
+        between points are kept.
         """
         if not motion.found.any() or not motion.points:
             return None

@@ -1,7 +1,7 @@
-"""Parts that the page can add: the fields of their forms, and a part from a filled-in form.
+"""Parts that the page can add: fields of the forms, and conversion of a completed form to a part.
 
-Tables and keys are those of mechanism files (:mod:`linkwork.textfile.keys`), so that whatever a
-file can hold can be added; the reader judges what comes out.
+Tables and keys are those of mechanism files (:mod:`linkwork.textfile.keys`), so every kind of part
+of a file can be added; the file reader checks the result.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from linkwork.viewer.live.events import PaletteField, PalettePart
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
-#: What was typed or chosen: one entry, or several; a row of numbers or of a table is one line,
+#: User input of a field: one entry or several; a row of numbers or of a table is one line,
 #: "10, 20".
 Typed = str | tuple[str, ...]
 
 
 def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
-    """An entry of a table of parts from what was typed; what was left empty is left out.
+    """An entry of a table of parts from user input; empty fields are omitted.
 
     Raises
     ------
     InputError, UnknownNameError
-        For a table or key that does not exist, and entries that are not what a key wants.
+        If a table or key does not exist, or an entry does not match its key.
     """
     if table not in PARTS:
         raise UnknownNameError(f'there are no parts "{table}" {choices("parts", PARTS, table)}')
@@ -42,7 +42,7 @@ def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
 
 
 def part_name(row: Mapping[str, object]) -> str:
-    """What an entry of a table of parts is called: its name, or the two links of a weld."""
+    """The label of a part: its name, or the two links of a weld."""
     links = row.get("links")
     if isinstance(links, Sequence) and not isinstance(links, str):
         return " ".join(map(str, links))
@@ -76,7 +76,7 @@ def _field(key: Key) -> PaletteField:
     )
 
 
-#: Every kind of part, in the order of the tables of a file.
+#: All kinds of parts, in the order of the tables of a file.
 PALETTE: tuple[PalettePart, ...] = tuple(
     PalettePart(table=table, title=kind.title, doc=kind.doc, fields=tuple(map(_field, kind.keys)))
     for table, kind in PARTS.items()
@@ -84,7 +84,7 @@ PALETTE: tuple[PalettePart, ...] = tuple(
 
 
 def _entry(key: Key, typed: Typed) -> object:
-    """What a key holds."""
+    """The kind of entry of a key."""
     match key.kind:
         case ListOf(Text()):
             return list(_lines(key, typed))
@@ -108,7 +108,7 @@ def _entry(key: Key, typed: Typed) -> object:
 
 
 def _row(key: Key, keys: Sequence[Key], line: str) -> dict[str, object]:
-    """A row of a table from its words in order; those at the end may be left out."""
+    """A row of a table from its words in order; trailing words may be omitted."""
     words = _words(line)
     if len(words) > len(keys):
         named = " ".join(column.name for column in keys)
@@ -123,19 +123,19 @@ def _lines(key: Key, typed: Typed) -> tuple[str, ...]:
 
 
 def _words(line: str) -> list[str]:
-    """What commas separate, or blanks where there is none: formulas and laws may hold blanks."""
+    """Words separated by commas, or by blanks without commas (formulas may contain blanks)."""
     return [word.strip() for word in line.split(",")] if "," in line else line.split()
 
 
 def _number(word: str) -> float | int | str:
-    """A number, or else a formula."""
+    """A number, or otherwise a formula."""
     plain = word.strip().replace("\u2212", "-")
     try:
         value = float(plain)
     except ValueError:
         return plain
     if not math.isfinite(value):
-        return plain  # the reader says what is wrong with it
+        return plain  # the file reader reports the problem
     return int(value) if value.is_integer() and abs(value) < 1e15 else value
 
 

@@ -1,8 +1,8 @@
 """Requests of the page: one frozen dataclass per request.
 
-The name of a class in snake case is the ``kind`` of its message. ``live`` marks changes on the way
-(a slider being dragged): they are shown, and become one step of the history when the last change
-comes without it.
+The name of a class in snake case is the ``kind`` of its message. ``live`` marks
+intermediate changes of a drag: they are displayed, and become one step of the history with the last
+change, which is not ``live``.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True)
 class SetNumber:
-    """Another value, or formula, for a number of the mechanism.
+    """Set a number of the mechanism to a value or formula.
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A number takes the place of a formula only with ``any_formula``.
+    length becomes a given one. A number replaces a formula only with ``any_formula``.
     """
 
     name: str
@@ -56,10 +56,10 @@ class SetNumber:
 
 @dataclass(frozen=True, kw_only=True)
 class MovePoint:
-    """A point of the sketch goes elsewhere [length].
+    """Move a point of the sketch [length].
 
-    Measured lengths change with it. Those that are given stay as they are unless
-    ``lengths_follow``; formulas always stay.
+    Measured lengths change with it. Given lengths stay unless ``lengths_follow``; formulas always
+    stay.
     """
 
     point: str
@@ -71,10 +71,10 @@ class MovePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class SetInput:
-    """What is driven and over which values; what is left out stays.
+    """Set the driven quantity and its range; omitted fields do not change.
 
-    ``drive`` is link, joint, slider, cylinder or variable, ``name`` which of them; ``speed`` may
-    carry a unit, "300 rpm".
+    ``drive`` is link, joint, slider, cylinder or variable, ``name`` its name; ``speed`` may have a
+    unit, "300 rpm".
     """
 
     number: int = 0
@@ -88,7 +88,7 @@ class SetInput:
 
 @dataclass(frozen=True, kw_only=True)
 class AddPoint:
-    """A point of the sketch, and the links that carry it."""
+    """Add a point to the sketch and to links."""
 
     name: str
     x: float
@@ -98,14 +98,14 @@ class AddPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class RemovePoint:
-    """A point goes, with its place in links, and the lengths and angles that name it."""
+    """Remove a point, also from links, with the lengths and angles that use it."""
 
     name: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class AddLink:
-    """A rigid link through points that exist."""
+    """Add a rigid link through existing points."""
 
     name: str
     points: tuple[str, ...]
@@ -113,14 +113,14 @@ class AddLink:
 
 @dataclass(frozen=True, kw_only=True)
 class RemoveLink:
-    """A link goes, with the lengths and angles that only it had."""
+    """Remove a link, with the lengths and angles of this link only."""
 
     name: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class AddJoint:
-    """A link carries one more point: a pin joint with the links that carry it already."""
+    """Add a point to a link: a pin joint with the other links at the point."""
 
     link: str
     point: str
@@ -128,7 +128,7 @@ class AddJoint:
 
 @dataclass(frozen=True, kw_only=True)
 class RemoveJoint:
-    """A link lets go of a point."""
+    """Remove a point from a link."""
 
     link: str
     point: str
@@ -136,10 +136,10 @@ class RemoveJoint:
 
 @dataclass(frozen=True, kw_only=True)
 class AddPart:
-    """An entry of a table of parts: sliders, gears, cams, …
+    """Add an entry to a table of parts: sliders, gears, cams, …
 
-    ``typed``: by key, as people type it: text, a number, a formula, true or false; a list of names;
-    a list of lines, each with the numbers or words of one row.
+    ``typed``: user input by key: text, a number, a formula, true or false; a list of names; a list
+    of lines, each with the numbers or words of one row.
     """
 
     table: str
@@ -148,7 +148,7 @@ class AddPart:
 
 @dataclass(frozen=True, kw_only=True)
 class RemovePart:
-    """A slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve goes; a weld by the
+    """Remove a slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve; a weld by the
     names of its two links.
     """
 
@@ -157,7 +157,7 @@ class RemovePart:
 
 @dataclass(frozen=True, kw_only=True)
 class TracePoint:
-    """The path of a point is shown, or not."""
+    """Show or hide the path of a point."""
 
     point: str
     on: bool
@@ -165,7 +165,7 @@ class TracePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class ChooseConfiguration:
-    """The configuration or branch to start from; an empty name: the one at the guess."""
+    """Set the configuration or branch to start from; an empty name selects that of the guess."""
 
     name: str
 
@@ -190,28 +190,28 @@ Edit = (
 
 @dataclass(frozen=True, kw_only=True)
 class Together:
-    """Several changes applied together: only the result of all of them must be a mechanism."""
+    """Apply several changes together: only their common result must be a valid mechanism."""
 
     edits: tuple[Edit, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class AssembleAt:
-    """The points of the sketch go where they are at input values at which the mechanism closes."""
+    """Move the points of the sketch to their positions at input values that close the mechanism."""
 
     at: dict[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SetText:
-    """The whole file, typed by hand."""
+    """Replace the whole text of the file."""
 
     text: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolveAt:
-    """One position at input values in file units; without values, at the input of the guess."""
+    """Solve one position at input values in file units, by default at the input of the guess."""
 
     at: dict[str, float]
     configuration: str | None = None
@@ -219,7 +219,7 @@ class SolveAt:
 
 @dataclass(frozen=True, kw_only=True)
 class ListConfigurations:
-    """All configurations at input values; without values, at the input of the guess."""
+    """List all configurations at input values, by default at the input of the guess."""
 
     at: dict[str, float]
 
@@ -228,9 +228,8 @@ class ListConfigurations:
 class NewtonSteps:
     """Newton-Raphson from a guess of some or all unknowns, in file units, step by step.
 
-    ``full_steps``: the textbook's bare method, whose steps may turn a link as far as they like.
-    ``pull``: a point by which the guess is dragged before: one unknown changes so that it comes as
-    near as it can to ``x``, ``y``.
+    ``full_steps``: textbook method without a limit on the rotation of a step. ``pull``: a point of
+    the guess dragged before: one unknown changes to move it as near as possible to ``x``, ``y``.
     """
 
     guess: dict[str, float]
@@ -254,14 +253,14 @@ class Redo:
 
 @dataclass(frozen=True, kw_only=True)
 class Save:
-    """Write the file; ``overwrite`` also if another program has changed it meanwhile."""
+    """Write the file; with ``overwrite`` even if another program has changed it."""
 
     overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reload:
-    """Read the file again; changes that were not saved stay in the history."""
+    """Read the file again; unsaved changes stay in the history."""
 
 
 Request = (

@@ -1,4 +1,4 @@
-"""Results and files as events: numbers in plain lists, ``None`` where there is none."""
+"""Conversion of results and files to events: numbers in lists, ``None`` for missing values."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Numbers = dict[str, float | None]
 def motion_found(
     motion: Motion, *, live: bool, message: str = "", page: PageData | None = None
 ) -> tell.MotionFound:
-    """The cycle, as it is drawn on a page."""
+    """The cycle with its page data."""
     name, unit = next(iter(motion.input_units.items()))
     return tell.MotionFound(
         live=live,
@@ -60,7 +60,7 @@ def motion_found(
 
 
 def position_found(position: Position) -> tell.PositionFound:
-    """One position, or why there is none."""
+    """One position, or the reason why there is none."""
     return tell.PositionFound(
         status=position.status.name,
         message=position.message,
@@ -83,7 +83,7 @@ def cannot_close(
     remedies: Mapping[str, float],
     elsewhere: Mapping[str, float],
 ) -> tell.CannotClose:
-    """The least-squares picture of a mechanism that stays open."""
+    """The least-squares position of a mechanism that cannot be closed."""
     return tell.CannotClose(
         message=message,
         input=dict(nearest.input),
@@ -102,7 +102,7 @@ def _open_ends(ends: Iterable[LinkEnd]) -> tuple[tell.OpenEnd, ...]:
 
 
 def configurations_found(found: Configurations) -> tell.ConfigurationsFound:
-    """Every way, with its picture."""
+    """All configurations with their pictures."""
     return tell.ConfigurationsFound(
         input=dict(found.input),
         ways=tuple(
@@ -118,9 +118,9 @@ def configurations_found(found: Configurations) -> tell.ConfigurationsFound:
 def newton_shown(
     shown: Iterates, guess: Mapping[str, float], guessed: tuple[str, ...]
 ) -> tell.NewtonShown:
-    """The iterates and their end.
+    """The iterates and the final status.
 
-    ``guess`` is what of the mechanism's own was changed, ``guessed`` the points that it places.
+    ``guess`` are the changed unknowns of the guess, ``guessed`` its points.
     """
     position = shown.position
     trouble = None if position.failure is None else position.failure.trouble
@@ -152,7 +152,7 @@ def _iterate(each: Iterate) -> tell.NewtonIterate:
 
 
 def problems_found(error: MechanismError, *, lines: bool = True) -> tell.ProblemsFound:
-    """What the reader says is wrong; in which ``lines``, if that is a text that the person has."""
+    """The problems reported by the reader, with ``lines`` if the text is visible to the user."""
     return tell.ProblemsFound(
         where=error.where,
         problems=tuple(
@@ -167,7 +167,7 @@ def problems_found(error: MechanismError, *, lines: bool = True) -> tell.Problem
 def _changeable_numbers(
     description: Description, kinds: Mapping[str, str]
 ) -> Iterator[tell.ChangeableNumber]:
-    """Every number of a file that has a name, then the lengths measured in its sketch.
+    """All named numbers of a file, then the lengths measured in its sketch.
 
     ``kinds``: angle, length or number for every variable of the equations.
     """
@@ -191,7 +191,7 @@ def _changeable_numbers(
 
 
 def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]) -> str:
-    """The unit of a number; of a named dimension nothing is known."""
+    """The unit of a number; unknown for a named dimension."""
     if quantity.table in ("lengths", "points", "sliders"):
         return description.length
     angle = quantity.table == "angles" or kinds.get(quantity.key) == "angle"
@@ -216,7 +216,7 @@ def _unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.U
 
 
 def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell.DrivenInput, ...]:
-    """What is driven over which rows."""
+    """The driven quantities and their ranges."""
     found = []
     for which, variable in zip(description.inputs, sheet.equations.inputs, strict=True):
         rows = description.rows(which)
@@ -237,7 +237,7 @@ def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell
 
 
 def _sketched_points(description: Description) -> dict[str, tuple[float, float]]:
-    """The points of a sketch, which can be moved; none where they follow from equations."""
+    """The movable points of a sketch; none if they are given by equations."""
     if not isinstance(description, Linkage):
         return {}
     places = {point: description.sketched(point) for point in description.points}
@@ -245,20 +245,20 @@ def _sketched_points(description: Description) -> dict[str, tuple[float, float]]
 
 
 def _links_of(description: Description) -> tuple[tell.Link, ...]:
-    """The links that a file names."""
+    """The links of a file."""
     links: Mapping[str, tuple[str, ...]] = getattr(description, "links", {})
     return tuple(tell.Link(name=name, points=tuple(points)) for name, points in links.items())
 
 
 def _parts_of(description: Description) -> tuple[str, ...]:
-    """What a linkage is made of besides points and links, by name."""
+    """The names of the parts of a linkage other than points and links."""
     if not isinstance(description, Linkage):
         return ()
     return tuple(part.label for part in description.parts)
 
 
 def _drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
-    """What could be driven: links, displacements and lengths of a linkage, else any variable."""
+    """Possible inputs: links, displacements and lengths of a linkage, otherwise any variable."""
     if isinstance(description, Linkage):
         named = [("link", name) for name in description.links if name != GROUND]
         named += [(part.drive, part.label) for part in description.parts if part.drive]
@@ -275,7 +275,7 @@ def _loop_texts(sheet: EquationSheet) -> tuple[str, ...]:
 
 
 def _form_of(description: Description) -> str:
-    """Which kind of file it is."""
+    """The form of the file."""
     if isinstance(description, Linkage):
         return "points-and-links"
     return "loops" if isinstance(description, Loops) else "plain-equations"
@@ -294,7 +294,7 @@ def _numbers(table: Mapping[str, float]) -> Numbers:
 
 
 def _points(table: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
-    """Points that are somewhere."""
+    """Points with finite coordinates."""
     return {p: (x, y) for p, (x, y) in table.items() if math.isfinite(x) and math.isfinite(y)}
 
 

@@ -32,7 +32,7 @@ _FILES = ("linkwork.css", "live.css", "live.js")
 
 @lru_cache
 def served_pages() -> Mapping[str, tuple[str, bytes]]:
-    """What may be asked for by path: media type and content.
+    """Served files by path: media type and content.
 
     Scripts and styles are those of ``static/``, which ``scripts/frontend build`` writes.
     """

@@ -26,7 +26,7 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 _LOOPBACK = "127.0.0.1"
-_MOST_WAITING = 100  # requests or events; a page that sends or reads no slower is held back
+_MOST_WAITING = 100  # queued requests or events; a faster page has to wait
 _OCCUPIED = 4009  # close code: another page is connected
 _MOST_CONNECTIONS = 32
 _LARGEST_HEAD = 16_384  # bytes
@@ -39,7 +39,7 @@ class LiveServer:
     ----------
     workbench : Workbench
     port : int
-        0 takes any that is free.
+        0 selects a free port.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class LiveServer:
 
     @property
     def address(self) -> str:
-        """To be opened in a browser; what stands behind # is never sent to any server."""
+        """The address for the browser; browsers never send the part after #."""
         return f"http://{_LOOPBACK}:{self.port}/#{self.token}"
 
     def run(self, tell: Callable[[], None] = lambda: None) -> None:
@@ -71,12 +71,12 @@ class LiveServer:
         Parameters
         ----------
         tell : callable
-            Tells people the address; Ctrl-C ends the server from then on.
+            Called with the address; from then on Ctrl-C ends the server.
 
         Raises
         ------
         MissingPackageError
-            Without uvicorn or websockets.
+            If uvicorn or websockets is not installed.
         """
         try:
             with self._ended_by_signals():
@@ -97,9 +97,10 @@ class LiveServer:
 
     @contextmanager
     def _ended_by_signals(self) -> Iterator[None]:
-        """Ctrl-C, SIGTERM and a closed terminal end the server at any moment, and nothing is lost.
+        """Handle Ctrl-C, SIGTERM and a closed terminal at any moment, without loss of data.
 
-        While uvicorn runs it has handlers of its own; it raises what it got once more when it ends.
+        While uvicorn runs, its own handlers are active; it raises a received signal again at its
+        end.
         """
         before: dict[int, Any] = {}
         if threading.current_thread() is threading.main_thread():
@@ -120,7 +121,7 @@ class LiveServer:
             await self._answer(scope, send)
 
     async def _answer(self, scope: Scope, send: Send) -> None:
-        """One of the fixed pages; a body is never read."""
+        """Send one of the fixed pages; request bodies are not read."""
         headers = self._guard.security_headers
         refusal = self._guard.refused(scope["method"], scope["raw_path"], scope["headers"])
         if refusal is None:
@@ -134,16 +135,16 @@ class LiveServer:
         await send({"type": "http.response.body", "body": content})
 
     async def _connection(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """A page with the token, from its connection to its end."""
-        await receive()  # the wish to connect
+        """Handle the connection of a page with the token, until it ends."""
+        await receive()  # the connection request
         refusal = self._guard.connection_refused(
             scope["path"], scope["headers"], scope["subprotocols"]
         )
         if refusal is not None:
-            await send({"type": "websocket.close"})  # before it is accepted: the answer is 403
+            await send({"type": "websocket.close"})  # not accepted: the answer is 403
             return
         await send({"type": "websocket.accept", "subprotocol": SUBPROTOCOL})
-        # one page at a time: two could undo each other
+        # one page at a time: two pages could conflict
         if self._page is not None:
             message = encoded(Refused(message=_OCCUPIED_MESSAGE))
             await send({"type": "websocket.send", "text": message})
@@ -155,13 +156,13 @@ class LiveServer:
             self._desk.open()
             await self._receive(receive, self._page)
         finally:
-            self._page = None  # the workbench stays as it is for the next page
+            self._page = None  # the workbench keeps its state for the next page
             sending.cancel()
 
     async def _receive(self, receive: Receive, telling: asyncio.Queue[str]) -> None:
-        """Requests until the page is gone."""
+        """Receive requests until the page disconnects."""
         while True:
-            # not reading from the socket holds the page back
+            # the page waits while the socket is not read
             while max(self._desk.waiting, telling.qsize()) > _MOST_WAITING:
                 await asyncio.sleep(0.02)
             message = await receive()
@@ -177,20 +178,20 @@ class LiveServer:
 
     @staticmethod
     async def _send(send: Send, telling: asyncio.Queue[str]) -> None:
-        with suppress(OSError):  # the page is gone
+        with suppress(OSError):  # the page has disconnected
             while True:
                 await send({"type": "websocket.send", "text": await telling.get()})
 
     def _tell(self, events: list[Event], number: int | None) -> None:
-        """Called by the desk: hand events over to the network's thread."""
+        """Called by the desk: pass events to the network thread."""
         loop = self._loop
         if loop is None:
             return
         messages = [encoded(event, number) for event in events]
         try:
-            # queues of asyncio may be used from their own thread only
+            # asyncio queues may only be used from their thread
             loop.call_soon_threadsafe(self._put, messages)
-        except RuntimeError:  # the loop is closed: there is nobody to tell
+        except RuntimeError:  # the event loop is closed: no receiver
             return
 
     def _put(self, messages: list[str]) -> None:
@@ -206,7 +207,7 @@ _OCCUPIED_MESSAGE = (
 
 
 def _listening(port: int) -> socket.socket:
-    """A socket that already takes connections, on this machine's own address only."""
+    """A listening socket on the loopback address only."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         found.bind((_LOOPBACK, port))
@@ -221,7 +222,7 @@ def _listening(port: int) -> socket.socket:
 
 
 def _uvicorn(app: Callable[..., Any]) -> Any:
-    """A server that writes no log, so that no token can get into one."""
+    """A uvicorn server without logs, which could contain the token."""
     try:
         import uvicorn
         import websockets  # noqa: F401 - uvicorn's way to hold the connection
@@ -242,7 +243,7 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
         server_header=False,
         date_header=False,
         ws_max_size=LARGEST_MESSAGE,
-        # on one machine compression costs more time than it saves
+        # on one machine, compression takes more time than it saves
         ws_per_message_deflate=False,
         limit_concurrency=_MOST_CONNECTIONS,
         h11_max_incomplete_event_size=_LARGEST_HEAD,

@@ -1,4 +1,4 @@
-"""The thread that runs a workbench, one request after the other, separate from the network."""
+"""The thread that processes requests for a workbench, separate from the network."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ __all__ = ["Desk", "Tell"]
 
 _log = logging.getLogger("linkwork.viewer")
 
-#: Takes the events that came of something, and the id of the request that they answer.
+#: Receives events and the id of the request that they answer.
 Tell = Callable[[list[Event], int | None], None]
 
-_LOOK_AT_FILE = 0.5  # seconds between looks at the file on disk
+_LOOK_AT_FILE = 0.5  # interval of checks of the file on disk [s]
 
 
 class Desk:
-    """Works on requests in the order in which they came.
+    """Processes requests in order of arrival.
 
-    Changes on the way that wait behind a newer one of the same kind are left out: only the latest
-    place of a slider matters.
+    Intermediate changes are skipped if a newer one of the same kind is waiting: only the latest
+    position of a slider matters.
 
     Parameters
     ----------
     workbench : Workbench
-        Nobody else may use it until :meth:`close`.
+        For exclusive use until :meth:`close`.
     tell : callable
         Called in the desk's thread.
     """
@@ -46,25 +46,25 @@ class Desk:
 
     @property
     def waiting(self) -> int:
-        """How many requests wait."""
+        """The number of waiting requests."""
         return len(self._waiting)
 
     def prepare(self) -> None:
-        """Solve what :meth:`open` will tell."""
+        """Compute the results that :meth:`open` sends."""
         self.ask(*_UNTOLD)
 
     def open(self) -> None:
-        """Tell everything from the beginning."""
+        """Send the complete state."""
         self.ask(None, None)
 
     def ask(self, request: Request | None, number: int | None) -> None:
-        """A request to be worked on; its events come with this id."""
+        """Queue a request; its events have this id."""
         with self._changed:
             self._waiting.append((request, number))
             self._changed.notify()
 
     def close(self, patience: float = 5.0) -> bool:
-        """Finish what is being worked on and stop; whether that was done in time [s]."""
+        """Finish the current request and stop; returns whether this took less than the time [s]."""
         with self._changed:
             self._closing = True
             self._changed.notify()
@@ -86,13 +86,13 @@ class Desk:
             self._do(*request)
 
     def _next(self) -> tuple[Request | None, int | None]:
-        """The next request; older places of a thing that is being dragged are left out."""
+        """The next request; outdated intermediate changes are skipped."""
         request, number = self._waiting.popleft()
         while getattr(request, "live", False) and self._waiting:
             if not _replaces(self._waiting[0][0], request):
                 break
-            # a point that is dragged sends places faster than they are solved: only the last
-            # matters
+            # a dragged point sends positions faster than they are solved: use only the
+            # last
             request, number = self._waiting.popleft()
         return request, number
 
@@ -107,7 +107,7 @@ class Desk:
                 events = self._workbench.opened()
             else:
                 events = self._workbench.handle(request)
-        except Exception as error:  # whatever it is, the page and what is unsaved must live on
+        except Exception as error:  # any error: keep the page and unsaved changes
             _log.exception("a request failed")
             mistake = f"{type(error).__name__}: {error}"
             number = None if request is None else number
@@ -116,13 +116,13 @@ class Desk:
             self._tell(events, number)
 
 
-#: Beside requests and their ids: a look at the file, and work that nobody waits for.
+#: Besides requests with ids: checks of the file, and background work.
 _NOTHING: tuple[Request | None, int | None] = (None, -1)
 _UNTOLD: tuple[Request | None, int | None] = (None, -2)
 
 
 def _replaces(newer: Request | None, older: Request | None) -> bool:
-    """Whether the older change on the way is worthless beside the newer one."""
+    """Whether a newer change makes the older intermediate one obsolete."""
     if type(newer) is not type(older):
         return False
     same = ("name", "point", "lengths_follow")

@@ -1,4 +1,4 @@
-"""The interface of a mechanism that the live page needs; its caller supplies the mechanism."""
+"""The interface of the mechanism used by the live page; the caller supplies the mechanism."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Solvable(Protocol):
 
     @property
     def description(self) -> Description:
-        """What the file says."""
+        """The description in the file."""
 
     def equations(self) -> EquationSheet:
         """The closure equations."""
@@ -36,13 +36,13 @@ class Solvable(Protocol):
     def sweep(
         self, *, step: float | None = None, progress: Callable[[float], None] | None = None
     ) -> Motion:
-        """The whole cycle with proofs; ``progress`` may raise to give it up."""
+        """The whole cycle with proofs; ``progress`` may raise an error to cancel it."""
 
     def approximate_sweep(self, neighbour: Motion | None = None) -> Motion:
         """The cycle near that of a neighbouring design, fast and without proofs."""
 
     def configurations(self, at: At = None) -> Configurations:
-        """Every way to put it together."""
+        """All assembly configurations."""
 
     def iterates(
         self,
@@ -57,7 +57,7 @@ class Solvable(Protocol):
         """The loop equations over a motion."""
 
     def guessed_points(self) -> tuple[str, ...]:
-        """The points that a guess places."""
+        """The points at a guess."""
 
     def pulled_guess(
         self,
@@ -66,11 +66,11 @@ class Solvable(Protocol):
         guess: Mapping[str, float] | None = None,
         at: At = None,
     ) -> dict[str, float]:
-        """A guess that brings a point near a place."""
+        """A guess that moves a point towards given coordinates."""
 
     def nearest_assembly(self, at: At = None) -> NearestAssembly:
-        """As near to closing as it gets."""
+        """The position nearest to closure."""
 
 
-#: From the text of a file and its name for messages; raises ``MechanismFileError``.
+#: Builds a mechanism from a text and its name for messages; raises ``MechanismFileError``.
 Read = Callable[[str, str], Solvable]

@@ -26,7 +26,7 @@ import type { PageData } from "./page_data";
 def typescript_types() -> str:
     """A module with an interface for every message, and the unions ``Request`` and ``Event``.
 
-    Fields that Python has a default for may be left out of a request; an event has them all.
+    Fields with a default in Python are optional in requests; events have all fields.
     """
     parts = [_HEAD]
     for message in REQUESTS:
@@ -77,11 +77,11 @@ def _type(kind: Any) -> str:
 
 
 def _parts_of_events() -> Iterator[type]:
-    """The dataclasses inside events, each once."""
+    """The dataclasses used in events, without duplicates."""
     found: dict[type, None] = {}
 
     def look(kind: Any) -> None:
-        if kind is PageData:  # has its own module
+        if kind is PageData:  # defined in its own module
             return
         if dataclasses.is_dataclass(kind) and isinstance(kind, type):
             if kind not in EVENTS:

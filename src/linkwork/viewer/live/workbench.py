@@ -26,7 +26,7 @@ from linkwork.viewer.live.solvable import Read, Solvable
 
 __all__ = ["GivenUpError", "Workbench"]
 
-_MOST_ROWS = 3601  # of a cycle that is solved while somebody waits
+_MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
 _MOST_ITERATIONS = 200
 
@@ -34,12 +34,12 @@ Events = list[tell.Event]
 
 
 class GivenUpError(Exception):
-    """A cycle was given up because a newer change makes it worthless."""
+    """A cycle was cancelled because of a newer change."""
 
 
 @dataclass(kw_only=True)
 class _Drag:
-    """A change on the way: the text it changes, and the mechanism it began with."""
+    """An intermediate change: the text it changes, and the mechanism at its start."""
 
     kind: str
     text: TextEdits
@@ -48,7 +48,7 @@ class _Drag:
     latest: str | None = None
 
 
-#: What would stand in lines that the file does not have.
+#: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
 
 
@@ -59,14 +59,14 @@ class Workbench:
     ----------
     file : MechanismFile
     read : callable
-        Makes a mechanism that can be solved from a text; ``linkwork.loads``.
+        Builds a solvable mechanism from a text; ``linkwork.loads``.
     hurried : callable, optional
-        Whether somebody waits for a newer change: a cycle is then given up.
+        Whether a newer change is waiting, which cancels a cycle.
 
     Raises
     ------
     MechanismFileError
-        If the file is no mechanism.
+        If the file is not a valid mechanism.
     """
 
     def __init__(
@@ -78,28 +78,28 @@ class Workbench:
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
-        self._solution: Events = []  # the cycle of the mechanism as it is, once solved
-        self._owed = False  # a cycle was given up, and no other has been told since
+        self._solution: Events = []  # the cycle of the current mechanism, once solved
+        self._owed = False  # a cycle was cancelled, and no other has been sent since
         self._drag: _Drag | None = None
         self._conflict: tell.FileChanged | None = None
 
     @property
     def text(self) -> str:
-        """The text as it is now, a change on the way included."""
+        """The current text, including an intermediate change."""
         on_the_way = None if self._drag is None else self._drag.latest
         return self._history.text if on_the_way is None else on_the_way
 
     @property
     def unsaved(self) -> bool:
-        """Whether the text is another one than was read or written last."""
+        """Whether the text differs from the one last read or written."""
         return self.text != self._file.text
 
     def opened(self) -> Events:
-        """Everything that a page needs to begin."""
+        """All events that a page needs at its start."""
         return [tell.PaletteShown(parts=PALETTE), *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
-        """Carry out a request and send its events; wrong requests are answered, not raised."""
+        """Process a request and send its events; invalid requests are answered, not raised."""
         try:
             if not _goes_on(request, self._drag):
                 self._end_drag()
@@ -112,7 +112,7 @@ class Workbench:
         return [*events, *(self._solved() if self._owed else [])]
 
     def poll(self) -> Events:
-        """What another program did to the file; its changes are taken over if none is unsaved."""
+        """Report changes of the file by other programs; load them unless changes are unsaved."""
         news = self._file.news()
         if news is None:
             return []
@@ -134,12 +134,12 @@ class Workbench:
         return self._taken_over()
 
     def keep_unsaved(self) -> Path | None:
-        """Write a text that was not saved beside the file; ``None`` if all is saved.
+        """Write unsaved text to a copy next to the file; ``None`` if all is saved.
 
         Raises
         ------
         InputError
-            If it cannot be written.
+            If the copy cannot be written.
         """
         return self._file.keep_beside(self.text) if self.unsaved else None
 
@@ -152,7 +152,7 @@ class Workbench:
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
-        """One change, on the way or final."""
+        """Apply a change, intermediate or final."""
         live = bool(getattr(edit, "live", False))
         drag = self._drag
         if drag is None:
@@ -163,14 +163,14 @@ class Workbench:
             text = drag.text.text
             told = self._accepted(text, edit_title(edit), live=live)
         except InputError:
-            drag.text = TextEdits(self.text)  # without the traces of what failed
+            drag.text = TextEdits(self.text)  # without traces of the failed change
             raise
         if live:
             drag.latest, drag.what = text, edit_title(edit)
         return [*_followed(edit, followed), *told]
 
     def _after_refusal(self, request: ask.Request) -> Events:
-        """A drag that ends with a refusal stays at the last change that was none; tell that."""
+        """End a refused drag at its last accepted change, and report it."""
         drag = self._drag
         if drag is None or getattr(request, "live", False):
             return []
@@ -242,7 +242,7 @@ class Workbench:
         shown = mechanism.iterates(guess, at, options=options)
         return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
 
-    # The text and what is solved from it
+    # The text and its results
 
     def _everything(self) -> Events:
         """The file and its motion."""
@@ -251,13 +251,13 @@ class Workbench:
         return [self._state(), *self._solved(), *conflict]
 
     def _before(self) -> Before:
-        """The mechanism as it is, with its points where the start closes."""
+        """The current mechanism, with its points at the assembled start."""
         position = self._mechanism.solve()
         places = {} if not position.status.ok else dict(position.points)
         return Before(description=self._mechanism.description, places=places)
 
     def _accepted(self, text: str, what: str, *, live: bool = False) -> Events:
-        """Read a text; it becomes the file's if it is a mechanism, and nothing changes if not."""
+        """Read a text and adopt it if it is a valid mechanism; otherwise change nothing."""
         self._mechanism, self._solution = self._read(text, self._file.name), []
         if live:
             return self._solved(live=True)
@@ -266,7 +266,7 @@ class Workbench:
         return [self._state(), *self._solved()]
 
     def _end_drag(self) -> None:
-        """What was dragged and never let go counts as done."""
+        """Complete a drag that has not ended."""
         drag, self._drag = self._drag, None
         if drag is not None and drag.latest is not None:
             self._history.add(drag.latest, drag.what)
@@ -285,7 +285,7 @@ class Workbench:
         return [self._state(), *events[1:]]
 
     def _taken_over(self) -> Events:
-        """The file on disk is another one, and nothing is lost by reading it."""
+        """Load the changed file on disk, without loss of changes."""
         self._end_drag()
         try:
             events = self._reloaded()
@@ -301,7 +301,7 @@ class Workbench:
         )
 
     def _solved(self, *, live: bool = False) -> Events:
-        """The cycle; where there is none, the gap that is left; without input, one position."""
+        """Solve the cycle; if it cannot be closed, the gap; without input, one position."""
         if self._solution:
             return self._solution
         if not self._mechanism.description.inputs:
@@ -315,7 +315,7 @@ class Workbench:
         equations = () if live else self._mechanism.equations().mathml()
         page = self._picture.page(motion, equations, self._mechanism.moving_loops, brief=live)
         events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
-        if not motion.found.any() and motion.limits:  # beside the rows of the table
+        if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += self._handle(ask.SolveAt(at={}))
         elif all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
@@ -364,7 +364,7 @@ class Workbench:
 
 
 def _same_thing(edit: ask.Request) -> str:
-    """What is being dragged: two changes of the same thing are one."""
+    """A key of the dragged object: changes with equal keys are merged."""
     match edit:
         case ask.SetNumber():
             return f"number {edit.name}"
@@ -375,7 +375,7 @@ def _same_thing(edit: ask.Request) -> str:
 
 
 def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
-    """Whether a request leaves a change on the way as it is, or is part of it."""
+    """Whether a request belongs to an intermediate change or does not affect it."""
     if drag is None or isinstance(request, ask.SolveAt | ask.ListConfigurations | ask.NewtonSteps):
         return True
     return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
