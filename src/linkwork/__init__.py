@@ -79,12 +79,12 @@ if TYPE_CHECKING:
         LimitKind as LimitKind,
         Motion as Motion,
         OutputLimit as OutputLimit,
-        Series as Series,
     )
     from linkwork.results.position import (
         Certificate as Certificate,
         Position as Position,
     )
+    from linkwork.results.series import Series as Series
     from linkwork.results.table import Table as Table
 else:
     __getattr__ = loader(__name__)

@@ -16,11 +16,12 @@ from linkwork.foundation.status import Status
 from linkwork.mechanism.figures import Guide
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.skeleton import Bar, DrivenPart, Skeleton
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import MechanismNames
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Quantity, Units
+from linkwork.results.series import Series
 
 Places = dict[str, complex]
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.results.motion import Series
 from linkwork.results.quantity import Kind
+from linkwork.results.series import Series
 
 __all__ = ["CLOSE", "agree", "angles_of", "internal", "series_of"]
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwork import drawing, export, motion, textfile, viewer
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force
-from linkwork.results.motion import Motion
+
+if TYPE_CHECKING:
+    from linkwork.results.motion import Motion
 
 __all__ = ["Mechanism"]
 

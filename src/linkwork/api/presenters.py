@@ -7,9 +7,9 @@ from linkwork.foundation.presenting import register_presenter
 from linkwork.results.circuits import Circuits
 from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
+from linkwork.results.motion_summary import motion_text
 from linkwork.results.motion_table import table_of
 from linkwork.results.position import Position
-from linkwork.results.summary import motion_text
 
 __all__ = ["register_presenters"]
 

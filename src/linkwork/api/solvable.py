@@ -11,7 +11,6 @@ from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
 if TYPE_CHECKING:
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from linkwork.results.circuits import Circuits
     from linkwork.results.configurations import Configurations
     from linkwork.results.iterates import Iterates
+    from linkwork.results.motion import Motion
     from linkwork.results.nearest_assembly import NearestAssembly
     from linkwork.results.vector_loop import MovingLoop
 

@@ -33,10 +33,10 @@ from linkwork.foundation.errors import (
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
 from linkwork.motion.lock_step import lock_step
-from linkwork.results.motion import Series
 from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Rate
+from linkwork.results.series import Series
 
 __all__ = ["FamilyMotion"]
 

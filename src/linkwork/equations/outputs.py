@@ -10,7 +10,7 @@ from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number,
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Problems
-from linkwork.results.quantities.index import row_quantity
+from linkwork.results import quantities
 from linkwork.results.quantity import Kind
 
 __all__ = ["read_outputs"]
@@ -56,7 +56,11 @@ def read_outputs(
 
 def _derived(tree: Node, known: Mapping[str, str]) -> dict[str, str]:
     """Kinds of the names in a formula that are quantities of the registry."""
-    rows = {node.name: row_quantity(node.name) for node in names_in(tree) if node.name not in known}
+    rows = {
+        node.name: quantities.row_quantity(node.name)
+        for node in names_in(tree)
+        if node.name not in known
+    }
     kinds = {name: row.kind for name, row in rows.items() if row is not None}
     plain = (Kind.ANGLE, Kind.LENGTH)
     return {name: (k if k in plain else Kind.NUMBER).value for name, k in kinds.items()}

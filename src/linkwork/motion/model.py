@@ -31,9 +31,9 @@ from linkwork.motion.lock_step import lock_step
 from linkwork.motion.rails import rails_of
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
+from linkwork.results import quantities
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import MechanismNames, RowQuantity
-from linkwork.results.quantities.index import row_quantity
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Units
 
@@ -259,7 +259,7 @@ def model_of(description: Description) -> Model:
 def _derived(output: Output) -> Iterator[tuple[Name, RowQuantity]]:
     """The names in a formula that are quantities of the registry."""
     for node in names_in(output.formula):
-        row = row_quantity(node.name)
+        row = quantities.row_quantity(node.name)
         if row is not None:
             yield node, row
 

@@ -11,7 +11,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues
-from linkwork.results.motion import Series
+from linkwork.results.series import Series
 
 __all__ = ["Named", "RowValues", "name_series"]
 

@@ -14,8 +14,8 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named
 from linkwork.motion.redundancy import largest_misfits
 from linkwork.results.failure import Failure
-from linkwork.results.motion import Series
 from linkwork.results.position import Certificate, NewtonTrail, Position
+from linkwork.results.series import Series
 
 __all__ = [
     "Evidence",

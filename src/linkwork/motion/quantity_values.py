@@ -13,8 +13,8 @@ from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
+from linkwork.results import quantities
 from linkwork.results.quantities.asked import Group
-from linkwork.results.quantities.index import row_quantity
 from linkwork.results.quantity import Kind
 
 __all__ = ["QuantityValues"]
@@ -117,7 +117,7 @@ class QuantityValues(ABC):
                 if symbol in used:
                     found[symbol] = self._coordinate(f"{point}.{axis}")
         for symbol in used - set(found):
-            if row_quantity(symbol) is not None:
+            if quantities.row_quantity(symbol) is not None:
                 asked = self.model.quantities.find(symbol)
                 jet, scale = asked.jet(self), self.model.units.scale(asked.own.kind)
                 found[symbol] = Jet(jet.v, jet.d1 / scale, jet.d2 / scale)

@@ -25,42 +25,11 @@ from linkwork.results.failure import Failure
 from linkwork.results.limit import Limit, LimitKind, OutputLimit
 from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantities.registry import EVIDENCE, Quantities
-from linkwork.results.quantity import Quantity, Rate, Units
+from linkwork.results.quantity import Rate, Units
+from linkwork.results.series import Series
 from linkwork.results.table import Table
 
-__all__ = ["Limit", "LimitKind", "Motion", "OutputLimit", "Series"]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Series:
-    """One quantity over the N rows of a motion.
-
-    Parameters
-    ----------
-    quantity : Quantity
-        Its name and kind.
-    value : array (N,)
-        Values in file units.
-    first, second : array (N,)
-        Derivatives with respect to the leading input; angles in radians.
-
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> motion = lw.example("four-bar").sweep(start=0, stop=90, step=30)
-    >>> series = motion.unknowns["rocker"]
-    >>> series.quantity.name, series.first.round(3)
-    ('rocker', array([-0.667,  0.122,  0.457,  0.539]))
-    """
-
-    quantity: Quantity
-    value: Array
-    first: Array
-    second: Array
-
-    def __post_init__(self) -> None:
-        for field in ("value", "first", "second"):
-            object.__setattr__(self, field, read_only(getattr(self, field)))
+__all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.results.motion import Motion, Series
+from linkwork.results.motion import Motion
 from linkwork.results.quantity import Rate
+from linkwork.results.series import Series
 from linkwork.results.table import Column, Table
 
 __all__ = ["table_of"]

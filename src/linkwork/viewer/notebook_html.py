@@ -27,8 +27,9 @@ from linkwork.drawing.theme import DARK, LIGHT
 from linkwork.results.circuits import Circuits, circuits_summary
 from linkwork.results.configurations import Configurations, configurations_summary
 from linkwork.results.motion import Motion
+from linkwork.results.motion_summary import motion_summary
 from linkwork.results.position import Position, position_summary
-from linkwork.results.summary import Summary, motion_summary
+from linkwork.results.summary import Summary
 
 __all__ = [
     "circuits_html",

@@ -19,7 +19,7 @@ from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number,
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
-from linkwork.results.quantities.index import row_quantity
+from linkwork.results import quantities
 
 __all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "Row"]
 
@@ -87,7 +87,7 @@ class ClosureFormulas:
         for link in self.model.riding:
             self.links[link] = self._link(link)
         for name, output in self.traced.equations.outputs.items():
-            if any(row_quantity(node.name) for node in names_in(output.formula)):
+            if any(quantities.row_quantity(node.name) for node in names_in(output.formula)):
                 continue  # a value on Linkwork's own sheet
             self.outputs[name] = CellFormula(output.formula, self._angle)
             for node in names_in(output.formula):

@@ -6,18 +6,18 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import as_name, canonical, find_spelling
+from linkwork.results import quantities as every
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.definition import (
     MechanismNames,
     MotionQuantity,
 )
-from linkwork.results.quantities.index import MOTION_QUANTITIES, ROW_QUANTITIES
 from linkwork.results.quantity import Kind, Quantity, Rate
 
 __all__ = ["EVIDENCE", "Call", "Listed", "Quantities"]
@@ -31,7 +31,6 @@ EVIDENCE = {
     "unique_within": "within this there is no other position, relative to the longest link",
 }
 
-_OF_MOTIONS = {quantity.word: quantity for quantity in MOTION_QUANTITIES}
 _CALL = re.compile(r"\s*(\w+)\s*\(\s*([^()<>=]*[^()<>=\s])\s*\)\s*")
 _RATES = {
     Rate.FIRST: "first derivative by the input",
@@ -49,6 +48,11 @@ _ABOUT = {
     Group.OUTPUT: "formula in [outputs]",
     Group.COORDINATE: "coordinate of the point",
 }
+
+
+@cache
+def _of_motions() -> dict[str, MotionQuantity]:
+    return {quantity.word: quantity for quantity in every.MOTION_QUANTITIES}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +94,7 @@ class Quantities:
     def derived(self) -> dict[str, Asked]:
         """Quantities that follow from the mechanism's own, by name."""
         found: dict[str, Asked] = {}
-        for row in ROW_QUANTITIES:
+        for row in every.ROW_QUANTITIES:
             for part, kind in row.of(self.names).items():
                 own = Quantity(name=f"{part}.{row.word}", kind=kind)
                 found[own.name] = Asked(
@@ -140,7 +144,7 @@ class Quantities:
         if own in self.derived:
             return _with_rate(self.derived[own], rate)
         call = _CALL.fullmatch(name)
-        if call and call[1] in _OF_MOTIONS:
+        if call and call[1] in _of_motions():
             raise UnknownNameError(
                 f'"{name}" is a number of a whole motion, not of every row: '
                 "ask a motion, a family or a study for its value"
@@ -192,7 +196,7 @@ class Quantities:
         for rate, about in _RATES.items():
             if timed or not rate.by_time:
                 yield Listed(name=f"….{rate.value}", kind="rate", unit="", about=about)
-        for quantity in MOTION_QUANTITIES:
+        for quantity in every.MOTION_QUANTITIES:
             inside = ["POINT" if quantity.of_point else "…", *map(str.upper, quantity.numbers)]
             name = f"{quantity.word}({', '.join(inside)})"
             yield Listed(name=name, kind="of a motion", unit="", about=quantity.about)
@@ -212,7 +216,7 @@ class Call:
     @property
     def quantity(self) -> MotionQuantity:
         """Which number it is."""
-        return _OF_MOTIONS[self.word]
+        return _of_motions()[self.word]
 
     @classmethod
     def read(cls, text: str) -> Call:
@@ -224,18 +228,18 @@ class Call:
             If it is none.
         """
         call = _CALL.fullmatch(as_name(text))
-        known = nearest(text if call is None else call[1], _OF_MOTIONS)
+        known = nearest(text if call is None else call[1], _of_motions())
         if call is None:
             own, dot, last = text.strip().rpartition(".")
-            known = f'(write "{last}({own})")' if dot and last in _OF_MOTIONS else known
+            known = f'(write "{last}({own})")' if dot and last in _of_motions() else known
             raise InputError(
                 f'must be a number of a whole motion, as in "stroke(rocker)", got "{text}" {known}'
             )
-        if call[1] not in _OF_MOTIONS:
+        if call[1] not in _of_motions():
             raise InputError(f'there is no number "{call[1]}" of a motion {known}')
         of, *rest = (part.strip() for part in call[2].split(","))
         numbers = tuple(finite for part in rest if (finite := _finite(part)) is not None)
-        wanted = _OF_MOTIONS[call[1]].numbers
+        wanted = _of_motions()[call[1]].numbers
         if len(rest) != len(wanted) or len(numbers) != len(rest):
             form = ", ".join([of, *map(str.upper, wanted)])
             raise InputError(f'"{text}" must be {call[1]}({form})')
