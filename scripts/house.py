@@ -77,9 +77,11 @@ def report(
     failed = 0
     for name, count in counts.items():
         goal = goals.get(name, {})
+        over = count.value > goal.get("ceiling", count.value)
         bound = f"at most {goal['most']}" if "most" in goal else ""
         bound = f"at least {goal['least']}" if "least" in goal else bound
-        state = ("MISSED" if goal.get("firm") else "not yet") if missed(count, goal) else ""
+        firm = goal.get("firm") or over
+        state = ("MISSED" if firm else "not yet") if missed(count, goal) else ""
         failed += state == "MISSED"
         say(f"{name:32} {count.value:>8}   {bound:14} {state}".rstrip())
         if verbose:

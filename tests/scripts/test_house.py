@@ -251,6 +251,11 @@ def test_a_firm_goal_that_is_missed_ends_with_1() -> None:
         ["many", "1.5", "at", "least", "2.0", "not", "yet"],
         ["free", "7"],
     ]
+    goals["many"] = {"most": 1, "ceiling": 1.5}  # may be missed, but not by more
+    assert report(counts, goals, False, said.append) == 0
+    goals["many"]["ceiling"] = 1.4
+    assert report(counts, goals, False, said.append) == 1
+    goals["many"] = {}
     goals["few"]["most"] = 2
     said.clear()
     assert report(counts, goals, True, said.append) == 1

@@ -155,6 +155,7 @@ class SolvableMechanism(DescribedMechanism):
         array([ 62.72,  80.26, 121.19, 123.86,  62.72])
         """
         asked = self.model
+        # another range keeps the start position, which is on the branch of the guess
         if not (start is None and stop is None and step is None):
             asked = motion.model_of(self.description.with_range(start, stop, step))
             asked = asked.from_start_of(self.model)
@@ -317,6 +318,7 @@ class SolvableMechanism(DescribedMechanism):
             As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
+        # a motion between dead points is shown there and back, along the circuit
         if motion.found.all() or not motion.found.any():
             return motion
         return self.sweep(

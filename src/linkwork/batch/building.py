@@ -105,6 +105,7 @@ class Builder:
 
     def _pass(self, rows: IndexArray, *, first: bool) -> IndexArray:
         """Build the designs that go the leader's way; returns the others."""
+        # the mechanism itself in lane 0; later passes follow a design that did not agree with it
         consensus = LaneArithmetic(1 + len(rows), leader=0 if first else 1)
         numbers = {
             quantity: consensus.lanes(
@@ -151,6 +152,7 @@ class Builder:
 
     def _write(self, rows: IndexArray, which: AnyArray, found: Coefficients) -> None:
         """Enter the coefficients of the designs ``rows[which]``."""
+        # a slice is written many times faster than single places
         whole = bool(which.all()) and len(rows) == rows[-1] - rows[0] + 1
         at: slice | IndexArray = slice(rows[0], rows[-1] + 1) if whole else rows[which]
         for name, values in _named(found).items():
@@ -211,6 +213,7 @@ def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
     """
     description = model.description
     spoken = sum(which.speed is not None for which in description.inputs)
+    # released links and contradicting speeds depend on numbers, and are decided design by design
     if model.equations.surplus is not None or spoken > 1:
         return model, False
     consensus = LaneArithmetic(1, widest=True)

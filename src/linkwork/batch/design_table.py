@@ -70,6 +70,7 @@ def _known(names: Sequence[str], columns: Sequence[str] | None) -> Sequence[str]
 
 def _read_csv(path: Path, columns: Sequence[str] | None) -> dict[str, Array]:
     try:
+        # a byte order mark, as spreadsheets write it, is no part of the first name
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file)
             header = [name.strip() for name in next(reader, [])]

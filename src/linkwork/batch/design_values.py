@@ -71,6 +71,7 @@ class DesignValues(QuantityValues):
             return Jet(self.v[k], rates.first[k], rates.second[k])
         column = self.inputs[:, k - n] * self.model.input_scale[k - n]
         value = np.where(self.lost, np.nan, column[:, None])
+        # a row found whole turns away has other outputs, where angles enter without a sine
         if k == n and self.turns.any():
             value = value + self.turns * FULL_TURN
         if rates is None:
@@ -113,7 +114,8 @@ class DesignValues(QuantityValues):
             value = value if length < 0 else value * self.variable(symbols[length]).v
             return Jet(value, _NONE, _NONE)
         s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
-        first = value * (s.d1 + 1j * s.v * turn.d1)
+        first = value * (s.d1 + 1j * s.v * turn.d1)  # derivative of eq. (1)
+        # eq. (3) with a = b
         second = s.d2 - s.v * turn.d1**2 + 1j * (2.0 * s.d1 * turn.d1 + s.v * turn.d2)
         return Jet(value * s.v, first, value * second)
 

@@ -172,6 +172,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     builder.run()
     arrays = builder.arrays
     if model.description.configuration:
+        # see the notes: all designs start from the configuration of the mechanism
         arrays["start"][builder.problem == 0] = model.equations.start
     return Designs(
         base=base,
@@ -226,5 +227,6 @@ def _numeric(name: str, values: object) -> Array:
         shape = " × ".join(map(str, array.shape))
         raise InputError(f'"{name}" needs a number or an array of one axis, got {shape} numbers')
     found = np.array(array, dtype=np.float64)
+    # a copy, read-only: the numbers of a family cannot change behind its results
     found.flags.writeable = False
     return found

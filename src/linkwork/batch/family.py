@@ -132,6 +132,7 @@ class Family:
     def _part(self) -> int:
         """How many designs are reduced at a time, rates included."""
         model = self.designs.base
+        # unknowns and two derivatives, and what is computed of them
         each = 8 * len(model.rows) * (3 * len(model.equations.unknowns) + 1)
         return max(1, min(_PART, _PART_BYTES // each))
 
@@ -167,6 +168,7 @@ class Family:
             For a number of a motion or a quantity that does not exist.
         """
         columns = list(_columns(wanted))
+        # the motion of no designs knows all names, at no cost
         nothing = self.take(slice(0)).sweep(certify=False)
         for column in columns:  # what does not exist is refused before anything is computed
             column.check(nothing)

@@ -86,6 +86,7 @@ class FamilyMotion:
     def _moving(self) -> Iterator[tuple[slice, DesignValues]]:
         """Quantities with rates, some designs at a time, so that what is computed stays near."""
         rates, rows = self._rates, self.rows
+        # temporaries of all designs at once would leave the cache
         step = max(1, _NEAR // max(1, len(self.inputs)))
         for begin in range(0, len(self), step):
             part = slice(begin, begin + step)
@@ -156,6 +157,7 @@ class FamilyMotion:
             evidence: Array = getattr(self, asked.name)
             return evidence
         if asked.group is Group.INPUT and asked.rate is None:
+            # inputs are the same for all designs, and keep the unit of the file
             column = self.inputs[:, list(self.quantities.names.inputs).index(asked.name)]
             return np.broadcast_to(column, self.status.shape)
         if not asked.needs:

@@ -105,6 +105,7 @@ class Path:
         march = self.march(designs, certify, threads, execution)
         t = self.model.rows[:, self.lead]
         way = slice(None, None, -1 if self.falling else 1)
+        # the march needs rising values; a falling table is written backwards through views
         whole, reached = march.through(t[way].copy(), found.v[:, way], found.radius[way])
         self._note(found, reached[way], whole, certify)
         for rows, which, turns in march.wound:
@@ -127,6 +128,7 @@ class Path:
             found.status[:], found.certification[:] = Status.CONVERGED.code, proof.code
             return
         found.clear(~reached, certify)
+        # rows beyond the dead points of designs whose every other row was found
         found.status[:, whole] = Status.OUT_OF_REACH.code
         np.copyto(found.status, Status.CONVERGED.code, where=reached)
         np.copyto(found.certification, proof.code, where=reached)
@@ -152,6 +154,7 @@ class March:
         self.zeros = zero_coefficients(designs, self.coefficients)
         self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
         self.kernel.shift(execution)
+        # NaN: the march leaves such designs out
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # else not found
         self.start = designs.start[:, n + path.lead].copy()
         self._enter(designs, np.flatnonzero(fine & ~served))
@@ -191,10 +194,12 @@ class March:
             return np.ones(len(begun), dtype=bool), reached
         done: BoolArray = np.logical_and.reduce(reached, axis=0)
         stopped = np.flatnonzero(begun & ~done)
+        # with several inputs no dead point is proved here: such designs are swept one at a time
         if not len(stopped) or len(self.path.rate) > 1:
             return done, reached
         limits = np.repeat([[-np.inf], [np.inf]], len(stopped), axis=1)
         self._limit(limits, found, stopped, stopped)
+        # a row beyond a dead point may lie on the branch a turn away
         around = (-1, 1) if self.free else ()
         for turns in around:
             self._wind(t, turns, v, radius, reached, stopped, limits)
@@ -222,6 +227,7 @@ class March:
         steps = Steps() if smallest is None else Steps(smallest=smallest)
         found = self.kernel.result(v, radius)
         coefficients = {name: values[where] for name, values in self.coefficients.items()}
+        # a new array: the family's own must not change
         coefficients["u0.spread"] = coefficients["u0.spread"] + apart
         begun = self.kernel.run(
             coefficients,
@@ -297,6 +303,7 @@ class March:
         """Designs of which no row is missing that lies within their limits, (S,)."""
         low, high = limits
         settled: BoolArray = np.logical_not(np.isnan(limits).any(axis=0))
+        # turns that can bring a row of the table between two limits
         most = int((t[-1] - t[0]) / FULL_TURN) + 2 if self.free else 0
         for turns in range(-most, most + 1):
             moved = t[:, None] + turns * FULL_TURN

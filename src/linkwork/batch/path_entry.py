@@ -52,6 +52,7 @@ def lead_to_rows(
         given[f"u{j}.spread"] = 4.0 * UNIT_ROUNDOFF * (np.abs(own[:, j]) + np.abs(rate[:, j]))
     v, radius = np.empty((n, 2, count)), np.empty((2 if kernel.certified else 0, count))
     found = kernel.result(v, radius)
+    # each design has a path of its own, from its start (0) to its row (1)
     ends = np.array([0.0, 1.0])
     kernel.run(given, designs.start[which, :n].T, np.zeros(count), ends, Steps(), found, threads)
     return np.where(found.reached[1], v[:, 1], np.nan), nearest
@@ -62,6 +63,7 @@ def _nearest(designs: Designs, rows: Array, which: IndexArray) -> IndexArray:
     n = designs.base.compiled.solver.unknowns
     turns = designs.base.compiled.table.is_angle[n:]
     found = np.empty(len(which), dtype=np.intp)
+    # all distances at once would not fit into memory for a million designs
     step = max(1, _CHUNK // rows.size)
     for begin in range(0, len(which), step):
         mine = which[begin : begin + step]

@@ -80,6 +80,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
         reading = _Reading.of(designs)
         program = rate_program(designs.base.compiled.table, reading.parts, reading.zeros)
         both = reading.run(program, rows, threads).reshape(both.shape)
+        # at dead points J is singular: rates are infinite or noise
         both[~np.isfinite(both)] = np.nan
     driven = np.ones((2, count, width), dtype=bool)
     for k, own in rows.own.items():
@@ -97,6 +98,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
         program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
         condition, residual = reading.run(program, rows, threads)
         found = rows.status == Status.CONVERGED.code
+        # of a position that exists; NaN is left for those that do not
         condition[found & ~np.isfinite(condition)] = np.inf
         condition[~found] = residual[~found] = np.nan
     for k, own in rows.own.items():
@@ -148,6 +150,7 @@ def design_speeds(designs: Designs) -> Array | None:
         return None
     found = np.full(len(designs), np.nan)
     fine = np.flatnonzero(designs.problem == 0)
+    # all at once where the formula of the speed is elementwise
     left = fine[_speeds_together(designs, fine, found)] if len(fine) else fine
     for k in left:
         with suppress(LinkworkError):  # a formula without a value for this design

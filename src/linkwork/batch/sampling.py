@@ -150,6 +150,7 @@ class _Grid(Plan):
 
     def _column(self, column: int, k: int) -> Array:
         levels, rows = self.levels[column], self._rows(k)
+        # the last name changes fastest, as digits do
         repeats = math.prod(len(later) for later in self.levels[column + 1 :])
         number = np.arange(rows.start, rows.stop) // repeats % len(levels)
         values: Array = levels[number]
@@ -163,6 +164,7 @@ class _Random(Plan):
         self.seed = seed
 
     def _column(self, column: int, k: int) -> Array:
+        # keyed by column and chunk: no chunk depends on another one
         drawn = self.drawn[column](_generator(self.seed, column, k), CHUNK)
         values = np.asarray(drawn, dtype=np.float64)
         if values.shape != (CHUNK,):
@@ -181,7 +183,7 @@ class _LatinHypercube(Plan):
         rows, (low, high) = self._rows(k), self.ranges[column]
         stratum = _shuffle(np.arange(rows.start, rows.stop), self.count, (self.seed, column))
         within = _generator(self.seed, column, k).random(len(rows))
-        values: Array = low + (high - low) * ((stratum + within) / self.count)
+        values: Array = low + (high - low) * ((stratum + within) / self.count)  # eq. (70)
         return values
 
 
@@ -292,9 +294,11 @@ def _shuffle(numbers: AnyArray, count: int, seed: tuple[int, int]) -> AnyArray:
 
     A Feistel network over 2h bits, repeated until the number is below the count again.
     """
+    # halves of equal width: the cipher needs an even number of bits
     half = np.uint64(max(1, -(-max(count - 1, 1).bit_length() // 2)))
     keys = np.random.SeedSequence(seed[0], spawn_key=(seed[1],)).generate_state(_ROUNDS, np.uint64)
     found = _encipher(numbers.astype(np.uint64), half, keys)
+    # cycle walking (Black & Rogaway): a permutation of the larger set, cut down to the smaller
     while (outside := np.flatnonzero(found >= count)).size:
         found[outside] = _encipher(found[outside], half, keys)
     return found.astype(np.int64)

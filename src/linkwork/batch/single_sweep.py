@@ -26,6 +26,7 @@ __all__ = ["message_single", "sweep_single"]
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
     """A design by itself with the family's table, should its own depend on what varies."""
     base, model = designs.base, designs.design(k)
+    # a range given by formulas of dimensions can differ from design to design
     if np.array_equal(model.rows_in_file_units, base.rows_in_file_units):
         return model
     inputs = tuple(_with_plain_range(base, which) for which in base.description.inputs)
@@ -69,6 +70,7 @@ def _note_way(
         return
     found.limits[:, k], found.limit_kinds[:, k] = ends_as_limits(ends)
     if base.equations.inputs[0].kind == "angle":
+        # a row found on the other way around holds an input whole turns away
         gap = (rows.v[:, len(found.v)] - base.rows[:, 0]) / FULL_TURN
         found.turns[:, k] = np.round(np.where(np.isnan(gap), 0.0, gap))
 

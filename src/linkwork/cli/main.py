@@ -56,6 +56,7 @@ class _Program(click.Group):
         """Run a command; turn an error into a message and an exit code."""
         try:
             return super().invoke(ctx)
+        # click reports these itself
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except (Exception, KeyboardInterrupt) as error:
@@ -64,6 +65,7 @@ class _Program(click.Group):
 
 def _ended_by(error: BaseException, debug: bool) -> int:
     """Print the message of an error; returns the exit code."""
+    # head and less close the pipe when they have enough: no error
     if isinstance(error, BrokenPipeError):
         abandon_output()
         return _READER_GONE

@@ -27,6 +27,7 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
     if not changes:
         return Mechanism(read.description, read)
     try:
+        # without the read file: its lines no longer belong to these numbers
         return Mechanism(read.description.with_dimensions(_dimensions(changes)))
     except MechanismError as error:
         located = read.located(error)

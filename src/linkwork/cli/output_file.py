@@ -36,6 +36,7 @@ def check_outputs(source: str, *outputs: str | None, workbook: str | None = None
             raise InputError(f'cannot write "{name}": it is a folder')
         if not path.parent.is_dir():
             raise InputError(f'cannot write "{name}": there is no folder "{path.parent}"')
+        # links are followed, so that two names of one file are found
         real = _real(name)
         if real in taken:
             raise InputError(f"{taken[real]}: write to another file")
@@ -63,6 +64,7 @@ def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
     """
     target = Path(_real(name))
     regular = target.is_file() or not target.exists()
+    # in the same folder: renaming across file systems copies
     part = target.with_name(f".{target.name}.{os.getpid()}.part") if regular else target
     try:
         with part.open("wb") as file:

@@ -31,6 +31,7 @@ def _listed(problems: tuple[Problem, ...]) -> list[str]:
         head = f"  {place:<{place_width}}  " if place_width else "  "
         below = " " * (len(head) + (key_width + 2 if key_width else 0))
         message, *rest = problem.message.split("\n")
+        # a long key takes a line of its own rather than widening the column of all
         if len(key) > key_width:
             lines += [head + key, *wrapped(message, below)]
         else:

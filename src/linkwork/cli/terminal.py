@@ -46,6 +46,7 @@ def ready_streams() -> None:
     A stream that was closed before the start is replaced by the null device.
     """
     for name in ("stdout", "stderr"):
+        # without a console, as under pythonw
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - until exit
     for stream in (sys.stdout, sys.stderr):
@@ -60,6 +61,7 @@ def abandon_output() -> None:
     """Discard all further output: the reader of the pipe has closed it."""
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
+        # Python flushes at exit and would fail a second time
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
     except (OSError, ValueError):  # a stream without a file cannot fail
@@ -120,6 +122,7 @@ def wrapped(text: str, first: str = "", rest: str | None = None) -> list[str]:
 
     Control characters, which could come from a file, become ?.
     """
+    # control characters of a file could drive the terminal
     printable = "".join(c if c.isprintable() or c.isspace() else "?" for c in text)
     return textwrap.wrap(
         printable,
@@ -134,6 +137,7 @@ def wrapped(text: str, first: str = "", rest: str | None = None) -> list[str]:
 def sentence(style: Style, head: str, rest: str = "", indent: str = "") -> list[str]:
     """A wrapped sentence whose beginning is styled; ``indent`` is that of its later lines."""
     first, *more = wrapped(f"{head} {rest}", "", indent)
+    # styled after wrapping: escape sequences have no width
     return [first.replace(head, style(head), 1), *more]
 
 
@@ -174,6 +178,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
             shown = True
             bar.__enter__()
         if shown:
+            # branches report in their own order: a bar does not go back
             bar.update(max(int(_BAR_STEPS * fraction) - bar.pos, 0))
 
     try:

@@ -59,6 +59,7 @@ def table_lines(columns: Sequence[Column], width: int = WIDTH) -> list[str]:
         count = 0
         for column in others:
             used += _GAP + _width(column.lines[0])
+            # at least one column in each block, however wide
             if used > width and count:
                 break
             count += 1
@@ -75,6 +76,7 @@ def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
     if not math.isfinite(value):
         return _NOTHING
     text = f"{value:.{decimals}f}"
+    # rounding -0.0000001 gives "-0.000000"
     return text.lstrip("-") if float(text) == 0 else text
 
 
@@ -82,6 +84,7 @@ def lengths(values: Iterable[float]) -> list[str]:
     """Lengths with common decimals: so many that the largest shows six significant digits."""
     numbers = list(values)
     largest = max((abs(v) for v in numbers if math.isfinite(v)), default=0.0)
+    # fixed decimals would show zeros only, or a row of meaningless digits
     if largest and not 1e-6 <= largest < 1e9:
         return [significant(v, _LENGTH_DIGITS) for v in numbers]
     decimals = max(_LENGTH_DIGITS - 1 - _exponent(largest), 0)
@@ -140,6 +143,7 @@ def _padded(text: str, width: int, right: bool) -> str:
 def _width(text: str) -> int:
     """The number of terminal cells that the text occupies."""
     return sum(
+        # combining marks take no cell of their own, East Asian characters two
         0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
         for c in text
     )

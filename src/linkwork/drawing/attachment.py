@@ -100,6 +100,7 @@ class Frames:
         a gear that has turned by a tooth is the same gear.
         """
         middle = shape.mean(axis=1, keepdims=True)
+        # direction and origin are sought one after the other, not in pairs: quicker
         for turn in _ordered(self.turns, first):
             if not _constant(self.local(Frame(turn=turn), shape - middle, rows), size, closed):
                 continue
@@ -120,6 +121,7 @@ def _constant(local: ComplexArray, size: float, closed: bool = False) -> bool:
         return True
     if not closed:
         return False
+    # the corner nearest to the first one of the first row is numbered first
     corner = np.abs(local - local[0, 0]).argmin(axis=1)
     count = local.shape[1]
     again = np.take_along_axis(local, (corner[:, None] + np.arange(count)) % count, axis=1)
@@ -146,5 +148,6 @@ def _direction(line: ComplexArray) -> Array:
     """Angles [rad] of vectors (N,), unwrapped over the rows that have one; NaN elsewhere."""
     angle = np.angle(line)
     known = np.isfinite(angle)
+    # unwrapping across a NaN would lose all later rows
     angle[known] = np.unwrap(angle[known])
     return angle

@@ -143,6 +143,7 @@ def _angle(
     if part.name not in pose.angles and part.pivot is not None and part.pivot != bar.points[0]:
         centre, reach = pose.points[part.pivot], -reach
     here = pose.angles.get(part.name, cmath.phase(reach))
+    # keeps the sign of the input, unlike %
     sweep = math.fmod(value, math.tau)
     radius = min(_ARC * measures.pin, 0.75 * abs(reach))
     least = 2.5 * measures.pin / radius
@@ -153,6 +154,7 @@ def _angle(
             points=(xy(centre), xy(centre + 1.3 * radius * cmath.exp(1j * (here - sweep)))),
         )
     ]
+    # an arc shorter than its arrow head is left out
     if abs(sweep) > least:
         drawn.append(
             Arc(
@@ -223,6 +225,7 @@ def _line(
         for z in (span.start, span.end)
     ]
     middle = start + share * (end - start)
+    # a number in the line needs room for itself and both arrow heads
     fits = min(share, 1.0 - share) * length > room + 1.5 * head
     for tail, tip in ((middle - room * along, start), (middle + room * along, end)):
         inner = tail if fits else middle

@@ -43,6 +43,7 @@ def hatching(start: complex, end: complex, away: complex, depth: float, of: str)
     """Strokes at 45° behind the line from start to end, on the side of the unit vector ``away``."""
     along = (end - start) / abs(end - start)
     length = abs(end - start)
+    # whole strokes from end to end, about as far apart as they are deep
     count = max(2, math.floor((length - depth) / depth + 1.5))
     step = (length - depth) / (count - 1)
     feet = [start + (depth + k * step) * along for k in range(count)]

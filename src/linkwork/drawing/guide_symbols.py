@@ -121,6 +121,7 @@ def _track(
     back = stem.get(carrying[0].point, 0j)
     places = tuple(pose.points[g.point] + back for g in carrying)
     travels = [pose.displacement(g) for g in carrying]
+    # where the displacement is zero
     first = places[0] - travels[0].now * along
     low, high = min(t.low for t in travels), max(t.high for t in travels)
     if not guide.block and not fixed and not pose.paths:
@@ -173,6 +174,7 @@ def _rail_side(pose: Pose, points: Sequence[str], along: complex, measures: Meas
     ])  # fmt: skip
     depths = depths[np.isfinite(depths)]
     if upright:
+        # an upright line has no side below: hatching lies away from the links, on the average
         return -below if np.mean(depths) > 0.01 * measures.size else below
     # Without a motion a link must come steeply from below before the picture is turned over.
     clear = 0.0 if pose.paths else 0.5 * max(abs(pose.points[name] - start) for name in others)
@@ -248,6 +250,7 @@ def _slot_end(measures: Measures) -> float:
 def _slot(track: Track, measures: Measures) -> Iterator[Primitive]:
     """Two parallel lines with round ends around the travel of the pin."""
     width = measures.slot
+    # a fixed slot is drawn longer, as rails are
     reach = _slot_end(measures) + (3 * measures.pin if track.fixed else 0.0)
     over = (reach - width) * track.along
     start, end = track.start - over, track.end + over

@@ -75,6 +75,7 @@ def input_arrows(
 def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> Primitive:
     """The arrow that covers least; the first of several."""
     boxes = [[box.edges for box in _boxes(place.arrow, measures)] for place in places]
+    # arrays need equal counts: shorter arrows repeat their last box
     most = max(map(len, boxes))
     filled = np.array([own + own[-1:] * (most - len(own)) for own in boxes])
     cost = np.array([place.cost for place in places]) + obstacles.costs(filled)

@@ -35,8 +35,8 @@ __all__ = [
     "point_names",
 ]
 
-_NAME_ON_NAME = 100.0
-_FURTHER = 2.0
+_NAME_ON_NAME = 100.0  # penalty; more than any line costs: names must stay legible
+_FURTHER = 2.0  # penalty for each step further from the thing named
 _ACROSS = 13  # places for a text across an area, and as many up
 _CLEAR = 0.12  # left free around every name [em]: half a thick line and some air
 #: Right and above is where a name is looked for first.
@@ -75,7 +75,9 @@ def places_beside(
         gap = (1.6 + 1.3 * further) * measures.pin
         for degrees, preference in _PREFERENCE.items():
             angle = math.radians(degrees)
+            # rounded, so that 90° is exactly upright and the name is centred there
             cos, sin = round(math.cos(angle), 9), round(math.sin(angle), 9)
+            # descenders and ascenders of a printed line, as in the box of a text
             below, above = 0.16 * height, 0.76 * height
             rise = below if sin > 0 else -above if sin < 0 else -(above - below) / 2
             places.append(
@@ -194,6 +196,7 @@ def _about_round(
         for share in (0.6, 0.45, 0.75):
             if half_width < (1 - share) * radius or 1.2 * half_width < share * radius:
                 yield centre + share * radius * way, 0.1 * k
+        # how far a box reaches in a direction: its support function
         clear = abs(way.real) * half_width + abs(way.imag) * 0.5 * height + 1.6 * measures.pin
         yield centre + (radius + clear) * way, _FURTHER + 0.1 * k
 
@@ -251,6 +254,7 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
     for _ in range(4):
         before = dict(taken)
         for k in order:
+            # in the first sweep only the names placed so far are in the way
             others = np.array([edges[j][place] for j, place in taken.items() if j != k])
             cost = fixed[k] + _NAME_ON_NAME * _overlaps(edges[k], others.reshape(-1, 4))
             taken[k] = int(np.argmin(cost))

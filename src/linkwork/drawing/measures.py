@@ -44,6 +44,7 @@ class Measures:
         A mechanism of a single point counts as one unit long.
         """
         size = max(box.width, box.height) or 1.0
+        # points at the same place have no gap
         shortest = min((gap for gap in gaps if gap > 1e-6 * size), default=size)
         least, most = (
             share * size * math.sqrt(larger) for share in (_SMALLEST_OF_SIZE, _PIN_OF_SIZE)

@@ -101,6 +101,7 @@ class MovingScene:
         box = self.scene.box
         rows = np.flatnonzero(self.found)
         for part in self.parts:
+            # names may be cut off at the edge: the picture must not jump for their sake
             if part.frame == STILL or isinstance(part.shape, Text):
                 continue
             if part.frame is None:
@@ -160,6 +161,7 @@ def moving_scene(
     frames = Frames.of(motion, pose)
     shown = dict(keyed(drawn_symbols(pose, measures)))
     carried = None if like is None else _carried(like)
+    # other symbols than before: nothing corresponds
     if carried is None or carried.keys() != shown.keys():
         like = carried = None
     if carried is None and sampled:
@@ -173,6 +175,7 @@ def moving_scene(
     row = int(rows[0])
     if like is None:
         parts += _arrows(pose, measures, motion.speed, frames, parts)
+        # names come last: they avoid all that moves
         moving = MovingScene(
             scene=_scene(motion, parts, measures, box),
             row=row,
@@ -227,6 +230,7 @@ def _carried(scene: MovingScene) -> dict[Key, Moving]:
         for part in scene.parts
         if part.shape.role not in (Role.TRACE, Role.INPUT) and not isinstance(part.shape, Text)
     ]
+    # by identity: shapes of one kind may be equal
     by_shape = {id(part.shape): part for part in drawn}
     return {key: by_shape[id(shape)] for key, shape in keyed(part.shape for part in drawn)}
 

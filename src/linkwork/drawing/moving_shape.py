@@ -90,6 +90,7 @@ def _one_attached(
     measures: Measures,
 ) -> Moving:
     found = [corners(one) for one in along.values()]
+    # a shape missing in some rows, or with other corners, cannot be rigid
     alike = len(along) == len(rows) and len({len(one) for one in found}) == 1
     if alike and same_sizes(along.values(), measures.size):
         frame = frames.holding(
@@ -106,6 +107,7 @@ def _one_attached(
 
 def _closed(shape: Primitive) -> bool:
     """Whether it does not matter from which corner the corners are numbered."""
+    # a line of two ends is the same from either end; an arrow is not
     line = isinstance(shape, Polyline) and len(shape.points) == 2 and not shape.head
     return line or isinstance(shape, Polygon)
 
@@ -119,6 +121,7 @@ def _own_course(
     course = np.full((count, most), complex(np.nan, np.nan))
     for k, line in lines.items():
         course[rows[k], : len(line)] = line
+        # a shorter line repeats its last corner, which draws nothing
         course[rows[k], len(line) :] = line[-1]
     if isinstance(shape, Arc):
         own = {"role": shape.role, "of": shape.of, "tone": shape.tone, "head": shape.head}

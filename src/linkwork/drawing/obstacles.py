@@ -54,6 +54,7 @@ class Obstacles:
         plates: list[tuple[XY, ...]] = []
         for p in drawn:
             found: list[tuple[XY, XY]] = []
+            # faded positions may be covered sooner than the present one
             penalty = _PENALTY.get(p.role, 0.0) * (1.0 - p.fade) ** 2
             if isinstance(p, Disc) and p.role in _OPEN:
                 found = list(pairwise(p.rim))

@@ -54,6 +54,7 @@ def point_arrows(
         if abs(tip - tail) < _SHORTEST * measures.pin:
             short.append(printed_name(name))
             continue
+        # the head of a short arrow would hide its line
         head = min(measures.head, 0.5 * abs(tip - tail))
         drawn.append(Polyline(role=look.role, of=name, points=(xy(tail), xy(tip)), head=head))
         text = f"{look.letter}({printed_name(name)})"

@@ -199,6 +199,7 @@ class Arc(Primitive):
         )
 
     def _pieces(self, sweep: float) -> tuple[XY, ...]:
+        # about 6° for each piece: the deviation from the circle is about 0.1 % of the radius
         count = max(8, round(abs(sweep) / 0.1))
         (x, y), r = self.centre, self.radius
         angles = [self.start + sweep * k / count for k in range(count + 1)]

@@ -61,6 +61,7 @@ def configuration_sheet(found: Configurations) -> Sheet:
         raise InputError(f'"{found.mechanism}" has no configuration to draw: {found.message}')
     within, *others = (scene_of(position).within for position in found)
     for other in others:
+        # one frame for all, so that sizes compare
         within = within.with_box(other)
     printed = _printed(within, _cell(len(found)))
     larger = min(max(_USUAL / printed, min(_WHOLE / printed, 1.0)), _LARGEST)

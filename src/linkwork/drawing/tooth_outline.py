@@ -36,11 +36,13 @@ def tooth_outline(disc: Disc) -> ComplexArray:
     """
     assert disc.teeth is not None
     module = 2.0 * disc.radius / disc.teeth
+    # a ring is the gap of its gear: tips and roots change places
     up, down = (DEDENDUM, ADDENDUM) if disc.ring else (ADDENDUM, DEDENDUM)
     root, tip = disc.radius - down * module, disc.radius + up * module
     base = disc.radius * math.cos(_PRESSURE)
     radii = np.linspace(max(root, base), tip, _FLANK)
     half = math.pi / (2 * disc.teeth) + _involute(np.array(_PRESSURE))
+    # flanks of few teeth would cross above the pointed tip
     half = np.maximum(half - _involute(np.arccos(base / radii)), 0.0)
     # Below the base circle there is no involute: a flank goes on straight to the centre.
     if root < base:
@@ -86,4 +88,5 @@ def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
         line = line if one.ring else line + math.pi
         return line - (line - phase) * one.teeth / other.teeth
     passed = (line - phase) * one.teeth / math.tau
+    # where one has a tooth at the point of contact, the other has a gap
     return line + math.pi - (0.5 - passed) * math.tau / other.teeth

@@ -87,6 +87,7 @@ def _seen(disc: Disc, measures: Measures) -> bool:
     """Whether teeth are known and so far apart that they can be seen."""
     if disc.teeth is None or disc.teeth < _FEWEST:
         return False
+    # the pitch against the pin: smaller teeth run together in print
     return math.tau * disc.radius / disc.teeth >= 1.2 * measures.pin
 
 

@@ -123,6 +123,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
         )
     low = math.asin(base / d) if flat else math.acos(cosine)
     swing = low + motion(motion.breaks)
+    # across the line of centres the same angle would belong to the mirrored follower
     if swing.min() <= 0.0 or swing.max() >= math.pi:
         unit = linkage.angle
         return (

@@ -29,6 +29,7 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
     stretch = 2.0 * math.pi / sum(over for _, over, _ in segments)
     last = max((k for k, (_, _, lift) in enumerate(segments) if lift), default=-1)
     for number, (law, given, rise) in enumerate(segments):
+        # the last rise closes the motion: sums of given lifts are rounded
         over, lift = given * stretch, -height if number == last else rise
         begin = breaks[-1]
         done = 0.0
@@ -43,6 +44,7 @@ def program(segments: Sequence[tuple[str, float, float]]) -> Piecewise:
             a, w, p = piece.sine
             sines.append((lift * a, w / over, p))
         height += lift
+    # exactly one turn
     breaks[-1] = 2.0 * math.pi
     return Piecewise(breaks=np.array(breaks), powers=np.array(powers), sines=np.array(sines))
 
@@ -107,7 +109,7 @@ class FollowerPath:
             worst = int(bend.argmax())
             if bend[worst] * self.roller >= 1.0:
                 raise Undercut(float(phi[worst]))
-        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)
+        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)  # eq. (66)
         return surface
 
     def _face(self, phi: Array) -> ComplexArray:
@@ -119,8 +121,10 @@ class FollowerPath:
         still = np.flatnonzero(turned >= 0.0)
         if len(still):
             raise Undercut(float(phi[still[0]]))
-        surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back
+        surface: ComplexArray = (w - (d.conj() * z1).imag / turned * d) * back  # eq. (67)
         ways = ((np.roll(surface, -1) - np.roll(surface, 1)) * (d * back).conj()).real
+        # the contact runs along the face in one direction, but where it turns back the envelope is
+        # cut
         majority = np.sign(np.median(ways))
         wrong = np.flatnonzero(ways * majority <= 0.0)
         if len(wrong):

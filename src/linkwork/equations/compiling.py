@@ -67,6 +67,7 @@ class PointTable:
         parts = self.rows.jet(v, first, second)
         for child, parent in self.levels:
             for part in parts:
+                # level by level: the parents are whole already
                 part[:, child] += part[:, parent]
         return parts
 
@@ -136,6 +137,7 @@ def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> 
     changes by its own size; 1 where the guess tells nothing.
     """
     variables = np.abs(equations.start)
+    # a guess of zero says nothing about the size of a variable
     variables[variables == 0.0] = 1.0
     sizes = []
     for row in functions:

@@ -99,6 +99,7 @@ def dead_point_form(
     table = own.system
     used = {int(k) for block in blocks for k in block.variables[len(block.unknowns) :]}
     n = solver.unknowns
+    # without a moving input the block keeps its place
     inputs = [k - n for k in sorted(used) if k >= n and path.rate[k - n]]
     if not isinstance(table, LoopTable) or not table.loops.rows or not inputs:
         return None
@@ -176,6 +177,7 @@ def _null_space(rows: Array) -> Array:
     for number, k in enumerate(free):
         basis[k, number] = 1.0
         for row, pivot in enumerate(pivots):
+            # 0.0 - x, as -x would leave -0.0
             basis[pivot, number] = 0.0 - rows[row, k]
     return basis
 
@@ -185,6 +187,7 @@ def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple
     lengths = [k for k, j in enumerate(form.sliding.tolist()) if j in own]
     along = [form.along[k] for k in lengths]
     columns = closures[:, [form.directions + k for k in lengths]]
+    # far larger lengths cannot close the loop: they stay finite
     if not lengths or _closed_by_nothing(columns, along):
         return ()
     if len(columns) == 1 and len(lengths) == 2 and form.directions == 1 and sum(along) == -1:

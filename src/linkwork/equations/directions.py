@@ -129,10 +129,12 @@ class DirectionForm:
         Angles are those within half a turn of ``near`` (n,), unless a linear row forbids.
         """
         count, m = self.directions, self.rows.shape[1]
+        # the mean of e^{iθ} from U and from V
         psi = np.angle(x[:, :count] + x[:, m : m + count].conj())
         ones = np.ones((len(x), 1))
         angles = psi @ self.angles.T + np.concatenate([known, ones], axis=1) @ self.shift.T
         away = angles[:, self.free] - near[self.turning][self.free]
+        # whole turns of the free angles; the tied ones turn with them
         turns = np.floor((away + np.pi) / (2.0 * np.pi))
         found = np.zeros((len(x), self.table.unknowns))
         found[:, self.turning] = angles - 2.0 * np.pi * (turns @ self.tied.T)
@@ -286,6 +288,7 @@ def _directions(sums: Array) -> tuple[list[tuple[float, ...]], IndexArray]:
     # in the order of the angles, whatever the order of the terms
     found = sorted({row for row in rows if any(row)}, reverse=True)
     place = {row: k for k, row in enumerate(found)}
+    # its direction would be needed as U and as V
     if any(tuple(-w for w in row) in place for row in found):
         raise NoDirectionForm("contain an angle both forwards and backwards")
     number = np.array([place.get(row, -1) for row in rows], dtype=np.intp)
@@ -299,6 +302,7 @@ def _inverse(directions: list[tuple[float, ...]], angles: int) -> Array:
     if len(directions) < angles:
         raise NoDirectionForm("leave an angle open")
     matrix = np.array(directions, dtype=float).reshape(angles, angles)
+    # only a unimodular matrix has an inverse of whole numbers
     if angles and abs(abs(float(np.linalg.det(matrix))) - 1.0) > 1e-9:
         raise NoDirectionForm("contain angles with ratios other than 1, as gears do")
     inverse = np.linalg.inv(matrix)

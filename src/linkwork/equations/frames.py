@@ -88,6 +88,7 @@ class Frames:
         if is_structurally_nonzero(offset):
             name = canonical(symbol)
             self.symbols[name] = abs(offset)
+            # the term keeps a positive length, so that formulas show it without a sign
             sideways = 1j * along * copysign(1.0, offset)
             terms.append(self.vector_term(sideways * abs(offset), Name(name, name), body))
         self.places[body][point] = Place(s, tuple(terms), base=line[0])
@@ -199,6 +200,7 @@ class _Orientation:
             named = self._name.get(root)
             if body == GROUND or not self._turns(body):
                 continue
+            # the input has to be a variable of its own
             if named is None or (body in driven and named not in driven):
                 self._name[root] = body
         self._ground = self.root(GROUND)
@@ -227,6 +229,7 @@ class _Orientation:
         if a == b:
             gap = remainder(offset_a - offset_b - constant, 2 * math.pi)
             return gap if abs(gap) > 1e-9 else 0.0
+        # θ_a = θ_link - offset_a and θ_b = θ_on - offset_b
         self._parent[a] = (b, constant + offset_b - offset_a)
         return 0.0
 
@@ -243,4 +246,5 @@ def _tidy(angle: float) -> float:
     """Into (-π, π], with rounding next to a multiple of a right angle removed."""
     reduced = remainder(angle, 2 * math.pi)
     square = round(reduced / (math.pi / 2)) * math.pi / 2
+    # a right angle that is off by a rounding would leave a tiny term in every equation
     return choose(abs(reduced - square) < 1e-15, square, reduced)

@@ -80,6 +80,7 @@ class _LoopWriter:
         self._check_connected(structure)
         self.problems.raise_any(where)
         self._check_determined(structure)
+        # only once: links that are released already did not help
         if self.problems and not self.released:
             without = self._without_surplus(structure, {v.symbol for v in unknowns})
             if without is not None:
@@ -137,6 +138,7 @@ class _LoopWriter:
             if link == GROUND:
                 link, against = against, link
         angle, base = self.frames.angle[link], self.frames.angle[against]
+        # both turn together
         if angle.variable == base.variable:
             self.problems.add(
                 key,
@@ -163,6 +165,7 @@ class _LoopWriter:
             if part.variable is not None:
                 terms.append((canonical(part.variable), sign))
                 value += sign * self.frames.start[part.variable]
+        # the input within half a turn, as sketched; the constant takes the whole turns
         wrapped = phase(cis(value))
         constant = angle.constant - base.constant + wrapped - value  # off by whole turns
         self.linear.append(
@@ -318,6 +321,7 @@ def _crossings(walk: tuple[Node, ...], order: Mapping[str, int]) -> list[tuple[s
         if node[0] == "body"
     ]
     lowest = min(range(len(found)), key=lambda k: order[found[k][1]])
+    # ground closes the loop: textbooks end it there
     found = found[lowest + 1 :] + found[: lowest + 1]
     if len(found) > 2 and order[found[0][1]] > order[found[-2][1]]:
         backwards = [(end, body, start) for start, body, end in reversed(found)]

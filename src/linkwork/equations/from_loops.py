@@ -108,6 +108,7 @@ def _term(m: Monomial, text: str) -> Term:
     if shown is not None and abs(seen.real) <= 1e-15 * abs(seen.imag):
         found, rest = _without_i(shown)
         if found:
+            # a factor i is shown as a right angle
             shown, turn = rest, math.pi / 2
     return Term(
         value=m.value,
@@ -185,6 +186,7 @@ def _kinds(
         for term in loop.terms:
             found = {name: "angle" for name, _ in term.phase}
             if term.length is not None:
+                # one name cannot be a length and an angle in one term
                 found[term.length] = "length" if term.length not in found else "both"
             for name, kind in found.items():
                 if kinds.setdefault(name, kind) != kind or kind == "both":

@@ -32,12 +32,14 @@ class Outline:
         """
         z = np.array(points)
         if closed:
+            # twice the area: negative if the points run clockwise
             area = (z.conj() * np.roll(z, -1)).imag.sum()
             z = z if area >= 0 else np.concatenate([z[:1], z[:0:-1]])
             z = np.append(z, z[0])
         u = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(z)))])
         if closed:
             u = u * (2.0 * np.pi / u[-1])
+            # exactly, so that the period is one turn
             u[-1] = 2.0 * np.pi
         return cls(x=spline(u, z.real, closed), y=spline(u, z.imag, closed))
 
@@ -81,11 +83,11 @@ def spline(u: Array, values: Array, closed: bool) -> Piecewise:
     second = np.zeros(len(u))
     if closed:
         before = np.roll(h, 1)
-        right = 6.0 * (chords - np.roll(chords, 1))
+        right = 6.0 * (chords - np.roll(chords, 1))  # eq. (69)
         second[:-1] = _solve_cyclic(before, 2.0 * (before + h), h, right)
         second[-1] = second[0]
     else:
-        right = 6.0 * np.diff(chords)[:, None]
+        right = 6.0 * np.diff(chords)[:, None]  # eq. (69)
         second[1:-1] = _solve_tridiagonal(h[:-1], 2.0 * (h[:-1] + h[1:]), h[1:], right)[:, 0]
     powers = np.stack(
         [

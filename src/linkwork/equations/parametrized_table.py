@@ -46,6 +46,7 @@ class ParametrizedTable:
 
     def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""
+        # a curve changes its leader many times, but between few variables
         if lead not in self._leads:
             self._leads[lead] = self._parametrize(lead)
         return self._leads[lead]
@@ -93,8 +94,9 @@ class ParametrizedTable:
         left, _, right = np.linalg.svd(self.jacobian(v[None, :])[0])
         w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
         both = np.stack([rates + w, rates - w])
+        # eq. (5)
         change = 0.25 * np.subtract(*table.second_directional_derivative(np.stack([v, v]), both))
-        return float(left[:, -1] @ (change / table.equation_scale))
+        return float(left[:, -1] @ (change / table.equation_scale))  # eq. (16)
 
 
 def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable:
@@ -105,6 +107,7 @@ def _lock_inputs(table: LoopTable, path: InputPath, parameter: int) -> LoopTable
         return table
     lines, old = table.linear, len(table.linear.constant)
     ratio = path.rate / path.rate[parameter]
+    # u_j = origin_j + ratio_j (u_lead - origin_lead)
     offset = path.origin - ratio * path.origin[parameter]
     entries = [
         entry

@@ -73,6 +73,7 @@ class PartRows:
         if length is not None:
             weights[length[0]] = length[1]
             now += length[1] * frames.start[length[0]]
+        # an open total is that of the sketch: gears can be meshed at any tooth
         constant = -now if total is None else constant - total
         self.linear.append(
             LinearEquation(

@@ -141,6 +141,7 @@ class PhasorReader:
 
     def _multiply(self, node: Binary) -> list[Monomial]:
         left, right = self._sum(node.left), self._sum(node.right)
+        # a constant sum in brackets stays one factor, as it was written
         if all(m.constant for m in left) and len(left) > 1:
             left = [_whole(left, node.left)]
         if all(m.constant for m in right) and len(right) > 1:

@@ -46,6 +46,7 @@ class FormulaRow:
         value = np.zeros(len(v))
         for column, k in enumerate(self.variables):
             direction = np.zeros_like(v)
+            # one jet along each variable gives its column of the gradient
             direction[:, k] = 1.0
             jet = self._jet(v, direction)
             value, gradient[:, column] = jet.v, jet.d1

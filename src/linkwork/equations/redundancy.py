@@ -61,9 +61,11 @@ def released_links(
         size = np.linalg.norm(stress, axis=0)
         if size.max() <= _STRESSED * largest:
             break
+        # links that are loaded much alike: the one named last is the one added to the others
         chosen = int(np.flatnonzero(size >= _ALIKE * size.max())[-1])
         found.append(bars[chosen])
         direction = stress[:, chosen] / size[chosen]
+        # the remaining self-stresses do not load the released link
         stress = stress - np.outer(direction, direction @ stress)
     return tuple(found)
 

@@ -106,6 +106,7 @@ class Structure:
             )
             basis = _IndependentSet({edge: k for k, edge in enumerate(edges)})
             for walk, cycle in walks:
+                # shortest first: a greedy choice of independent cycles is a minimum basis
                 if len(loops) < wanted and basis.add(cycle):
                     loops.append(walk)
         return StructureBlock(tuple(graph.new), tuple(tree), tuple(loops))
@@ -169,6 +170,7 @@ class _BlockGraph:
                         continue
                     left = _climb(here, parent)
                     right = _climb(there, parent)
+                    # the two ways share an edge: no simple cycle
                     if set(left) & set(right):
                         continue
                     cycle = (*reversed(left), edge, *right)
@@ -237,6 +239,7 @@ def _path(neighbours: Mapping[Node, list[Node]], start: Node, end: Node) -> list
     parents: tuple[dict[Node, Node | None], dict[Node, Node | None]] = ({start: None}, {end: None})
     edge: list[list[Node]] = [[start], [end]]
     while edge[0] and edge[1]:
+        # the side with fewer edges ahead grows: ground has very many
         cost = [sum(len(neighbours[n]) for n in side) for side in edge]
         side = 0 if cost[0] <= cost[1] else 1
         mine, other = parents[side], parents[1 - side]

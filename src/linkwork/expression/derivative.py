@@ -58,6 +58,7 @@ def _power(node: Binary, name: str, radians: float) -> Node:
         else:
             reduced = Binary("^", base, Binary("-", exponent, _ONE))
         return _product(_product(exponent, reduced), derivative(base, name, radians))
+    # u^v = exp(v ln u)
     inner = _product(exponent, Call("ln", (base,)))
     if base == Name("e"):
         inner = exponent
@@ -81,6 +82,7 @@ def _chain(node: Call, name: str, radians: float) -> Node:
         "abs": Binary("/", x, node),
     }
     inner = derivative(x, name, radians)
+    # the derivative of sin(k x) has the factor k = radians per unit
     if node.function in ("sin", "cos", "tan") and radians != 1.0:
         inner = _product(Number(radians), inner)
     if node.function in ("asin", "acos", "atan") and radians != 1.0:

@@ -96,6 +96,7 @@ def _tokens(text: str) -> list[_Token]:
         c, column = text[k], k + 1
         if c.isspace():
             k += 1
+        # a point alone begins no number
         elif c in "0123456789." and text[k : k + 2].strip("."):
             end = _number_end(text, k)
             found.append(_Token("number", text[k:end], column))
@@ -113,6 +114,7 @@ def _tokens(text: str) -> list[_Token]:
         elif _is_name_start(c):
             end = k + 1
             while end < len(text) and (
+                # coordinates are names with a point: B.x
                 _is_name_part(text[end])
                 or (text[end] == "." and end + 1 < len(text) and _is_name_start(text[end + 1]))
             ):
@@ -180,6 +182,7 @@ class _Reader:
     def sum(self) -> Node:
         self.deeper()
         node = self.product()
+        # left to right: a - b - c is (a - b) - c
         while token := self.take("+", "-"):
             node = Binary(token.text, node, self.product(), token.column)
         self.depth -= 1
@@ -194,6 +197,7 @@ class _Reader:
     def unary(self) -> Node:
         self.deeper()
         if token := self.take("-"):
+            # the sign binds less than ^: -a^2 is -(a^2)
             node: Node = Negative(self.unary(), token.column)
         elif self.take("+"):
             node = self.unary()
@@ -205,6 +209,7 @@ class _Reader:
     def power(self) -> Node:
         base = self.atom()
         if token := self.take("^"):
+            # right to left, and after a sign: a^-b^c is a^(-(b^c))
             return Binary("^", base, self.unary(), token.column)
         return base
 

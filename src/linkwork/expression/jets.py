@@ -94,6 +94,7 @@ class Jet(Operand):
         """The angle of a vector x + iy [rad]; NaN for one of length 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             rate = self.d1 / self.v
+            # the second derivative of log v; its imaginary part is that of the angle
             bend = self.d2 / self.v - rate**2
         angle = np.where(self.v == 0, np.nan, np.angle(self.v))
         return Jet(angle, rate.imag, bend.imag)

@@ -17,5 +17,6 @@ def allocate_aligned(*shape: int) -> Array:
     """Numbers that are not set, in a C-contiguous array at a multiple of 64 bytes."""
     size = math.prod(shape)
     room: Array = np.empty(size + _LINE // 8 - 1)
+    # NumPy aligns to 16 bytes only: skip numbers up to the next line
     first = -room.ctypes.data // 8 % (_LINE // 8)
     return room[first : first + size].reshape(shape)

@@ -53,6 +53,7 @@ class AngleUnit(Enum):
         """
         value = angle / self.radians
         short = round(value, 10)
+        # bit by bit, so that no result changes when it is read back
         return short if short * self.radians == angle else value
 
     @property

@@ -24,6 +24,7 @@ class DisjointSets:
 
     def unite(self, a: int, b: int) -> bool:
         """Make the sets of a and b one set; whether they were two."""
+        # the smaller root stays, so that names of sets do not depend on the order of unions
         first, second = sorted((self.root(a), self.root(b)))
         self.above[second] = first
         return first != second

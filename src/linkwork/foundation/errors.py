@@ -100,6 +100,7 @@ class ExpressionError(InputError):
 
     def marked(self, width: int = 60) -> str:
         """The formula with a caret under the column, cut to ``width`` characters."""
+        # the column is in the middle of a long formula
         start = max(0, self.column - 1 - width // 2)
         piece = self.text[start : start + width].replace("\n", " ").replace("\t", " ")
         before = "…" if start else ""
@@ -262,6 +263,7 @@ def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
     known = list(names)
     if not known:
         return f"(there are no {kind})"
+    # the nearest names first: lists are cut after eight
     near = get_close_matches(wanted, known, n=3) if wanted and isinstance(wanted, str) else []
     ordered = near + [name for name in known if name not in near]
     shown = ", ".join(ordered[:8]) + (f", … {len(ordered) - 8} more" if len(ordered) > 8 else "")

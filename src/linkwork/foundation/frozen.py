@@ -25,6 +25,7 @@ class FrozenDict(dict[K, V]):
     clear = pop = popitem = setdefault = update = _refuse
     __ior__ = _refuse
 
+    # pickling would fill the dictionary item by item, which is refused
     def __reduce__(self) -> tuple[type[FrozenDict[K, V]], tuple[dict[K, V]]]:
         return type(self), (dict(self),)
 

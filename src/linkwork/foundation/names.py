@@ -60,6 +60,7 @@ def canonical(name: str) -> str:
 
 @lru_cache(maxsize=4096)  # asked for again and again while a dimension is dragged
 def _canonical(name: str) -> str:
+    # subscript digits become plain digits, wide letters narrow ones
     folded = unicodedata.normalize("NFKC", name)
     return "".join(GREEK.get(letter, letter) for letter in folded)
 

@@ -23,11 +23,13 @@ def plain_number(given: object) -> float | None:
     """
     if isinstance(given, np.ndarray) and given.ndim == 0:
         given = given[()]
+    # True is a number for Python, and a mistake here
     if isinstance(given, bool) or not isinstance(given, Real | Decimal):
         return None
     try:
         return float(given)
     except OverflowError:
+        # an integer beyond all floats: infinite, which callers refuse
         return math.inf if cast(Any, given) > 0 else -math.inf
 
 

@@ -33,6 +33,7 @@ def tall_product(a: Array | ComplexArray, b: Array | ComplexArray) -> Array | Co
     """
     rows, inner = a.shape
     columns = b.shape[1]
+    # BLAS starts threads for larger products, which takes longer than these do
     height = min(_TALLEST, max(_SHORTEST, _MOST // max(1, inner * columns)))
     if rows <= height or not inner * columns:
         few: Array | ComplexArray = a @ b

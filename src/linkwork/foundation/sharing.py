@@ -29,6 +29,7 @@ def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: in
     def take_turns() -> None:
         nonlocal left
         while True:
+            # iterators are not safe among threads
             with lock:
                 try:
                     item = next(left)
@@ -38,6 +39,7 @@ def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: in
                 work(item)
             except BaseException:
                 with lock:
+                    # after an error nobody begins a further item
                     left = iter(())
                 raise
 
@@ -48,4 +50,5 @@ def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: in
         helpers = [pool.submit(take_turns) for _ in range(threads - 1)]
         take_turns()
     for helper in helpers:
+        # raises the error of a helper here
         helper.result()

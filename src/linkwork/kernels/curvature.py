@@ -32,7 +32,7 @@ class Curvature:
 
     ``loop_rows``: how many of the m equations belong to loops; other rows follow.
     ``phase`` (B, n, G): |Σ_l α_il C_lg|, behind those of loops |A_ir| sup|f''| of the laws;
-    ``loop_phases`` tells how many belong to loops. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every
+    ``loop_phases`` of them belong to loops. ``slide`` (B, n, P): |Σ_l α_il D_lp| for every
     pair p of a variable length and a phase. ``weights`` (N, G): |W|. ``pair_length``,
     ``pair_group`` (P,): the pair's variable and phase. ``rounding`` (B, m): bounds of the error of
     computing F. ``jacobian_rounding`` (B, m, N): of computing dF/dv and its products with m numbers
@@ -115,10 +115,11 @@ class PhaseGroups:
         s[:, sliding] = v[:, rows.length[sliding]]
         c = tall_product(s, self._sorted_in).reshape(len(v), rows.rows, self.weights.shape[1])
         size = tall_product(np.abs(s), np.abs(self._sorted_in)).reshape(c.shape)
+        # where terms of one phase cancel, rounding is all that is left of their sum
         slip = UNIT_ROUNDOFF * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
-        phase = np.abs(alpha @ c) + slip @ size
-        return phase, np.abs(alpha @ d) + slip @ self._pair_size
+        phase = np.abs(alpha @ c) + slip @ size  # eq. (30): |α C|
+        return phase, np.abs(alpha @ d) + slip @ self._pair_size  # eq. (30): |α D|
 
     @cached_property
     def _pair_size(self) -> Array:
@@ -140,7 +141,7 @@ class PhaseGroups:
         _, group, roundings = self._grouped
         parts = tall_product(np.abs(v), self.weights)  # (B, G)
         terms_in_row = np.bincount(rows.row, minlength=rows.rows)[rows.row]
-        factor = terms_in_row + 8.0 + (roundings * parts)[:, group]
+        factor = terms_in_row + 8.0 + (roundings * parts)[:, group]  # eq. (34)
         modulus, slopes = rows.moduli(v, factor + products + 2.0)
         gather = np.zeros((len(rows.row), rows.rows))
         gather[np.arange(len(rows.row)), rows.row] = 1.0

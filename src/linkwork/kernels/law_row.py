@@ -49,11 +49,12 @@ class LawRow:
         """Value (B,) and derivatives by ``variables`` (B, k)."""
         value, slope, _ = self.law.jet(self._argument(v))
         straight = v[:, list(self.variables)] @ self.weights + self.constant
-        return straight - value, self.weights - slope[:, None] * self.inner
+        return straight - value, self.weights - slope[:, None] * self.inner  # eq. (4)
 
     def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """Second derivative along d, (B,)."""
         turned = d[:, list(self.variables)] @ self.inner
+        # second derivative of eq. (4)
         second: Array = -self.law.jet(self._argument(v))[2] * turned**2
         return second
 

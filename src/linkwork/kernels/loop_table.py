@@ -71,7 +71,7 @@ class LoopTable:
     linear : LinearRows
     functions : tuple of FunctionRow
     equation_scale : (m,)
-        What each real row's residual is divided by before it is compared.
+        The scale that divides each real row's residual before it is compared.
     variable_scale : (N,)
         Weight of each variable: 1 for angles, a length of the mechanism for lengths.
     is_angle : (N,) bool
@@ -99,6 +99,7 @@ class LoopTable:
     @cached_property
     def _linear_matrix(self) -> Array:
         a = np.zeros((len(self.linear.constant), self.variables))
+        # add.at: a variable may occur twice in a row, and "+=" would count it once
         np.add.at(a, (self.linear.row, self.linear.variable), self.linear.weight)
         return a
 
@@ -181,7 +182,7 @@ class LoopTable:
 
     @property
     def is_straight(self) -> bool:
-        """Whether no equation bends with the unknowns: lines, and laws of what is known."""
+        """Whether the unknowns enter linearly: lines, and laws of known variables."""
         if self.loops.rows or not self.has_curvature_bound:
             return False
         return not any(
@@ -259,7 +260,7 @@ class LoopTable:
 
     def _real_rows(self, v: Array) -> tuple[Array, Array]:
         a = self._linear_matrix
-        values = [v @ a.T + self.linear.constant]
+        values = [v @ a.T + self.linear.constant]  # eq. (4) with f = 0
         slopes = [np.broadcast_to(a, (len(v), *a.shape))]
         for row in self.functions:
             value, gradient = row.value_and_gradient(v)

@@ -71,12 +71,13 @@ class PhasorRows:
         terms, sliding = len(self.row), self._sliding
         m = np.zeros((terms + len(sliding), self.rows, self.variables), dtype=complex)
         t, k = self.phase_term, self.phase_variable
-        np.add.at(m, (t, self.row[t], k), 1j * self.phase_weight)
+        np.add.at(m, (t, self.row[t], k), 1j * self.phase_weight)  # eq. (2): turning
         s = np.arange(len(sliding))
-        m[terms + s, self.row[sliding], self.length[sliding]] += 1.0
+        m[terms + s, self.row[sliding], self.length[sliding]] += 1.0  # eq. (2): sliding
         return m.reshape(terms + len(sliding), self.rows * self.variables)
 
     def _phasors(self, v: Array) -> ComplexArray:
+        # eq. (1)
         phasors: ComplexArray = self.coefficient * np.exp(1j * tall_product(v, self._weights))
         return phasors
 
@@ -84,6 +85,7 @@ class PhasorRows:
         sliding = self._sliding
         if not len(sliding):
             return phasors
+        # the bare phasors are needed again, for the derivatives by lengths
         terms = phasors.copy()
         terms[:, sliding] *= v[:, self.length[sliding]]
         return terms
@@ -114,6 +116,7 @@ class PhasorRows:
         s[:, sliding], s1[:, sliding], s2[:, sliding] = v[:, index], d1[:, index], d2[:, index]
         value = e * s
         first = e * (s1 + 1j * s * psi1)
+        # eq. (3) with a = b, and the terms of v''
         second = e * (s2 - s * psi1**2 + 1j * (2.0 * s1 * psi1 + s * psi2))
         g = self._gather
         return tall_product(value, g), tall_product(first, g), tall_product(second, g)

@@ -3,7 +3,7 @@
     f(x) = Σ_k c_k t^k + A sin(ω t + ψ),     t = x - b,  b ≤ x < next b
 
 Motion laws of cams and cubic splines are of this kind. A function either repeats itself after its
-period, or goes on straight beyond its ends.
+period, or continues as a straight line beyond its ends.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Piecewise:
         return float(self.breaks[-1] - self.breaks[0])
 
     def slope(self) -> Piecewise:
-        """The derivative as a function of its own; beyond open ends it goes on as a straight line.
+        """The derivative as a function; beyond open ends it continues as a straight line.
 
         Its slope is continuous only if the second derivative of this one is.
         """

@@ -2,7 +2,7 @@
 
 They are plain functions of numbers. NumPy's paths call them as they are, Numba compiles them for
 lanes, and a graphics card runs them in its threads; so the package knows neither NumPy's solvers
-nor Numba. What differs is how an attempt corrects and judges a prediction.
+nor Numba. They differ in how an attempt corrects and judges a prediction.
 
 These loops step along a path, each for a reason:
 

@@ -33,7 +33,7 @@ class Attempt(Generic[N]):
 
 
 class Trial(Protocol[N]):
-    """How a march corrects and judges: the equations, in NumPy or compiled."""
+    """Corrects and judges the steps of a march: the equations, in NumPy or compiled."""
 
     def attempt(self, here: N, t: float) -> Attempt[N]:
         """A step from a node to the parameter t."""
@@ -93,19 +93,20 @@ def march(
         if room < smallest:
             return nodes, Stop(here, here.t + sign * 2.0 * room)
         h = min(h, bounds.largest * bounds.size, rest, room)
+        # the last step to the goal may be of any length
         if h < rest and h < smallest:
             return nodes, Stop(here, failed)
         t = aim(goal, here.t, h)
         found = trial.attempt(here, t)
         if found.node is None:
             failed = t
-            h *= HALF if found.factor is None else max(_LEAST, min(HALF, found.factor))
+            h *= HALF if found.factor is None else max(_LEAST, min(HALF, found.factor))  # eq. (22)
             if h < smallest:
                 return nodes, Stop(here, t)
             continue
         before, here = here, found.node
         nodes.append(here)
-        h *= min(GROWTH, max(HALF, found.factor or GROWTH))
+        h *= min(GROWTH, max(HALF, found.factor or GROWTH))  # eq. (22)
         enough = watch is not None and watch(before, here)
         if enough or here.t == goal:
             return nodes, None

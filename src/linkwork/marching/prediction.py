@@ -14,6 +14,7 @@ def trusted_nodes(t: float, times: Array, known: int) -> int:
     """How many of the ``known`` last nodes, at ``times`` (K,), predict well at t."""
     step, used = abs(t - times[0]), min(known, len(times))
     for k in range(len(times) - 1, 0, -1):
+        # a polynomial far outside its nodes is worse than one through fewer of them
         if used > k and step > _FAR * abs(times[k - 1] - times[k]):
             used = k
     return used
@@ -29,13 +30,14 @@ def hermite_weights(t: float, times: Array, i: int, count: int) -> tuple[float, 
         if j < count and j != i:
             basis *= (t - times[j]) / (times[i] - times[j])
             slope += 1.0 / (times[i] - times[j])
-    square = basis * basis
+    square = basis * basis  # eq. (18)
     return (1.0 - 2.0 * slope * (t - times[i])) * square, (t - times[i]) * square
 
 
 def is_same_spacing(step: float, times: Array, spacing: Array) -> bool:
     """Whether nodes at ``times`` (K,) and the step from the last one have the ``spacing`` (K,)."""
     near = SAME * abs(step)
+    # "not <=" instead of ">": a spacing of NaN or infinity equals no other one
     other = int(not abs(step - spacing[0]) <= near)
     for k in range(1, len(times)):
         other += not abs(times[k - 1] - times[k] - spacing[k]) <= near

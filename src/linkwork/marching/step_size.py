@@ -8,12 +8,13 @@ __all__ = ["GROWTH", "HALF", "aim", "by_error", "grow", "is_lost", "stride"]
 
 GROWTH = 2.0  # largest factor from one step to the next
 HALF = 0.5  # of a step that failed: the next attempt
-_WHOLE = 0.5  # a step at least this part of the allowed one tells that a larger one may succeed
+_WHOLE = 0.5  # part of the allowed step: after one as long as this a larger step may succeed
 
 
 def aim(goal: float, here: float, h: float) -> float:
     """Where a step of at most ``h`` from ``here`` towards ``goal`` ends: at the goal, if it can."""
     away = goal - here
+    # the goal itself: here + away may be off by a rounding
     return goal if abs(away) <= h else here + math.copysign(h, away)
 
 
@@ -35,4 +36,4 @@ def grow(h: float, moved: float, largest: float) -> float:
 
 def by_error(error: float, target: float, order: int) -> float:
     """The factor that brings a prediction's error, which grows like h^order, to ``target``."""
-    return float((target / error) ** (1.0 / order)) if error > 0.0 else GROWTH
+    return float((target / error) ** (1.0 / order)) if error > 0.0 else GROWTH  # eq. (22)

@@ -79,6 +79,7 @@ class Chain:
             there = pins.get(joint.point) or Joint(
                 kind=JointKind.REVOLUTE, name=joint.point, links=(pinned,)
             )
+            # a pin that exists already joins the block as a further link
             pins[joint.point] = replace(there, links=(*there.links, joint.name))
             joints.append(
                 Joint(kind=JointKind.PRISMATIC, name=joint.name, links=(joint.name, guide))
@@ -108,6 +109,7 @@ class Chain:
         became = {link: link for link in self.links} | dict(self.united)
         for first, second in pairs:
             one, other = became[first], became[second]
+            # the ground keeps its name; otherwise the link that comes first does
             if other == self.ground or (
                 one != self.ground and self.links.index(other) < self.links.index(one)
             ):
@@ -116,6 +118,7 @@ class Chain:
         joints = []
         for joint in self.joints:
             left = tuple(dict.fromkeys(became[link] for link in joint.links))
+            # a joint between welded links is no longer a joint
             if len(left) > 1:
                 joints.append(replace(joint, links=left))
         return replace(
@@ -149,6 +152,7 @@ class Chain:
 
 def _pins(linkage: Linkage) -> Iterator[Joint]:
     """A pin wherever links share a point; a cylinder's barrel is at its first point."""
+    # a cylinder is a body of the sketch and two links of the chain, one at each end
     ends = {part.label: dict(zip(part.body, part.ends, strict=True)) for part in linkage.parts}
     for point, bodies in linkage.carriers().items():
         links = tuple(ends[body][point] if body in ends else body for body in bodies)

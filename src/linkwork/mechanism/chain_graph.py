@@ -36,6 +36,7 @@ def _coloured(chain: Chain, ground: str) -> Graph:
     graph = _networkx().Graph()
     for link in chain.links:
         graph.add_node(("link", link), kind="ground" if link == ground else "link")
+    # joints are vertices, since an edge cannot join the three links of a multiple pin
     for k, joint in enumerate(chain.joints):
         graph.add_node(("joint", k), kind=joint.kind.letter)
         graph.add_edges_from((("joint", k), ("link", link)) for link in joint.links)
@@ -85,4 +86,5 @@ def contours(incidences: Iterable[tuple[str, str]]) -> list[int]:
     """
     graph = _networkx().Graph()
     graph.add_edges_from((("link", link), ("joint", joint)) for link, joint in incidences)
+    # links and joints alternate around a contour
     return [len(cycle) // 2 for cycle in _networkx().minimum_cycle_basis(graph)]

@@ -75,6 +75,7 @@ def chain_name(chain: Chain) -> str:
     the name of the chain of simple joints that it degenerates from if there is only one such
     chain. Prismatic joints of a chain with more than four links are counted behind its name.
     """
+    # names are those of chains of lower pairs: a pin in a slot counts as a block
     whole = chain.with_blocks()
     count = len(whole.links)
     plain = f"{_WORDS.get(count, count)}-link chain"
@@ -166,6 +167,7 @@ def _family(chain: Chain) -> str | None:
     if len(chain.links) == 6:
         known = {"Watt chain": _WATT, "Stephenson chain": _STEPHENSON}
     elif len(chain.links) == 8:
+        # counts of links rule out most chains before graphs are compared
         degrees = [len(chain.at(link)) for link in chain.links]
         known = {
             entry.name: entry.graph6
@@ -183,6 +185,7 @@ def _degenerate_family(chain: Chain) -> str | None:
         return None
     ways = 1
     for joint in chain.joints:
+        # Cayley: k links have k^(k-2) trees
         ways *= max(1, len(joint.links) ** (len(joint.links) - 2))
     if ways > _MOST_WAYS:
         return None

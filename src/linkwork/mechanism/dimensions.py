@@ -69,6 +69,7 @@ class Numbers:
         try:
             return self(number)
         except ExpressionError as error:
+            # a consequence of a dimension reported already is not reported again
             if not self._depends_on_wrong(number):
                 report(key, str(error) if isinstance(number, str) else error.message)
             return math.nan
@@ -93,6 +94,7 @@ class Numbers:
             cycle = [self.spelling[n] for n in [*chain[chain.index(name) :], name]]
             self.wrong[name] = "is defined by itself: " + " → ".join(cycle)
             return
+        # this resolver recurses: Python's limit must not be reached
         if len(chain) > _LONGEST_CHAIN:
             self.wrong[name] = f"depends on a chain of more than {_LONGEST_CHAIN} dimensions"
             return
@@ -101,6 +103,8 @@ class Numbers:
             if isinstance(number, str):
                 for node in names_in(parse(number)):
                     if node.name in given and node.name not in CONSTANTS:
+                        # a dimension is evaluated after those in its formula; the chain reveals
+                        # cycles
                         self._resolve(node.name, given, [*chain, name])
                     elif node.name not in (*given, *CONSTANTS, "i"):
                         raise self._undefined(node, number)

@@ -50,6 +50,7 @@ def settled(linkage: Linkage, places: Places) -> Linkage:
     """
     ground = linkage.links[GROUND]
     moved = {
+        # coordinates of ground points may be formulas: they are kept as given
         name: given if name in ground else (places[name].real, places[name].imag)
         for name, given in linkage.points.items()
     }
@@ -122,11 +123,13 @@ class _Inverting:
         own = linkage.shapes.local[self.link]
         self.first = linkage.links[self.link][0]
         axis = self._axis()
+        # a rotation by the unit vector of the axis: lengths keep their digits
         self.seen = {
             name: (z - self.places[self.first]) / axis for name, z in self.places.items()
         } | dict(own)
         self.fixed = list(linkage.links[self.link])
         fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
+        # angles on the frame are counted from its first two points, in the ground from the x axis
         self.turn = cmath.phase(fixed[second] - fixed[origin])
 
     def _axis(self) -> complex:
@@ -169,7 +172,9 @@ class _Inverting:
                 name: inverted_output(linkage, formula, frame)
                 for name, formula in linkage.outputs.items()
             },
+            # points of the new ground stand still and have no path
             "trace": tuple(point for point in linkage.trace if point not in self.fixed),
+            # the sketch is an assembled position: it selects the configuration
             "configuration": "",
         }
         return replace(linkage, **changes)
@@ -190,6 +195,7 @@ class _Inverting:
         own = self.linkage.links[self.link]
         if len(own) == 2:
             given = self.linkage.lengths
+            # a key may name the two points in either order
             length = given.get(" ".join(own), given.get(" ".join(own[::-1])))
             if length is not None:
                 found[own[1]] = (length, 0.0)
@@ -209,6 +215,8 @@ class _Inverting:
             length = _distance(linkage, first, point)
             for key in (f"{first} {point}", f"{point} {first}"):
                 given = linkage.lengths.get(key)
+                # a formula keeps the length tied to the dimensions; a number would repeat the
+                # coordinates
                 if isinstance(given, str) and _same(linkage, given, length):
                     length = given
             found[f"{first} {point}"] = length

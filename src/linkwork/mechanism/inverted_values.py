@@ -47,6 +47,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
     was driven, the other link is driven against it, the other way round.
     """
     kind, name = which.drives
+    # a length between two links is the same from every ground
     if kind in ("slider", "cylinder"):
         return which
     link, against = name, which.relative_to or GROUND
@@ -63,6 +64,7 @@ def inverted_input(linkage: Linkage, which: Input, frame: Frame) -> Input:
     other = frame.name if against == GROUND else against
     speed = linkage.speed(which)
     if link == frame.ground:
+        # the old ground turns the other way round, seen from the driven link
         back = None if speed is None else -speed
         against_it = replace(which, link=other, joint=None, relative_to=None, speed=back)
         return _ranged(linkage, against_it, -1.0, turn)
@@ -100,6 +102,7 @@ def inverted_output(linkage: Linkage, formula: str, frame: Frame) -> str:
     angles = {canonical(name): name for name in linkage.links if name != GROUND}
     angles |= {canonical(c.angle_name): c.angle_name for c in linkage.of(Cylinder)}
     text = formula
+    # from the end of the text, so that the columns of earlier names stay valid
     for node in reversed(list(names_in(parse(formula)))):
         if node.name in angles:
             seen = "0" if angles[node.name] == frame.ground else angles[node.name]

@@ -99,6 +99,7 @@ class VertexAngle:
     def error(self, z: Mapping[str, complex]) -> float:
         """Disagreement with placed points [rad], within half a turn."""
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        # the difference is taken as a rotation: no jump at half a turn
         return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
@@ -169,6 +170,7 @@ class _Placing:
                 if length is not None:
                     self.z[point] = self.z[vertex] + rect(length, direction)
                     return True
+            # two circles around placed points determine a point up to its side
             centres = [q for q in self.z if frozenset((q, point)) in self.distances]
             if len(centres) + measure < 2:
                 continue
@@ -191,6 +193,7 @@ class _Placing:
                 f"{first} and {second} are at the same place: "
                 f"{point} cannot be placed by its distances from both"
             )
+        # law of cosines
         x = (r1 * r1 - r2 * r2 + d * d) / (2.0 * d)
         square = r1 * r1 - x * x
         size = largest((r1, r2, d)) ** 2
@@ -199,6 +202,7 @@ class _Placing:
                 f"no triangle has |{first}{second}| = {d:.12g}, |{first}{point}| = {r1:.12g} "
                 f"and |{second}{point}| = {r2:.12g}"
             )
+        # three points in line: rounding must not push the third off the line
         y = sqrt(choose(square > 1e-14 * size, square, 0.0))
         sketched = (self.sketch[point] - self.sketch[first]) * (
             self.sketch[second] - self.sketch[first]
@@ -243,12 +247,14 @@ def place(
     assert length is not None
     state.z = {a: 0j, b: length + 0j}
     while len(state.z) < len(points):
+        # given dimensions first, so that as few as possible are measured in the sketch
         if not (state.place_next(0) or state.place_next(1)):
             state.place_next(2)
     given: list[Given] = [*distances, *vertices]
     measured = state.measured
     z = state.z
     if not all(g.agrees(z, _AGREE) for g in given):
+        # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
         if len(given) > 2 * len(points) - 3:
             raise _contradiction(given, z, points)
         try:
@@ -304,6 +310,7 @@ def _together(
                 break
             length = abs(sketch[points[j]] - sketch[points[i]])
             candidate = Distance(points[i], points[j], length)
+            # a measured length is added only if it is independent of the others
             if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
@@ -332,6 +339,7 @@ def _gauss_newton(
         done = largest(abs(error) for error in errors) <= 1e-14
         if everywhere(done):
             break
+        # in a family most designs need few steps: the rest goes on alone
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
         step = least_norm(_slopes(z, rows), errors)
@@ -357,6 +365,7 @@ def _gone_on(
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
     """Derivatives of the rows' errors by all coordinates, x first, then y: rows of 2n."""
     first = next(iter(z.values()))
+    # central differences: truncation ~h² and rounding ~eps/h are then both about 1e-9 or less
     h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)
     columns = []
     for shift in (h, 1j * h):

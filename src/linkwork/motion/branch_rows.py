@@ -112,6 +112,7 @@ def rows_of_branch(
     ``passage`` that led to the anchor the branch is followed onwards only.
     """
     provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
+    # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and provable else (None,)
     for care in tries:
         track = _covering(drive, anchor, asked.t, care, report, passage)
@@ -123,6 +124,7 @@ def rows_of_branch(
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
+    # the dead points were found from the last nodes, which are not proved to be on this branch
     if not to_ends:
         ends = tuple(end.demote(Certification.MOTION_NOT_PROVED) for end in ends)
     rows = fill_last_rows(drive, track, ends, asked.t, placed, rows)
@@ -156,7 +158,7 @@ def _covering(
     track = track_to(solver, path, anchor, [low, high], care, report.tracked)
     if not drive.free:
         return track
-    # the other way around, from where the track stands there already
+    # the other way around, from the end of the track there
     if track.above is not None and track.below is None:
         goal = float((t - _turns_above(t, track.last_t) * FULL_TURN).min())
         if goal < track.first_t:
@@ -185,6 +187,7 @@ def _place_rows(track: Track, t: Array, free: bool) -> Array:
     """Where on the track each row lies, whole turns apart if need be; NaN if nowhere."""
     moved = t
     if free:
+        # up to the lower end or down to the upper one, whichever is needed: never both
         turns = _turns_above(track.first_t, t) - _turns_above(t, track.last_t)
         moved = t + turns * FULL_TURN
     return np.where((moved >= track.first_t) & (moved <= track.last_t), moved, np.nan)
@@ -204,6 +207,7 @@ class _RowSolver:
     def solve(self) -> tuple[SolvedRows, bool]:
         """All rows that lie on the track, and whether the track is proved up to its ends."""
         there = np.flatnonzero(~np.isnan(self.placed))
+        # in the order of the path: proofs join neighbours
         there = there[np.argsort(self.placed[there], kind="stable")]
         if by_kernels.kernels_pay(self.drive.model, len(there), self.certify):
             quickly = self._by_kernels(there)
@@ -239,6 +243,7 @@ class _RowSolver:
         if not len(there):
             return blank, self.certify
         pieces: list[SolvedRows] = []
+        # chunks keep the interpolation of long tables in the cache, and progress moves
         for begin in range(0, len(there), _CHUNK):
             chunk = there[begin : begin + _CHUNK]
             pieces.append(rows_on_track(solver, path, track, self.placed[chunk]))
@@ -253,7 +258,7 @@ class _RowSolver:
 def _mark_missing(
     rows: SolvedRows, track: Track, t: Array, missing: BoolArray, ends: tuple[BranchEnd, ...]
 ) -> SolvedRows:
-    """Rows that are nowhere on the track say what was met on the straight way to them."""
+    """Give rows that are nowhere on the track the status of the limit on the way to them."""
     if not (ends and missing.any()):
         return rows
     lower = ends[0] if track.below is not None else ends[-1]

@@ -101,7 +101,7 @@ class _Circuits:
         )
 
     def _failure(self) -> Failure | None:
-        """Why no circuit could be found, as far as the guess's own position tells."""
+        """Why no circuit could be found, as far as the position of the guess shows."""
         start = self.seeding.start
         if start is None or not start.status.ok:
             return None if start is None else start.failure
@@ -265,7 +265,7 @@ def is_branch_name(name: str) -> bool:
 def branch_start(model: Model, name: str) -> Model:
     """The model with a position on a named circuit or branch as its guess.
 
-    At the guess's own input value if the branch comes by there, else where the input leads best.
+    At the guess's input value if the branch passes it, else where the input leads best.
 
     Raises
     ------

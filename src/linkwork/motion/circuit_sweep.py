@@ -23,10 +23,10 @@ __all__ = ["Around", "FurtherBranch", "further_branches"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FurtherBranch:
-    """A branch beyond a dead point: what was asked on it, its rows, its ends, its name.
+    """A branch beyond a dead point: the values asked for, its rows, its ends, its name.
 
-    ``window``: smallest and largest value of t on it. ``standing``: what rows that are proved on
-    it say.
+    ``window``: smallest and largest value of t on it. ``standing``: the certification of rows
+    that are proved on it.
     """
 
     asked: Asked
@@ -50,9 +50,9 @@ class Around:
     end: CircuitEnd
 
     def leaves_out(self, t: Array, free: bool) -> BoolArray:
-        """Which values of t (B,) no branch of a closed circuit comes by, (B,).
+        """Which values of t (B,) no branch of a closed circuit passes, (B,).
 
-        ``free``: whether a value whole turns away will do.
+        ``free``: whether values whole turns away are the same.
         """
         missed = np.full(len(t), self.end.closed)
         for low, high in self.windows:
@@ -100,7 +100,7 @@ def _branch_name(model: Model, number: int) -> str:
 
 
 def _how_it_ends(walks: Sequence[TracedCurve]) -> CircuitEnd:
-    """How the circuit ends: of its two ends the one that leaves most open."""
+    """How the circuit ends: of its two ends the less certain one."""
     return max((walk.curve.end for walk in walks), key=list(CircuitEnd).index)
 
 

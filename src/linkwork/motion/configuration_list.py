@@ -129,9 +129,10 @@ def solve_configuration(
 
 
 def _explain_unassembled(model: Model, target: Array) -> Position:
-    """What to say where there is no configuration: the loop that does not close, if one is known.
+    """The message where there is no configuration: the loop that does not close, if one is known.
 
-    Newton-Raphson is tried from the guess, as for every position; where it fails is what is told.
+    Newton-Raphson is tried from the guess, as for every position; the message is that of its
+    failure.
     """
     start = first_position(model, target * model.input_scale, NewtonOptions())
     if start.failure is not None:

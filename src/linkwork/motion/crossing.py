@@ -13,7 +13,7 @@ __all__ = ["beyond_change_point", "ends_passed"]
 def beyond_change_point(drive: Drive, end: BranchEnd, policy: ChangePointPolicy) -> Passage | None:
     """The way across the change point at the end of a branch, and others right behind it.
 
-    ``None`` if the chosen branch keeps the input, or a loop cannot be told to be on it.
+    ``None`` if the chosen branch keeps the input, or a loop is not known to be on it.
     """
     if policy is not ChangePointPolicy.TURN or not end.crossings:
         return end.passage

@@ -60,7 +60,7 @@ def trace_with_proof(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurveBranch:
-    """A piece of a curve along which the parameter goes one way.
+    """A piece of a curve along which the parameter is monotonic.
 
     ``limits`` (K,): ``dead point``, ``change point`` or "" for each position.
 

@@ -32,7 +32,7 @@ def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...
     UnknownNameError
         With the names that exist.
     InputError
-        For what is no name.
+        For values that are no names.
     """
     if not isinstance(names, Iterable):
         raise InputError(f"quantities must be a name or several, got {as_told(names)}")
@@ -70,6 +70,7 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
         value, _, second, condition = (float(part[0]) for part in search.at(np.array([here])))
         # the derivative is known to its rounding only
         size = max(abs(float(rate[k])), abs(float(rate[k + 1])), abs(second))
+        # errors of the position, magnified by the condition, shift the zero of the derivative
         noise = 8.0 * EPSILON * condition * size
         error = max(error, noise / abs(second)) if second else np.inf
         unit = drive.unit
@@ -79,6 +80,7 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
             input=float(here / unit),
             value=value,
             bracket=(float((here - error) / unit), float((here + error) / unit)),
+            # a flat extreme is known by its value, hardly by its input
             located=bool(error <= 1e-9 * max(1.0, abs(here))),
         )
         found.append((here, limit))
@@ -86,7 +88,7 @@ def output_limits(drive: Drive, track: Track, name: str) -> list[tuple[float, Ou
 
 
 def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | None:
-    """A quantity's extreme at a dead point, if it stands still there together with the input.
+    """A quantity's extreme at a dead point, if it rests there together with the input.
 
     The quantity's derivative by the input does not vanish there; that by the variable that leads
     through the dead point does.
@@ -98,6 +100,7 @@ def output_limit_at(drive: Drive, end: BranchEnd, name: str) -> OutputLimit | No
     series = RowValues(model, v, first, second, np.ones(1, dtype=bool)).series(name)
     rate, bend = float(series.first[0]), float(series.second[0])
     noise = 8.0 * EPSILON * node.condition * float(np.abs(series.first[0]) + np.abs(bend))
+    # how far the leader would still have to move for the rate to vanish
     away = (abs(rate) + noise) / abs(bend) if bend else np.inf
     if not away <= _AT_ONCE * led.path.size * max(1.0, node.condition):
         return None

@@ -20,7 +20,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["guessed_points", "iterates", "pulled_guess"]
 
-_PULLS = 4  # one will do where a point runs on a circle or line
+_PULLS = 4  # one is enough where a point runs on a circle or line
 _STEP = 1e-4  # of an unknown, for central differences
 
 
@@ -67,10 +67,10 @@ def pulled_guess(
     guess: Mapping[str, float] | None = None,
     at: float | Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """A guess of which one unknown is changed so that a point comes as near to a place as it can.
+    """A guess with one unknown changed so that a point comes as near to a place as possible.
 
-    Of the unknowns that move the point the one is changed that moves fewest points: that of the
-    link which carries it last. The mechanism need not close.
+    Of the unknowns that move the point that is changed which moves fewest points: that of the
+    last link that carries it. The mechanism need not close.
 
     Parameters
     ----------
@@ -103,12 +103,14 @@ def pulled_guess(
     for _ in range(_PULLS if moving >= 0 else 0):
         here, rate = _moved_by(model, v, moving, point)
         if unknowns[moving].kind == "angle":
+            # the point moves at rate = i (here - centre) per radian
             centre = here + 1j * rate  # of the circle on which it runs
             change = float(np.angle((wanted - centre) / (here - centre)))
         else:
             change = float(((wanted - here) * rate.conjugate()).real) / abs(rate) ** 2
         trial = v.copy()
         trial[moving] += change
+        # no longer nearer: where the path is no circle one pull can overshoot
         if abs(wanted - _moved_by(model, trial, moving, point)[0]) >= abs(wanted - here):
             break
         v = trial
@@ -123,7 +125,7 @@ def guessed_points(model: Model) -> tuple[str, ...]:
 
 
 def _moving(model: Model, v: Array, point: str) -> int:
-    """The unknown that moves a point and fewest others; -1 if there is none."""
+    """The unknown that moves a point and fewest other points; -1 if no unknown moves it."""
     moved = _moved(model, v)
     movers = [k for k, points in enumerate(moved) if point in points]
     return min(movers, key=lambda k: (len(moved[k]), -k), default=-1)
@@ -138,6 +140,7 @@ def _moved(model: Model, v: Array) -> list[set[str]]:
     found = _points(model, rows)
     own = {name: complex(*place) for name, place in found[-1].items()}
     first = next(iter(own.values()), 0j)
+    # points that the step moves by rounding only do not count
     size = 1e-6 * _STEP * (max((abs(place - first) for place in own.values()), default=0.0) or 1.0)
     return [
         {name for name, place in found[k].items() if abs(complex(*place) - own[name]) > size}
@@ -168,7 +171,7 @@ class _Seen:
         )
 
     def told(self, model: Model, start: Array) -> list[Iterate]:
-        """The iterates by name; ``start`` (N,) is where all other variables stand."""
+        """The iterates by name; ``start`` (N,): values of all other variables."""
         if not self.kept:
             return []
         block, n = self.block, len(self.block.unknowns)
@@ -176,6 +179,7 @@ class _Seen:
         scales = [model.units.scale(Kind(u.kind)) for u in unknowns]
         x = np.stack([v[:n] for _, v, _, _ in self.kept])
         whole = np.repeat(start[None, :], len(x), axis=0)
+        # all other variables as they were when this block was iterated
         whole[:, block.unknowns] = x
         jacobians = block.system.jacobian(whole[:, block.variables])[:, :, :n]
         named = _named(model, whole)

@@ -45,7 +45,7 @@ _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must n
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BranchEnd:
-    """One end of a branch: what is told of it, and its place if it was found.
+    """One end of a branch: its limit, and its place if it was found.
 
     ``side``: +1 at the upper end, -1 at the lower. ``t``: of the path; ``slack``: how far a value
     that is meant to be this end's may be from it. ``v`` (N,): the position. ``first`` (N,):
@@ -76,6 +76,7 @@ class BranchEnd:
         """The end with its limit at the input value of its row in a table, whole turns away."""
         low, high = self.limit.bracket
         shift = value - self.limit.input
+        # the bracket must still hold the limit after it is moved
         rounding = EPSILON * (abs(value) + abs(shift))  # whole turns in radians are no floats
         bracket = (low + shift - rounding, high + shift + rounding)
         limit = replace(self.limit, input=value, bracket=bracket)
@@ -86,7 +87,7 @@ class BranchEnd:
         return self.v is not None and abs(t - self.t) <= self.slack + rounding
 
     def demote(self, standing: Certification) -> BranchEnd:
-        """The end with what the way to its branch is worth, if it is proved on it."""
+        """The end with the certification of the way to its branch, if it is proved on it."""
         if self.certification is not Certification.CERTIFIED:
             return self
         return replace(self, certification=standing)
@@ -132,6 +133,7 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
     sound = next((node for node in reversed(nodes) if node.nearness < _SOUND), nodes[-1])
     best: TurnAhead | None = None
     for last in (sound, nodes[-1]) if sound is not nodes[-1] else (sound,):
+        # the last nodes are ill-conditioned; a node somewhat earlier gives the same dead point
         ahead = turn_beyond(drive.leads, last.v, last.first, side)
         if ahead is not None and (best is None or ahead.located):
             best = ahead
@@ -164,6 +166,7 @@ def end_at_dead_point(
         side=0.0,
         limit=dead_point_limit(drive, turn),
         t=turn.t,
+        # a value within the bracket may be the limit itself
         slack=max(high - turn.t, turn.t - low) if turn.located else 0.0,
         v=turn.v,
         first=np.full(len(turn.v), np.nan),
@@ -185,7 +188,7 @@ def end_at_dead_point(
 
 
 def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
-    """What is told of a dead point, in file units."""
+    """The limit at a dead point, in file units."""
     return _locate_limit(drive, turn, LimitKind.DEAD_POINT, _locking(drive, turn.v))
 
 
@@ -196,12 +199,13 @@ def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """What is told of a change point between two curves, in file units."""
+    """The limit at a change point between two curves, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []
     for direction in crossing.directions:
         moving = abs(float(direction[p] / leads.scale[p])) > _MOVES
+        # a branch that keeps the input has no derivative by it
         rates.append(direction / direction[p] if moving else np.full(len(direction), np.nan))
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
@@ -254,7 +258,10 @@ def end_at_change_point(
         onward |= _rates(model, crossing.onward)
         other |= _rates(model, crossing.other)
     done = solver.solve(
-        v[None, :], replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8)
+        # J is singular here: a step of Newton-Raphson would lead away, so only residuals are
+        # checked
+        v[None, :],
+        replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8),
     )
     return BranchEnd(
         side=side,
@@ -284,7 +291,7 @@ class _EndPlace(Protocol):
 
 
 def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Sequence[int]) -> Limit:
-    """What is told of it: ``blocks`` are the numbers of those that lock."""
+    """The limit; ``blocks``: the numbers of the blocks that lock."""
     model = drive.model
     low, high = (edge / drive.unit for edge in place.bracket)
     status = Status.OUT_OF_REACH if kind is LimitKind.DEAD_POINT else Status.CHANGE_POINT
@@ -292,6 +299,7 @@ def _locate_limit(drive: Drive, place: _EndPlace, kind: LimitKind, blocks: Seque
     return Limit(
         kind=kind,
         input=float(place.t / drive.unit) + 0.0,
+        # outwards: the division by the unit has rounded both ends
         bracket=(math.nextafter(low, -math.inf), math.nextafter(high, math.inf)),
         located=bool(place.located),
         status=status,

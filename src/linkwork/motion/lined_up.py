@@ -38,7 +38,7 @@ def links_in_line(model: Model, number: int, v: Array) -> tuple[str, ...]:
 def _vectors(model: Model, block: Block, v: Array) -> list[dict[str, complex]]:
     """Per loop of a block, the vectors that turn with one unknown angle of the block each.
 
-    A loop with a vector that turns with several of them gives none.
+    A loop with a vector that turns with several of them is left out.
     """
     equations = model.equations
     value = {variable.symbol: float(x) for variable, x in zip(equations.variables, v, strict=True)}

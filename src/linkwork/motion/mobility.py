@@ -16,7 +16,7 @@ from linkwork.motion.redundancy import FITS, misfit, mobility_by_rank
 __all__ = ["Mobility", "grubler_count", "mobility_of", "pins"]
 
 _LARGEST = 100  # unknowns up to which a singular mechanism is looked at as one matrix
-_BESIDE = 1e-3  # how far beside a position its neighbour is sought, in weighted variables
+_BESIDE = 1e-3  # how far from a position its neighbour is sought, in weighted variables
 _TRIES = 6
 
 
@@ -51,12 +51,12 @@ def grubler_count(linkage: Linkage) -> int:
     as teeth do. A wheel that rolls without slipping has one freedom; a weld has none, of its two
     links' pin.
     """
-    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)
+    rigid = 3 * (len(linkage.links) - 1) - 2 * pins(linkage)  # eq. (64)
     return rigid + sum(part.mobility for part in linkage.parts)
 
 
 def _why(model: Model, v: Array, count: int, rank: int) -> str:
-    """Why a rank and a count are not the same, from what the rank is beside the position."""
+    """Why a rank and a count are not the same, from the rank at a position near by."""
     if rank < count:
         return "some links have freedoms that do not occur in the equations"
     beside = _rank_beside(model, v)
@@ -82,13 +82,15 @@ def _rank_beside(model: Model, v: Array) -> int | None:
     """The mobility by rank at a position near by, if one is found."""
     compiled = model.compiled
     scale, n = compiled.solver.variable_scale, compiled.solver.unknowns
-    rng = np.random.default_rng(0)  # any direction will do, the same every time
+    rng = np.random.default_rng(0)  # any direction serves; the same every time
     for _ in range(_TRIES):
         guess = v + _BESIDE * scale * rng.uniform(-1.0, 1.0, len(v))
+        # inputs are moved clearly: the rank at another input is wanted
         guess[n:] = v[n:] + _BESIDE * scale[n:] * rng.choice([-1.0, 1.0], len(v) - n)
         done = compiled.solver.solve(guess[None, :])
         near = np.abs((done.v[0] - v) / scale).max() < 100.0 * _BESIDE
         if done.status[0] == Status.CONVERGED.code and near:
+            # this neighbour is no position of the mechanism with all its links
             if misfit(model.equations, done.v)[0] > FITS:
                 return None
             return _by_rank(model, done.v[0])
@@ -110,6 +112,7 @@ def _by_rank(model: Model, v: Array) -> int | None:
         full &= _rank_of(j * system.variable_scale[:n] / system.equation_scale[:, None]) == n
     if full:
         return len(model.equations.variables) - solver.unknowns
+    # singular values of one large matrix would take seconds
     if solver.unknowns > _LARGEST:
         return None
     return mobility_by_rank(model.compiled, v)

@@ -100,7 +100,7 @@ class Model:
 
     @cached_property
     def quantities(self) -> Quantities:
-        """What can be asked of its positions and motions."""
+        """The quantities of its positions and motions."""
         equations = self.equations
         released = {part.variable for part in equations.redundant}
         inputs = {v.name: Kind(v.kind) for v in equations.inputs}
@@ -180,7 +180,7 @@ class Model:
 
     @cached_property
     def derivative_unit(self) -> str:
-        """What derivatives are taken by: ``rad`` or the length unit of the leading input."""
+        """The unit of the input in derivatives: ``rad`` or the length unit of the leading input."""
         if not self.equations.inputs:
             return ""
         return self.units.of_rate(Kind(self.equations.inputs[lock_step(self.rows)[0]].kind))

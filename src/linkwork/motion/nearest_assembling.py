@@ -25,7 +25,7 @@ def nearest_assembly(
 ) -> NearestAssembly:
     """The position near the guess at which the loops stay open by least.
 
-    Every block of equations in turn is brought as near to zero as a damped iteration gets,
+    Every block of equations in turn is brought as near to zero as a damped iteration gets it,
     min ‖F(q, u)‖², with the blocks before it as they came out.
 
     Parameters
@@ -49,6 +49,7 @@ def nearest_assembly(
     with np.errstate(all="ignore"):
         for block in solver.blocks:
             nearest, _ = nearest_miss(block.system, v[block.variables])
+            # later blocks start from this position, though it may not close
             v[block.unknowns] = nearest[: len(block.unknowns)]
         f = model.compiled.table.residual(v[None, :])[0]
     none = np.zeros((1, len(v)))

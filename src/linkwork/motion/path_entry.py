@@ -23,11 +23,13 @@ def enter_path(drive: Drive, start: Start, t: Array, certify: bool) -> tuple[Nod
     solver, path = drive.solver, drive.path
     own = drive.model.start_inputs
     here = float(own[drive.lead])
+    # one input is always on its path; several may have a guess beside it
     if np.allclose(path.at(here), own, rtol=0, atol=1e-12 * path.size):
         return node_at(solver, path, here, start.v), True
     weights = solver.variable_scale[solver.unknowns :]
     distance = np.abs((path.at(t) - own) / weights).max(axis=1)
     nearest = np.argsort(distance, kind="stable")
+    # a straight way may be blocked by a limit: other rows are tried, some of them far away
     spread = np.linspace(0, len(t) - 1, min(len(t), _ENTRIES)).astype(np.intp)
     for row in (nearest[0], *nearest[spread[1:]]):
         entry = _lead_to_row(drive, start, float(t[row]), certify)

@@ -50,7 +50,7 @@ class Evidence:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolvedPosition:
-    """A position that was found (or not, as ``status`` tells): variables v (N,) and evidence.
+    """A position, found or not according to ``status``: variables v (N,) and evidence.
 
     ``first`` (N,): derivatives at a dead point or change point, NaN where there are none.
     """
@@ -65,6 +65,7 @@ class SolvedPosition:
 
 def found_message(status: Status, condition: float, failure: Failure | None = None) -> str:
     """The sentence for a status or its explanation; a position too near to singular says so."""
+    # such a position counts as found, but its derivatives are noise
     if status.ok and condition > _HOPELESS:
         return _SINGULAR
     return status.value if failure is None else failure.message

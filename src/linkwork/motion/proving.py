@@ -19,7 +19,7 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["inputs_apart", "prove_rows", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
-_TURN = 1e-9  # rad: an input this near to whole turns away from what was asked is the same one
+_TURN = 1e-9  # rad: an input this near to whole turns from the input asked for is the same one
 
 
 def prove_rows(
@@ -86,6 +86,7 @@ def _nodes_around(track: Track, t: Array) -> list[int]:
     return [
         k
         for k, node in enumerate(track.nodes)
+        # nodes beyond the rows are proved too where that is easy, so that ends can be certified
         if low <= node.t <= high or node.nearness < _FAR_FROM_SINGULAR
     ]
 
@@ -120,13 +121,14 @@ def way_is_proved(solver: BlockSolver, path: InputPath, nodes: Sequence[Node]) -
 def inputs_apart(inputs: Array, asked: Array) -> Array:
     """How far the inputs meant may be from some, whole turns aside, (B, p).
 
-    The conversion of units, what a straight line rounds, and 2π, which is no float.
+    From the conversion of units, the rounding of a straight line, and 2π, which is no float.
     """
     gap = np.abs(inputs - asked)
     turns = np.round(gap / (2.0 * np.pi))
     rest = np.abs(gap - turns * (2.0 * np.pi)) + UNIT_ROUNDOFF * 2.0 * (
         np.abs(inputs) + np.abs(asked)
     )
+    # a gap that is no whole turn counts in full
     turned = (turns > 0) & (rest < _TURN)
     apart: Array = rounding_of_inputs(inputs, 0) + np.where(turned, rest, gap)
     return apart

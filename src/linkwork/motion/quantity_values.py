@@ -29,9 +29,9 @@ class QuantityValues(ABC):
     lost : S
         Where there is no position.
     still : S
-        The rate of what does not move: 0, NaN where there is no position.
+        The rate of parts that do not move: 0, NaN where there is no position.
     link_constants : (…, links)
-        What links add to their variables [rad], in the order of the equations.
+        Constants that links add to their variables [rad], in the order of the equations.
     dimensions : (…, dimensions)
         Named numbers in the order of the equations; leading axes as the last ones of S.
     """
@@ -95,7 +95,7 @@ class QuantityValues(ABC):
         return Jet(v, d1, d2)
 
     def _known(self, name: str) -> Mapping[str, Jet]:
-        """What the formula of an output needs: dimensions, variables, links, coordinates, …"""
+        """The values of an output's names: dimensions, variables, links, coordinates, …"""
         equations = self.equations
         used = {node.name for node in names_in(equations.outputs[name].formula)}
         zero = np.zeros(())

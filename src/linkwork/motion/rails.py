@@ -19,7 +19,7 @@ _Sum = dict[tuple[object, ...], complex]
 
 
 def rails_of(equations: LoopEquations, links: Mapping[str, tuple[str, ...]]) -> Iterator[Rail]:
-    """Rails by the variable that tells how far a point is along them.
+    """Rails by the variable that measures how far a point is along them.
 
     A point runs along a rail if its place is a constant and a length times a constant vector; along
     a link, if it is a length away from one of its points in the link's direction: as formulas have
@@ -79,7 +79,7 @@ def _sum(terms: Iterable[Term]) -> _Sum:
 
 
 def _add(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
-    """A sum of sums, without what cancels."""
+    """A sum of sums, without terms that cancel."""
     total: _Sum = {}
     largest = 0.0
     for sign, part in parts:

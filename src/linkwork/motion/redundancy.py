@@ -42,7 +42,7 @@ def misfit(equations: LoopEquations, v: Array) -> Array:
 
 
 def lengths_found(equations: LoopEquations, v: Array) -> list[float]:
-    """What the lengths of the redundant links come out as at a position (N,)."""
+    """The lengths of the redundant links at a position (N,)."""
     columns, _ = _redundant(equations)
     return [float(length) for length in v[columns]]
 
@@ -57,12 +57,12 @@ def largest_misfits(equations: LoopEquations, v: Array) -> dict[str, float]:
 
 
 def without_redundant(equations: LoopEquations, proved: Certification) -> Certification:
-    """What a proof of the equations says of the mechanism."""
+    """The certification of the mechanism from that of its equations."""
     return Certification.SUBSET_CERTIFIED if equations.redundant and proved.certified else proved
 
 
 def _redundant(equations: LoopEquations) -> tuple[list[int], Array]:
-    """The columns of redundant lengths, and what was given for them."""
+    """The columns of redundant lengths, and their given values."""
     number = {variable.symbol: k for k, variable in enumerate(equations.variables)}
     columns = [number[canonical(part.variable)] for part in equations.redundant]
     return columns, np.array([part.length for part in equations.redundant])
@@ -87,6 +87,7 @@ def check_redundancy(compiled: Compiled, where: str) -> None:
     found = done.v[0, columns]
     freedoms, inputs = mobility_by_rank(compiled, done.v[0]), len(equations.inputs)
     fits = misfit(equations, done.v)[0] <= FITS
+    # several inputs may also be given values that do not belong together
     if not fits and (freedoms >= inputs or inputs < 2):
         wanted = ", ".join(
             f"{part.link} needs the length {length:.10g}, not {part.length:.10g}"
@@ -111,8 +112,9 @@ def mobility_by_rank(compiled: Compiled, v: Array) -> int:
     table, equations = compiled.table, compiled.equations
     scaled = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
     columns, _ = _redundant(equations)
+    # a redundant length is no freedom: it has to keep its value
     scaled = np.delete(scaled, columns, axis=1)
     if not scaled.size:
         return int(scaled.shape[1])
     tolerance = RANK_TOLERANCE * np.linalg.norm(scaled, 2)
-    return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))
+    return int(scaled.shape[1] - np.linalg.matrix_rank(scaled, tol=tolerance))  # eq. (65)

@@ -123,15 +123,17 @@ def _certificate(model: Model, v: Array) -> Certificate:
 
 
 def _other_root(model: Model, found: Array) -> Failure | None:
-    """What to say of a position (N,) on the other side of the guess: det J has another sign."""
+    """The failure of a position (N,) on the other side of the guess: det J has another sign."""
     solver = model.compiled.solver
     here = found.copy()
     here[: solver.unknowns] = model.equations.start[: solver.unknowns]
     for block in solver.blocks:
         both = np.stack([here, found])[:, block.variables]
         slopes = block.system.jacobian(both)[:, :, : len(block.unknowns)]
+        # the guess and the position lie on different sides of a dead point
         if np.prod(np.sign(np.linalg.det(slopes))) <= 0.0:
             return why.another_root(model, found)
+        # the next block is compared with its known variables as solved
         here[block.unknowns] = found[block.unknowns]
     return None
 
@@ -139,7 +141,7 @@ def _other_root(model: Model, found: Array) -> Failure | None:
 def failed_position(
     model: Model, target: Array, status: Status, failure: Failure | None, start: Start
 ) -> Position:
-    """No position at the values (p,), in file units, with the reason and what was tried."""
+    """No position at the values (p,), in file units, with the reason and the iterates."""
     nothing = np.full((1, model.compiled.solver.variables), np.nan)
     named = name_series(model, nothing, nothing, nothing, target[None, :], np.zeros(1, dtype=bool))
     evidence = Evidence(
@@ -156,7 +158,7 @@ def failed_position(
 
 
 def _does_not_fit(model: Model, v: Array) -> Failure:
-    """Which redundant links would have to be how long at a position (N,) of the others."""
+    """The lengths that redundant links would need at a position (N,) of the others."""
     lengths = lengths_found(model.equations, v)
     remedies = [
         Remedy(length=" ".join(part.points), now=part.length, needed=length, exact=True)
@@ -175,7 +177,7 @@ def _at_limit(v: Array, first: Array) -> SolvedRows:
 def _position(
     model: Model, target: Array, found: SolvedPosition, start: Start, failure: Failure | None = None
 ) -> Position:
-    """What was found, named and with its derivatives."""
+    """The position that was found, named and with its derivatives."""
     solver = model.compiled.solver
     v = found.v[None, :]
     if found.status.ok and misfit(model.equations, v)[0] > FITS:

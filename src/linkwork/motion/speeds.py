@@ -40,7 +40,7 @@ def input_speed(description: Description, inputs: Sequence[Variable], rows: Arra
 def leading_speeds(
     description: Description, inputs: Sequence[Variable], rows: Array
 ) -> dict[int, float]:
-    """What the speed of every input that has one makes of the leading input's rate.
+    """The leading input's rate according to the speed of every input that has one.
 
     Raises
     ------

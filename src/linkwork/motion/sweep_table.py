@@ -26,7 +26,7 @@ _SAME_PLACE = 1e-11  # relative: values of the path so near to each other are on
 class _PlaceOfEnd(NamedTuple):
     """Where an end may be in the table, and how far that is from where it was met."""
 
-    guessed: bool  # no row of its branch is beside it
+    guessed: bool  # no row of its branch is next to it
     away: float
     t: float
 
@@ -79,7 +79,7 @@ class SweepTable:
     def take(self, found: BranchRows, where: IndexArray) -> BoolArray:
         """Take rows of another branch, asked for at the rows ``where``; which of all were taken.
 
-        Straight ahead goes before whole turns around, and of these the first one that is there.
+        Straight ahead comes before whole turns around, and of these the first position found.
         """
         straight = found.converged & (found.placed == self.asked.t[where])
         put = straight | (self.rows.status[where] != Status.CONVERGED.code)
@@ -90,7 +90,7 @@ class SweepTable:
         return taken
 
     def leave_out(self, where: IndexArray, status: Status) -> None:
-        """Those of some rows that are not there say why."""
+        """Give those of some rows that have no position a status."""
         there = self.rows.status[where] == Status.CONVERGED.code
         self.rows = self.rows.set(where[~there], status=status.code)
 
@@ -106,7 +106,7 @@ class SweepTable:
         return [float(x) for x in here if low - slack <= x <= high + slack]
 
     def turns_at(self, here: float) -> int:
-        """By how many whole turns rows beside a value of t are named apart from it.
+        """By how many whole turns the names of rows next to a value of t differ from it.
 
         On a further branch the rows bear the inputs of the table, whole turns away if need be:
         one put between them does the same, inside the table's range if it can.
@@ -155,8 +155,8 @@ class SweepTable:
     def _places(self, end: BranchEnd) -> list[_PlaceOfEnd]:
         """Where an end belongs in the table, best first.
 
-        Whole turns away it does only if rows on the branch's side of it are there as many turns
-        away, or none is.
+        It belongs whole turns away only if rows on the branch's side of it were found as many turns
+        away, or no such row was found.
         """
         found = []
         for here in self.places_of(end.t):
@@ -227,7 +227,7 @@ class SweepTable:
         return SolvedRows.concatenate([self.rows, *self._extra]).take(order), added[order]
 
     def is_among(self, here: float, own: BoolArray) -> bool:
-        """Whether one of the rows beside a value of t is among some rows (B,)."""
+        """Whether one of the rows next to a value of t is among some rows (B,)."""
         order = np.argsort(self.asked.t, kind="stable")
         t = self.asked.t[order]
         slack = _slack_at(abs(here))

@@ -54,8 +54,8 @@ def sweep(
 ) -> Motion:
     """The positions at every row of the input's table, on the branch of the guess.
 
-    The branch is followed from the guess's own input value both ways with steps as small as
-    safety asks, whatever the table's step. A row outside its reach is tried a whole turn away,
+    The branch is followed from the input value of the guess both ways with steps as short as
+    safety demands, whatever the table's step. A row outside its reach is tried a whole turn away,
     and kept with its status if it is not there either. Every dead point and change point that is
     met adds a row of its own with the exact value. Long tables are computed by compiled kernels
     where that is quicker: the same to rounding.
@@ -144,9 +144,9 @@ def _span(t: Array) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Branch:
-    """A branch in its table: which of the table's rows are its own, and what its proofs are worth.
+    """A branch in its table: which of the table's rows are its own, and the worth of its proofs.
 
-    ``standing``: what rows that are proved on it say.
+    ``standing``: the certification of rows that are proved on it.
     """
 
     table: SweepTable
@@ -172,6 +172,7 @@ class _Sweep:
 
     def run(self, anchor: Node, entered: bool, asked: Asked, policy: ChangePointPolicy) -> None:
         """The table of the start's branch, and of those beyond change points if asked."""
+        # nothing on the path can be worth more than the way onto it
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)
@@ -216,8 +217,8 @@ class _Sweep:
     def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[NamedEnd]:
         """Rows beyond the change points on one side, as far as the policy leads; the ends met.
 
-        A chosen way goes before the way around through a whole turn. A way on which a redundant
-        link does not fit is none: its rows say so.
+        A chosen way comes before the way around through a whole turn. A way on which a redundant
+        link does not fit is no way: its rows get that status.
         """
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
@@ -248,6 +249,7 @@ class _Sweep:
         track = self.branches[0].found.track
         anchor = track.nodes[track.start]
         if self.branches[0].found.proved_to_ends or not self.certify:
+            # a regular start: the circuit is traced from there, and a dead point cannot lead it
             anchor = min(track.nodes, key=self._steepness)
         around = further_branches(self.drive, anchor.v, asked, self.report, self.certify)
         self.circuit = around.end
@@ -269,13 +271,14 @@ class _Sweep:
         self.ends += fresh
         self.limits += [end.limit for end in fresh]
         beyond = table.rows.status == Status.OUT_OF_REACH.code
+        # of a closed circuit all branches are known, so other inputs are outside of it
         beyond &= around.leaves_out(asked.t, self.drive.free)
         table.rows = table.rows.set(beyond, status=Status.OUT_OF_CIRCUIT.code)
 
     def _is_same(self, end: BranchEnd, known: BranchEnd) -> bool:
         """Whether two ends are one place: near each other, at one value as far as it is known.
 
-        Two dead points may lie close together; what tells them apart is how well they are located.
+        Two dead points may lie close together; they are two if their brackets are apart.
         """
         leads = self.drive.leads
         if end.v is None or known.v is None or not coincide(leads, end.v, known.v):
@@ -313,6 +316,7 @@ class _Sweep:
                     places.append(here)
                     table.put(row, here)
         at_ends = [output_limit_at(self.drive, end, name) for end in self.ends]
+        # a quantity can be extreme at the dead point itself, where both rates vanish
         self.output_limits += dict.fromkeys(extreme for extreme in at_ends if extreme is not None)
 
     def _whole_track(self, branch: _Branch) -> Track:
@@ -328,6 +332,7 @@ class _Sweep:
         table, track = branch.table, branch.found.track
         path, scale = self.drive.path, self.model.input_scale
         inputs = path.at(np.array([t]))
+        # the row is computed on the track and named by its place in the table
         turns = round((here - t) / FULL_TURN) + table.turns_at(here)
         in_file_units = inputs / scale + turns * path.rate * (FULL_TURN / scale)
         asked = Asked(t=np.array([t]), inputs=inputs, in_file_units=in_file_units)
@@ -349,7 +354,7 @@ class _Sweep:
 
 
 def _message(motion: Motion) -> str:
-    """What became of the rows: that of the start if all were found, else every limit once."""
+    """The message of the start if all rows were found, else every limit once."""
     asked = motion.asked
     missing = int((asked & ~motion.found).sum())
     if not missing:

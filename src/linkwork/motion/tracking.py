@@ -29,6 +29,7 @@ def leading_scale(model: Model, lead: int) -> float:
     solver = model.compiled.solver
     if model.equations.inputs[lead].kind == "number":
         span = float(np.ptp(model.rows[:, lead]))
+        # a plain number has no natural size, and a table of one row no span
         return span / 10.0 or float(solver.variable_scale[solver.unknowns + lead])
     return float(solver.variable_scale[solver.unknowns + lead])
 
@@ -39,7 +40,7 @@ def turns_freely(model: Model) -> bool:
     if len(inputs) != 1 or inputs[0].kind != "angle":
         return False
     table = model.compiled.table
-    turns = np.zeros(table.variables)  # what one turn of the input adds to every variable
+    turns = np.zeros(table.variables)  # added to every variable by one turn of the input
     lead = len(model.equations.unknowns)
     turns[lead] = 1.0
     given = np.zeros(table.variables, dtype=bool)
@@ -49,10 +50,12 @@ def turns_freely(model: Model) -> bool:
         if not left:
             continue
         free = np.flatnonzero((weights != 0.0) & table.is_angle & ~given)
+        # an angle that would turn by a fraction does not come back after one turn of the input
         whole = [k for k in free.tolist() if (left / weights[k]).is_integer()]
         if not whole:
             return False
         turns[whole[0]] = -left / weights[whole[0]]
+        # later rows must not turn these angles otherwise
         given[weights != 0.0] = True
     return table.repeats_after(turns)
 
@@ -81,7 +84,7 @@ def track_to(
 ) -> Track:
     """The branch from ``start`` as far towards the smallest and largest goal as it goes.
 
-    ``progress`` is told every value of t that was reached.
+    ``progress`` is called with every value of t that is reached.
     """
 
     def tell(_: Node, after: Node) -> bool:

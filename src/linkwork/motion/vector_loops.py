@@ -97,5 +97,5 @@ def _name(term: Term, shown: Mapping[str, str]) -> str:
 
 
 def _signed(number: float, shown: str, before: str) -> str:
-    """A summand behind what is written before it."""
+    """A summand with its sign, as it follows the text before it."""
     return ("\u2212" if number < 0 else "+" if before else "") + shown

@@ -24,8 +24,8 @@ from linkwork.results.motion import Limit, LimitKind, Motion
 __all__ = ["warm_started"]
 
 _STEPS = 8  # of Newton-Raphson; a neighbour needs three or four
-_NEAR = 0.2  # rad, or of the longest link: what a row may move by from one design to the next
-_NEAR_FOLD = 0.6  # the same from a parabola, beside a dead point
+_NEAR = 0.2  # rad, or of the longest link: the largest change of a row from one design to the next
+_NEAR_FOLD = 0.6  # the same from a parabola, near a dead point
 _GROWTH = 12  # rows by which a dead point may recede from one design to the next
 _SAME_DIRECTION = 1e-9  # rad: a table over a whole turn ends where it begins
 
@@ -34,7 +34,7 @@ def warm_started(model: Model, before: Motion) -> Motion | None:
     """The positions of a design from those of a neighbour, all rows at once.
 
     Newton-Raphson starts every row from the neighbour's. Where dead points bound the motion, rows
-    are lost or won beside them one by one. Nothing is proved, and where a dead point lies is only
+    are lost or won near them one by one. Nothing is proved, and where a dead point lies is only
     estimated.
 
     Parameters
@@ -45,7 +45,7 @@ def warm_started(model: Model, before: Motion) -> Motion | None:
     Returns
     -------
     Motion or None
-        ``None`` where only following the branch anew will do: the neighbour's cycle has another
+        ``None`` where the branch has to be followed anew: the neighbour's cycle has another
         table or ends at more than dead points, rows move far, or dead points do.
     """
     asked = before.asked
@@ -95,8 +95,10 @@ class _Fold:
     def moved(self, step: float) -> Array:
         """By how much the unknowns change with the input; at most as far as to the dead point."""
         a, b = self._fastest
+        # without a second derivative there is no parabola: straight on
         if not a or not b:
             return step * self.first
+        # the root of u(dx) = step that vanishes with the step, cut off at the dead point
         dx = a * a / b * (1.0 - math.sqrt(max(0.0, 1.0 - 2.0 * b * step / a)))
         bend = (self.second * a - self.first * b) / a**3
         return np.asarray(self.first / a * dx + 0.5 * bend * dx * dx)
@@ -131,6 +133,7 @@ class _Renewal:
         options = replace(solver.options, max_steps=_STEPS, largest_turn=math.inf)
         done = solver.solve(self.v[here], options)
         moved = np.abs((done.v - self.v[here]) / solver.variable_scale).max(axis=1)
+        # a row that moves far has probably found another configuration
         good = (done.status == Status.CONVERGED.code) & (moved <= near)
         here = here[good]
         self.found[here] = True
@@ -141,12 +144,12 @@ class _Renewal:
         self.condition[here], self.orientation[here] = rates.condition, rates.orientation
 
     def bound(self) -> list[tuple[int, int]] | None:
-        """Keep the rows that hang together with the start, and win those next to them.
+        """Keep the rows that are connected with the start, and win those next to them.
 
         Returns
         -------
         list of (last row found, first row missing) or None
-            The dead points; ``None`` if it cannot be said what hangs together.
+            The dead points; ``None`` if the connected rows cannot be found.
         """
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions(), explained=False)
@@ -154,6 +157,7 @@ class _Renewal:
         if not start.status.ok or origin is None:
             return None
         sign = model.compiled.solver.rates(start.v[None, :], self.rate).orientation[0]
+        # rows on the other side of a dead point belong to another branch
         self.found &= (self.orientation == sign).all(axis=1)
         if not self.found[origin]:
             return None
@@ -164,6 +168,7 @@ class _Renewal:
             last, won = origin, 0
             while (ahead := self._next(last, way)) not in (None, origin):
                 if not self.found[ahead]:
+                    # a dead point that recedes so far is better found by following the branch
                     if won == _GROWTH:
                         return None
                     if not self._win_row(last, ahead, sign):
@@ -199,7 +204,7 @@ class _Renewal:
         return ahead % len(self.v) if self._around else None
 
     def _win_row(self, last: int, ahead: int, sign: StatusArray) -> bool:
-        """Whether a row is found from the one beside it."""
+        """Whether a row is found from its neighbour."""
         n = self.model.compiled.solver.unknowns
         step = self.model.rows[ahead, 0] - self.model.rows[last, 0]
         step = 0.0 if abs(ahead - last) > 1 else step  # around: the same place
@@ -221,6 +226,7 @@ class _Renewal:
         upwards = (ahead > last) == (abs(ahead - last) == 1)  # not so around the table's end
         beyond = here + (step if upwards else -step)
         place = here + self._fold(last).distance / float(self.model.input_scale[0])
+        # the parabola is only an estimate: the limit lies between the two rows in any case
         if not min(here, beyond) < place < max(here, beyond):
             place = 0.5 * (here + beyond)
         return Limit(
@@ -232,7 +238,7 @@ class _Renewal:
         )
 
     def solve(self, branch: str) -> SolvedRows:
-        """The rows with what is known of them."""
+        """The rows with their rates and evidence."""
         here = np.flatnonzero(self.found)
         blank = SolvedRows.blank(
             self.model.rows_in_file_units, self.v.shape[1], Status.OUT_OF_REACH

@@ -16,7 +16,7 @@ from linkwork.numerics.system import System
 
 __all__ = ["Block", "BlockSolver", "Linearised", "linearise_block"]
 
-_LARGE = 1e3  # condition up to which nobody asks whether balanced columns would do better
+_LARGE = 1e3  # condition up to which balanced columns are not tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,11 +144,14 @@ class BlockSolver:
             system = block.system
             here = v[:, block.variables]
             jacobian, inverse = parts[k].jacobian, parts[k].inverse
+            # earlier blocks have left their rates there: they are known motions for this one
             known = block.variables[n:]
             direction = np.empty_like(here)
             direction[:, n:] = first[:, known]
+            # eq. (11)
             x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
+            # eq. (12)
             bend = system.second_directional_derivative(here, direction) + matrix_vector(
                 jacobian[:, :, n:], second[:, known]
             )
@@ -156,6 +159,7 @@ class BlockSolver:
             second[:, block.unknowns] = -matrix_vector(inverse, bend)
             own = _condition(system, jacobian[:, :, :n], inverse)
             condition = np.maximum(condition, own)
+            # balancing the columns costs more than the rates themselves
             if own.max(initial=0.0) > _LARGE:
                 own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
             nearness = np.maximum(nearness, own)
@@ -196,6 +200,7 @@ def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
                 inverse[lane] = np.linalg.inv(matrix)
             except np.linalg.LinAlgError:
                 continue
+    # the two positions that meet at a dead point have opposite signs
     sign = np.sign(np.linalg.det(jacobian))
     return np.asarray(inverse, dtype=float), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
 
@@ -205,7 +210,7 @@ def _condition(system: System, jacobian: Array, inverse: Array) -> Array:
     w, s = system.variable_scale[: jacobian.shape[2]], system.equation_scale
     forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
     backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
-    product: Array = forward * backward
+    product: Array = forward * backward  # eq. (14)
     return np.where(np.isfinite(product), product, np.inf)
 
 
@@ -214,7 +219,7 @@ def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Ar
 
     ‖J⁻¹‖ counts twice in a proof (Newton-Kantorovich): for the size of errors, and for how much the
     equations bend. The latter does not depend on the ratio of the lengths, so that the condition
-    with all columns of J equally long stands for it: within a factor of √n the least that weights
+    with all columns of J equally long is taken for it: within a factor of √n the least that weights
     can bring about (van der Sluis 1969, doi:10.1007/BF02165096). The mean of both is returned.
     """
     scaled = np.abs(jacobian / s[:, None])
@@ -224,4 +229,4 @@ def _nearness(condition: Array, s: Array, jacobian: Array, inverse: Array) -> Ar
         backward = np.abs(inverse * s * longest[:, :, None]).sum(axis=2).max(axis=1, initial=0.0)
         balanced = forward * backward
         least = np.where(np.isfinite(balanced), np.minimum(condition, balanced), condition)
-        return np.asarray(np.sqrt(condition) * np.sqrt(least))
+        return np.asarray(np.sqrt(condition) * np.sqrt(least))  # eq. (15)

@@ -15,7 +15,7 @@ __all__ = ["BlockForm", "block_form"]
 
 @dataclass(frozen=True, kw_only=True)
 class BlockForm:
-    """The square blocks in solving order, and what is not square.
+    """The square blocks in solving order, and the parts that are not square.
 
     ``blocks`` : (equations, unknowns) per block. ``overdetermined`` : equations of the part with
     more equations than unknowns. ``underdetermined`` : unknowns of the part with more unknowns.
@@ -65,6 +65,7 @@ def block_form(pattern: Sequence[Sequence[int]], count: Sequence[int], unknowns:
     for row, used in enumerate(columns):
         for column in used:
             other = row_of[column]
+            # an edge from a block to the block that determines what it uses
             if other >= 0 and owner[other] != owner[row]:
                 graph[owner[row]].add(owner[other])
     rows_of: list[list[int]] = [[] for _ in pattern]
@@ -91,6 +92,7 @@ def _matching(columns: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int
     """Hopcroft & Karp 1973: (row of each column, column of each row), -1 where unmatched."""
     row_of = [-1] * unknowns
     column_of = [-1] * len(columns)
+    # rows with few unknowns first: the greedy matching leaves less to augment
     for row in sorted(range(len(columns)), key=lambda r: len(columns[r])):
         for column in columns[row]:
             if row_of[column] < 0:

@@ -106,6 +106,7 @@ class JoinedBlocks:
         """F, (B, n), and dF/dv, (B, n, N)."""
         whole = self._whole(v)
         order = self.order
+        # columns of the whole in this system's order
         place = np.full(self.solver.variables, -1)
         place[order] = np.arange(len(order))
         residual, jacobian = [], np.zeros((len(v), self.unknowns, len(order)))
@@ -131,6 +132,7 @@ class JoinedBlocks:
 
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, n), by polarisation."""
+        # eq. (5)
         half: Array = 0.25 * (
             self.second_directional_derivative(v, a + b)
             - self.second_directional_derivative(v, a - b)

@@ -2,7 +2,7 @@
 
 Levenberg-Marquardt (Marquardt 1963, doi:10.1137/0111030) on scaled residuals and variables. Where
 much is missing, its model JᵀJ of the curvature is too poor for more than slow progress; the last
-stretch then goes by Newton's method with all of the curvature, JᵀJ + Σ r_k ∇²r_k.
+stretch then uses Newton's method with all of the curvature, JᵀJ + Σ r_k ∇²r_k.
 """
 
 from __future__ import annotations
@@ -44,13 +44,15 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
         if not np.isfinite(gradient).all() or np.abs(gradient).max(initial=0.0) < 1e-15:
             break
         normal = j.T @ j
-        change = -np.linalg.solve(normal + damping * np.eye(n), gradient)
+        change = -np.linalg.solve(normal + damping * np.eye(n), gradient)  # eq. (9)
         trial = v.copy()
         trial[0, :n] += change * weights
         f_trial, j_trial = system.residual_and_jacobian(trial)
         r_trial = f_trial[0] / scale
         if np.isfinite(r_trial).all() and r_trial @ r_trial < r @ r:
             v, f, jacobian, r = trial, f_trial, j_trial, r_trial
+            # a good step is followed by one nearer to Newton, a bad one by one nearer to the
+            # gradient
             damping = max(damping * 0.2, 1e-15)
             if np.abs(change).max() < 1e-14:
                 break
@@ -64,15 +66,16 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
 
 
 def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
-    """Newton's method for the minimum beside v (1, N); stops where it would lead uphill."""
+    """Newton's method for the minimum near v (1, N); stops where it would lead uphill."""
     n = system.unknowns
     scale, weights = system.equation_scale, system.variable_scale[:n]
     for _ in range(_NEWTON_STEPS):
         r = f[0] / scale
         j = system.jacobian(v)[0, :, :n] * weights / scale[:, None]
         gradient = j.T @ r
-        hessian = j.T @ j + _curvature(system, v, r / scale)
+        hessian = j.T @ j + _curvature(system, v, r / scale)  # eq. (10)
         try:
+            # only a positive definite Hessian leads downhill, and then to a minimum
             np.linalg.cholesky(hessian)
         except np.linalg.LinAlgError:
             break
@@ -105,6 +108,7 @@ def _curvature(system: System, v: Array, weighted: Array) -> Array:
     curvature[first, second] = bends
     own = np.diag(curvature).copy()
     mixed = first != second
+    # 2 D²F[a, b] from sums of both directions, instead of eq. (5): fewer lanes
     halves = 0.5 * (bends[mixed] - own[first[mixed]] - own[second[mixed]])
     curvature[first[mixed], second[mixed]] = halves
     curvature[second[mixed], first[mixed]] = halves

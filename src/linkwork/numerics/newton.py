@@ -100,6 +100,7 @@ class _Iteration:
         self.live = np.arange(count)
         self.last = np.full(count, np.inf)  # weighted size of each live row's latest correction
         self.weights = system.variable_scale[:n]
+        # steps are shortened by angles only: lengths have no natural limit
         turns = system.is_angle[:n]
         self.turns = turns if turns.any() and not math.isinf(options.largest_turn) else None
 
@@ -120,6 +121,7 @@ class _Iteration:
 
     def _step(self, k: int) -> None:
         system, opt, n = self.system, self.options, self.system.unknowns
+        # a copy of the whole batch is saved as long as no row has left
         whole = len(self.live) == len(self.v)
         here = self.v if whole else self.v[self.live]
         if (self.last <= opt.solution_tolerance).all():  # all done: only the evidence is missing
@@ -128,8 +130,9 @@ class _Iteration:
             f, jacobian = system.residual_and_jacobian(here)
         error = np.abs(f / system.equation_scale).max(axis=1, initial=0.0)
         self.residual[self.live] = error
+        # "not <" instead of ">=": an error of NaN is lost too
         lost = ~(error < np.inf) | (self.last > _FAR) & (k > 0)
-        done = (error <= opt.equation_tolerance) | (self.last <= opt.solution_tolerance)
+        done = (error <= opt.equation_tolerance) | (self.last <= opt.solution_tolerance)  # eq. (8)
         if jacobian is None or k == opt.max_steps or lost.any() or done.any():
             self._leave(lost, Status.DIVERGED)
             late = ~(lost | done) & (k == opt.max_steps)
@@ -144,12 +147,13 @@ class _Iteration:
         change = self._correct(k, here, f, jacobian[:, :, :n])
         if not len(self.live):
             return
-        self.v[self.live, :n] += change
+        self.v[self.live, :n] += change  # eq. (6)
         self.iterations[self.live] += 1
         size = np.abs(change / self.weights).max(axis=1, initial=0.0)
         if k == 0:
             self.first[self.live] = size
         else:
+            # below that rounding, not the equations, decides the ratio of two corrections
             ratio = np.where(size > 1e-9, size / self.last, 0.0)
             self.contraction[self.live] = np.maximum(self.contraction[self.live], ratio)
         self.last = size
@@ -180,8 +184,9 @@ class _Iteration:
 def corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     """-J⁻¹F per lane, and the lanes where J is singular to rounding."""
     try:
-        change = -np.linalg.solve(jacobian, f[:, :, None])[:, :, 0]
+        change = -np.linalg.solve(jacobian, f[:, :, None])[:, :, 0]  # eq. (6)
     except np.linalg.LinAlgError:
+        # one singular lane makes NumPy refuse the batch: the others are solved one by one
         change = np.full_like(f, np.nan)
         for lane in range(len(f)):
             try:
@@ -197,5 +202,6 @@ def _shorten(change: Array, turns: BoolArray, largest: float) -> Array:
     turn = np.abs(change[:, turns]).max(axis=1)
     if not (turn > largest).any():
         return change
+    # eq. (7)
     shortened: Array = change * np.minimum(1.0, largest / np.maximum(turn, 1e-300))[:, None]
     return shortened

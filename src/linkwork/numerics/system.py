@@ -1,4 +1,4 @@
-"""What a numerical method needs to know of a set of equations, and nothing else."""
+"""A set of equations as numerical methods see it, and nothing else."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SmallSystem(Protocol):
 
     @property
     def equation_scale(self) -> Array:
-        """(m,) what residuals are divided by before they are compared."""
+        """(m,) scales that divide residuals before these are compared."""
 
     @property
     def variable_scale(self) -> Array:
@@ -29,7 +29,7 @@ class SmallSystem(Protocol):
 
 
 class System(SmallSystem, Protocol):
-    """Equations with all that tracking and proving need."""
+    """Equations with everything that tracking and proving need."""
 
     @property
     def is_angle(self) -> BoolArray:
@@ -58,7 +58,7 @@ class System(SmallSystem, Protocol):
 
 
 class Curvature(Protocol):
-    """What a certificate needs to know of second derivatives and rounding.
+    """Second derivatives and rounding, as proofs need them.
 
     Terms are grouped by phase g and by pairs p of a variable length with a phase.
     """

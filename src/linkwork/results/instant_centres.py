@@ -107,7 +107,8 @@ def _centre(
     shift = complex(one.shift[0] - two.shift[0])
     spin = float(one.spin[0] - two.spin[0])
     if abs(spin) * size > _PARALLEL * fastest:
-        return InstantCentre(links=links, place=1j * shift / spin)
+        return InstantCentre(links=links, place=1j * shift / spin)  # eq. (56)
+    # links that turn alike have their centre at infinity, across the difference of velocities
     if abs(shift) > _PARALLEL * fastest:
         return InstantCentre(links=links, place=None, direction=1j * shift / abs(shift))
     return None
@@ -133,6 +134,7 @@ def centrodes(motion: Motion, link: str) -> Centrodes:
         raise InputError(f'the link "{link}" does not turn: its instant centre is at infinity')
     nowhere = complex(np.nan, np.nan)
     # without a division by zero where the link does not turn
+    # eq. (56) with the ground at rest
     fixed = np.where(turns, 1j * body.shift / np.where(turns, body.spin, 1.0), nowhere)
     moving: ComplexArray = (fixed - body.origin) * body.turn.conj()
     return Centrodes(link=link, fixed=fixed, moving=moving)

@@ -74,6 +74,7 @@ def link_motion(of: Position | Motion, link: str) -> LinkMotion:
         turn, spin = _angle(of, link)
     else:
         turn, spin = _direction(of, link, points, (origin, rate))
+    # v(z) = a + iωz at the link's first point, solved for a
     shift: ComplexArray = rate - 1j * spin * origin
     return LinkMotion(link=link, points=points, origin=origin, turn=turn, shift=shift, spin=spin)
 
@@ -110,6 +111,7 @@ def _direction(
     """The direction from a link's first point to another one, and its rate."""
     for place, rate in _places(of, points[1:]):
         along, rates = place - first[0], rate - first[1]
+        # two points that coincide in some row give no direction there
         if np.nanmin(np.abs(along), initial=np.inf) > 0.0:
             with np.errstate(invalid="ignore"):  # rows that were not found are NaN, and stay so
                 return along / np.abs(along), (rates / along).imag

@@ -113,7 +113,7 @@ class Rate(Enum):
         if not self.by_time:
             return derivative
         assert speed is not None
-        found: Array = derivative * np.asarray(speed) ** self.order
+        found: Array = derivative * np.asarray(speed) ** self.order  # eq. (13)
         return found
 
     def unit(self, kind: Kind, units: Units, by: str) -> str:

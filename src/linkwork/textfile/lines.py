@@ -55,6 +55,7 @@ class Lines:
     def _exact(self, path: Path) -> int | None:
         if path in self.at:
             return self.at[path]
+        # a single table may be written [input] or [[input]]
         for candidate in (path, (path[0], 0, *path[1:])):
             if _folded(candidate) in self._by_folded:
                 return self._by_folded[_folded(candidate)]
@@ -142,7 +143,9 @@ class _Scanner:
         path = (*path, last)
         if many:
             self.note(path, token)
+            # places in a list are counted from 0
             self.counts[path] = self.counts.get(path, -1) + 1
+            # keys below the header belong to the entry just begun
             path = (*path, self.counts[path])
         else:
             path = self.current(path)
@@ -215,4 +218,5 @@ def _unquoted(token: Token) -> str:
         return token.text
     if "\\" not in token.text:
         return token.text[1:-1]
+    # escapes are decoded by the TOML parser itself
     return str(tomllib.loads(f"k = {token.text}")["k"])

@@ -86,11 +86,13 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     structure = Structure(data, form)
     problems = list(structure.problems)
     lost = {(key,) for key in structure.lost}
+    # with a table lost on which others depend, the mechanism would report consequences only
     if structure.lost <= _LEAVES:
         kept = {key: entry for key, entry in structure.content.items() if key not in structure.lost}
         try:
             description = _description(kept, form)
         except MechanismError as error:
+            # a table with a problem of structure is not reported a second time
             problems += [p for p in error.problems if p.key[:1] not in lost]
         else:
             if not problems:

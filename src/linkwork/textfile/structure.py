@@ -70,6 +70,7 @@ class Structure:
     def _unknown_key(self, name: str, present: set[str], known: list[str], path: Path) -> None:
         table = _table_text(path)
         forms = FORMS if self.form in FORMS else ()
+        # a key of another kind of file is no spelling mistake
         others = [form for form in forms if name in _names_in_form(form, path)]
         free = [key for key in known if key not in present]
         if others and not path:
@@ -133,6 +134,7 @@ class Structure:
         """A finite number, or ``text`` that is judged later."""
         if text and isinstance(entry, str):
             return
+        # bool is a subclass of int in Python
         if isinstance(entry, bool) or not isinstance(entry, int | float):
             self._wrong(path, f"must be {wanted}, got {_shown(entry)}")
         elif not _finite(entry):
@@ -159,6 +161,7 @@ class Structure:
             return {}
         taken: dict[str, str] = {}
         for name in entry:
+            # Greek letters and subscripts have two spellings: both name the same thing
             folded = " ".join(canonical(name).split()) if kind.words != 1 else None
             if kind.words and folded is not None and folded in taken:
                 self._wrong((*path, name), f'is the same as "{taken[folded]}": leave one out')

@@ -33,6 +33,7 @@ class TextEdits:
 
         self._bom = _BOM if text.startswith(_BOM) else ""
         plain = text.removeprefix(_BOM)
+        # only a file that has CRLF throughout is written so again
         self._line_end = "\r\n" if plain.count("\r\n") == plain.count("\n") > 0 else "\n"
         self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
 
@@ -74,6 +75,7 @@ class TextEdits:
         place = self._found(path)
         if place is not None:
             holder, key = place
+            # replacing the value in place keeps the comment behind it
             holder[key] = _as_before(holder[key], entry)
             return
         holder = self._document
@@ -98,6 +100,7 @@ class TextEdits:
         if table in self._document:
             rows = self._document[table]
             if hasattr(rows, "append") and not isinstance(rows, Mapping):
+                # a blank line between the entries
                 if not rows[-1].as_string().endswith("\n\n"):
                     new.trivia.indent = "\n"
                 rows.append(new)
@@ -161,6 +164,7 @@ def _own_key(entry: Any, part: str | int) -> Any:
     if part in entry:
         return part
     words = [canonical(word) for word in part.split()]
+    # lengths may name their two points in either order
     orders = [words, words[::-1]] if len(words) == 2 else [words]
     for key in entry:
         if [canonical(word) for word in str(key).split()] in orders:

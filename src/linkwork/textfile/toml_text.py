@@ -38,6 +38,7 @@ def bytes_of(path: Path, name: str) -> bytes:
     """
     try:
         with path.open("rb") as file:
+            # one byte more than allowed shows that the file is too large without reading all of it
             data = file.read(LARGEST + 1)
             if len(data) > LARGEST:
                 _refuse(name, _too_large(max(path.stat().st_size, len(data))))
@@ -75,6 +76,7 @@ def text_of(data: bytes, name: str) -> str:
     """
     if len(data) > LARGEST:
         _refuse(name, _too_large(len(data)))
+    # byte order marks of UTF-16, as Windows editors write them
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         _refuse(name, "is UTF-16 text: save it as UTF-8", 1)
     try:
@@ -146,6 +148,7 @@ def _explained(message: str, text: str) -> tuple[str, int]:
     if twice := _TWICE.fullmatch(what):
         what = f"the table [{twice[1].replace(_SEPARATOR, '.')}] occurs twice"
     if place is None or place[1] is None:
+        # the parser gives no place for the end of the text: the last line with content is meant
         line = max((k for k, row in enumerate(rows, 1) if row.strip()), default=1)
         return f"is not TOML: {what} (at the end){_hint(what, rows[line - 1], None)}", line
     line, column = int(place[1]), int(place[2])
@@ -165,6 +168,7 @@ def _hint(what: str, row: str, column: int | None) -> str:
         return ""
     if what == "invalid value":
         return ": write text, names and formulas in quotes"
+    # a decimal comma, as in 1,5
     if row[column - 1] == "," and re.search(r"=\s*[-+]?\d+,\d+\s*(#.*)?$", row):
         return ": write decimals with a point"
     if row[column - 1] == "°":

@@ -70,11 +70,13 @@ def _replace(target: Path, data: bytes) -> None:
         with beside.open("xb") as file:
             file.write(data)
             file.flush()
+            # the data must be on the disk before the name points to it
             os.fsync(file.fileno())
         if target.exists():
+            # a new file has the default permissions: those of the old one are kept
             beside.chmod(target.stat().st_mode & 0o777)
         os.replace(beside, target)
-    except BaseException:
+    except BaseException:  # also on Ctrl-C no temporary file is left
         beside.unlink(missing_ok=True)
         raise
 

@@ -117,6 +117,7 @@ def choose_values(
     found = {name: _read(name, entry, sampling, read, problems) for name, entry in varied.items()}
     if not varied and sampling != "table":
         problems.add(("dimensions",), f"varies nothing: {_WANTED[sampling]}")
+    # a plan is made only of sound dimensions: its own errors would repeat those noted
     if len(problems) > before:
         return None
     try:
@@ -135,6 +136,8 @@ def values_between(plan: Plan, start: int, stop: int) -> dict[str, Array]:
     """The designs from ``start`` up to ``stop``, without those before, (stop - start,) each."""
     pieces = [
         {
+            # random values are drawn in chunks of fixed size, so that a design does not depend on
+            # the chunks of the study
             name: values[max(start - k * CHUNK, 0) : stop - k * CHUNK]
             for name, values in _chunk_of(plan, k).items()
         }
@@ -197,6 +200,7 @@ def _levels(entry: Any) -> Array | None:
         return np.array(entry, dtype=float)
     if set(entry) != _LEVELS:
         return None
+    # NumPy would silently keep the lower end only
     if entry["levels"] == 1 and entry["from"] != entry["to"]:
         raise InputError("levels = 1 cannot include both ends of the range: use two or more levels")
     low, high = _ends(entry)

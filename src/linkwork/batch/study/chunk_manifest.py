@@ -75,11 +75,13 @@ def write_whole(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + PARTIAL)
     part.write_bytes(data)
+    # renaming is atomic: a reader never sees half a file
     os.replace(part, path)
 
 
 def write_entry(store: Path, entry: Entry) -> None:
     """Note that a chunk is finished."""
+    # sorted, so that two runs of a study write equal stores
     text = json.dumps(asdict(entry), ensure_ascii=False, sort_keys=True)
     write_whole(store / LEDGER / f"{entry.chunk:08}{_SUFFIX}", text.encode())
 
@@ -101,6 +103,7 @@ def _sum(path: Path) -> list[int] | None:
     size = total = 0
     try:
         with path.open("rb") as file:
+            # piece by piece: a file may be larger than memory
             while piece := file.read(1 << 20):
                 size += len(piece)
                 total = zlib.crc32(piece, total)

@@ -45,10 +45,12 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
         ) from None
     with client:
         _wait_for_workers(client, scheduler)
+        # more parts than threads are under way, so that no worker waits for the next one
         threads = sum(client.nthreads().values())
         run = uuid4().hex
 
         def submit(values: Values) -> Any:
+            # a key of its own each time: Dask would return a remembered result for equal values
             return client.submit(compute_part, job, values, key=f"linkwork-{run}-{uuid4().hex}")
 
         try:

@@ -100,6 +100,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     InputError
         If this is another version of Linkwork than the one that asks.
     """
+    # results of two versions may differ by rounding: a store must not mix them
     if job.version != linkwork_version():
         raise InputError(
             f"the study was started with Linkwork {job.version}, a worker has "
@@ -107,6 +108,7 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
         )
     family = family_of(_model(job.description), values)
     built = family.designs.problem == 0
+    # one thread: the processes of a study share the cores already
     motion = family.sweep(certify=job.certify, threads=1, device=job.device)
     measured = Measured(motion)
     passes = {name: built & condition.holds(measured) for name, condition in job.filters.items()}
@@ -120,12 +122,14 @@ def compute_part(job: Job, values: Mapping[str, Array | float]) -> Part:
     arrays |= {passes_name(name): values for name, values in passes.items()}
     arrays |= {name: measured.value(str(call)) for name, call in job.reductions.items()}
     for name in job.keep:
+        # designs that do not pass are left out, so that the store compresses
         arrays[name] = np.where(passed[:, None], measured[name], np.nan)
     if job.keep:
         arrays["status"] = motion.status
     return Part(arrays=arrays, rows=_rows(motion.status[built]), problems=_problems(family))
 
 
+# a worker gets many parts of one study, and a model takes long to build
 @lru_cache(maxsize=2)
 def _model(description: Description) -> Model:
     return as_described(description)
@@ -143,6 +147,7 @@ def _problems(family: Family) -> dict[str, int]:
     designs = family.designs
     numbers = designs.problem[designs.problem > 0]
     counts = Counter(designs.problems[int(number)] for number in numbers)
+    # ties by name, so that the order does not depend on the chunks
     ordered = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
     kept = dict(ordered[:_MOST_PROBLEMS])
     rest = sum(count for _, count in ordered[_MOST_PROBLEMS:])

@@ -136,6 +136,7 @@ def read_condition(text: str) -> Condition:
     if "(" in left:
         call = Call.read(left)
     else:
+        # a bound holds at every row if it holds at the worst one
         call = Call("min" if parts["sign"].startswith(">") else "max", left)
     return Comparison(call, parts["sign"], _number(parts["bound"].strip(), text))
 

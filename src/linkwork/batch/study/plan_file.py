@@ -90,6 +90,7 @@ def read_plan_text(
         raise located_error(structure.problems, lines, name)
     content = dict(structure.content)
     if columns:
+        # columns asked for on the command line come after those of the plan, each once
         content["keep"] = [*dict.fromkeys([*content.get("keep", ()), *columns])]
     reader = _Reader(content, text, Path(folder))
     study = reader.study(Path(name).stem)
@@ -212,6 +213,7 @@ class _Reader:
         except InputError as error:
             self.problems.add(("dimensions",), str(error))
             return None
+        # no designs are swept, but all names and units of the results are known
         return family.take(slice(0)).sweep(certify=False, threads=1)
 
     def _key_of_number(self, name: str) -> Key:
@@ -309,10 +311,12 @@ class _Reader:
         first, last = model.rows_in_file_units[[0, -1]].tolist()
         return {
             "linkwork": job.version,
+            # a checkout with other line ends is the same mechanism
             "mechanism": mechanism.replace("\r\n", "\n"),
             "sampling": content["sampling"],
             "count": plan.count,
             "seed": content.get("seed"),
+            # a list: the order of dimensions decides how random numbers are drawn
             "dimensions": [[name, entry] for name, entry in content.get("dimensions", {}).items()],
             "table": _digest(plan) if content["sampling"] == "table" else None,
             "input": {"first": first, "last": last, "rows": len(model.rows_in_file_units)},

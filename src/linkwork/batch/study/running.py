@@ -108,6 +108,7 @@ def run_study(
         left = [k for k in range(study.chunks) if k not in target.done]
         tasks = ((k, study.values(k)) for k in left)
         if left:
+            # closing ends the workers also when the store fails
             with closing(_crew(study, tasks, len(left), workers, scheduler)) as parts:
                 for k, part in parts:
                     target.write(k, part)
@@ -125,6 +126,7 @@ def _crew(
     """The parts of all tasks by whoever is to compute them."""
     if workers is None:
         workers = 1 if study.job.device == "gpu" else cores()
+    # more processes than chunks would only load Linkwork
     count = min(workers, chunks)
     if scheduler is not None:
         yield from cluster_crew(study.job, tasks, scheduler)
@@ -143,6 +145,7 @@ def _teller(
     def designs() -> int:
         return sum(len(study.designs_of(k)) for k in done)
 
+    # designs of an earlier run do not count in the rate
     before = designs()
 
     def tell() -> None:

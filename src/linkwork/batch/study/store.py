@@ -62,7 +62,9 @@ class Store:
         for path, data in files.items():
             write_whole(self.path / path, data)
         write_entry(
-            self.path, Entry.of_files(k, designs, files, rows=part.rows, problems=part.problems)
+            # after the files: an entry without its files would be trusted by the next run
+            self.path,
+            Entry.of_files(k, designs, files, rows=part.rows, problems=part.problems),
         )
         self.done.add(k)
 
@@ -135,6 +137,7 @@ def _make(path: Path, files: Mapping[str, bytes]) -> None:
     """The store without any chunk, in one step."""
     if not path.parent.is_dir():
         raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
+    # on the same file system, so that renaming it is one step
     part = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     shutil.rmtree(part, ignore_errors=True)
     for name, data in files.items():
@@ -148,6 +151,7 @@ def _take_away(path: Path) -> None:
     """The store is there or not: a part of it that is left would be gone on with."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
     with _lock_store(path):
+        # renamed before it is deleted: an interruption leaves no half store under its name
         os.rename(path, aside)
     shutil.rmtree(aside)
 
@@ -155,6 +159,7 @@ def _take_away(path: Path) -> None:
 def _check_same(study: Study, path: Path) -> None:
     """Refuse a store of another study."""
     there = attributes_of(path)[_IDENTITY]
+    # as JSON reads it again: tuples are lists there
     here = json.loads(json.dumps(study.identity))
     if told := "\n".join(_differences(there, here)):
         raise InputError(
@@ -173,6 +178,7 @@ def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[
             continue
         if key == "mechanism":
             old, new = _first_change(old, new)
+        # other names: the values are of no interest then
         elif key == "dimensions" and [n for n, _ in old] != [n for n, _ in new]:
             old, new = ([name for name, _ in each] for each in (old, new))
         elif key in ("dimensions", "input", "reductions", "filters"):

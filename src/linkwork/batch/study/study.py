@@ -90,6 +90,7 @@ class Study:
     @property
     def chunks(self) -> int:
         """How many chunks there are; the last one may be smaller."""
+        # rounded up
         return -(-self.plan.count // self.chunk_size)
 
     def designs_of(self, k: int) -> range:
@@ -195,6 +196,8 @@ def usual_chunk(count: int, rows: int, columns: int) -> int:
     rows, columns : int
         Numbers that a design has in memory: so many quantities at so many rows.
     """
+    # 8 bytes for each float64
     fitting = max(_CHUNK_BYTES // (8 * rows * columns), 1)
     shared = max(-(-count // _CHUNKS_WANTED), _SMALLEST_CHUNK)
+    # a power of two: chunks fill the lanes of the kernels without a rest
     return 1 << (min(fitting, shared, _LARGEST_CHUNK).bit_length() - 1)

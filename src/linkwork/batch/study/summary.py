@@ -150,8 +150,10 @@ def _values(name: str, arrays: Any, entries: list[Entry]) -> Iterator[Array]:
 
 def _output(name: str, arrays: Any, entries: list[Entry]) -> OutputSummary:
     count, total, least, most = 0, 0.0, np.inf, -np.inf
+    # two passes, since the ends of the bins are known only after the first
     for values in _values(name, arrays, entries):
         count += values.size
+        # one chunk after the other: the store may be larger than memory
         total += float(values.sum())
         least = min(least, float(values.min(initial=np.inf)))
         most = max(most, float(values.max(initial=-np.inf)))

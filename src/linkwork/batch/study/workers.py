@@ -116,6 +116,7 @@ class _Processes:
             try:
                 answer = self._asked(process, values)
             except (EOFError, OSError, pickle.UnpicklingError):
+                # an answer cut short leaves the pipe out of step: a new process takes over
                 process.kill()
                 self._idle.put(self._in_place_of(process))
                 continue

@@ -109,6 +109,7 @@ def _law(gear: NoncircularGear, linkage: Bodies) -> tuple[Fraction, Piecewise]:
     over = float(jet.v[-1] - jet.v[0])
     # points of a curve close only nearly: the rest is spread over the turn
     ratio = _ratio(over, "pitch_curve", _NEARLY)
+    # the curve was closed nearly; the law has to be exact
     jet = jet * (float(ratio) * math.tau / over)
     return ratio, _through(phi, jet, float(ratio))
 
@@ -132,6 +133,7 @@ def _pieces_of_formula(law: str, phi: Array, linkage: Bodies) -> tuple[Fraction,
         coarse = (off > _EXACT + _ROUNDINGS * EPSILON * rounding).any(axis=1)
         if not coarse.any():
             return ratio, rest
+        # the middle one of the places inside a piece
         halves = inside[coarse, 1]
         if len(phi) + len(halves) > _MOST_PIECES:
             break
@@ -202,7 +204,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
         x, y = outline.x.jet(place), outline.y.jet(place)
         z, z1 = x[0] + 1j * y[0], x[1] + 1j * y[1]
         r, r1 = np.abs(z), np.abs(z) * (z1 / z).real / (z1 / z).imag
-        return -r / (distance - r), r1 * distance / (distance - r) ** 2
+        return -r / (distance - r), r1 * distance / (distance - r) ** 2  # eq. (68)
 
     nodes, weights = np.polynomial.legendre.leggauss(6)
     half = np.diff(phi) / 2.0
@@ -280,6 +282,7 @@ def _draw(
         phi = np.linspace(0.0, math.tau * float(span), _DRAWN)
         value, slope, _ = rest.jet(phi)
         steep = float(ratio) + slope
+        # eq. (68): r1 and r2 in centre distances
         radius = (-steep if k == 0 else 1.0) / (1.0 - steep)
         angle = phi + start
         if k == 1:

@@ -46,6 +46,7 @@ def column_name(column: int) -> str:
     shown = ""
     column += 1
     while column:
+        # digits from 1 to 26: there is no zero in A, B, … AA
         column, rest = divmod(column - 1, 26)
         shown = chr(ord("A") + rest) + shown
     return shown

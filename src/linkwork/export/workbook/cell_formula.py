@@ -60,6 +60,7 @@ class _Writer:
             case Name():
                 return self._name(node)
             case Negative():
+                # in a spreadsheet -a^2 is (-a)^2
                 least = ATOM if _begins_with_power(node.operand) else STRENGTH["*"]
                 return "-" + self._inside(node.operand, least)
             case Call():
@@ -70,6 +71,7 @@ class _Writer:
             case Binary():
                 least = STRENGTH[node.operator]
                 left = self._inside(node.left, least)
+                # a - (b - c) keeps its parentheses, (a - b) - c needs none
                 return f"{left}{node.operator}{self._inside(node.right, least + 1)}"
 
     def _name(self, node: Name) -> str:
@@ -80,6 +82,7 @@ class _Writer:
     def _call(self, function: str, given: list[str]) -> str:
         listed = ",".join(given)
         if function == "hypot":
+            # spreadsheets have no hypot
             return f"SQRT(({given[0]})^2+({given[1]})^2)"
         if function == "atan2":  # spreadsheets take x first
             listed = f"{given[1]},{given[0]}"

@@ -125,6 +125,7 @@ class _Page:
             column = self.columns.of[variable.symbol]
             book.head(self.sheet, column, book.shown(variable), book.unit(variable.kind))
             values = book.motion.inputs[variable.name][book.iterations.rows]
+            # an even table is first + step·k in cells, so that both can be changed
             even = input_table(values) is not None
             for k, value in enumerate(values):
                 at = FIRST + k, column

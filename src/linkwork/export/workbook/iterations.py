@@ -64,10 +64,12 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
     last = -1
     for k in range(len(rows)):
         before[k] = last
+        # rows without a position are skipped: nothing can start from them
         last = k if found[k] else last
     start, above = _rounded(model, right), np.full(len(rows), -1, dtype=np.intp)
     values = np.repeat(right[None], _MOST + 1, axis=0)
     live = np.zeros(len(rows), dtype=bool)
+    # each attempt takes the rows that the one before it could not recalculate
     for attempt in ("above", "estimate", "value"):
         trying = np.flatnonzero(found & ~live & ((before >= 0) | (attempt != "above")))
         if attempt == "above":
@@ -81,6 +83,7 @@ def iterated(model: Model, motion: Motion, closure: ClosureFormulas) -> Iteratio
         live[trying[good]] = True
         if attempt == "above":
             above[trying[good]] = before[trying[good]]
+        # the cells of such a row hold the solution itself
         elif attempt == "value":
             values[:, trying[~good]] = right[trying[~good]]
     needed = _needed(model, values[:, live])
@@ -128,6 +131,7 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
             here = (known * scale)[:, block.variables]
             with np.errstate(all="ignore"):
                 f, jacobian = block.system.residual_and_jacobian(here)
+                # full steps: cells have no step control
                 change, _ = corrections(jacobian[:, :, : len(own)], f)
             known[:, own] += change / scale[own]
             values[k + 1][:, own] = known[:, own]

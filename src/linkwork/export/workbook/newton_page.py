@@ -112,6 +112,7 @@ class _Block:
             for k in self.live:
                 value = float(book.iterations.values[0][k, i])
                 above = int(book.iterations.above[k])
+                # the first iterate is the solution of the row above
                 if above >= 0:
                     self._cell(k, column, f"={CYCLE}!{source}{FIRST + above + 1}", "start", value)
                 elif k == self.live[0]:
@@ -158,6 +159,7 @@ class _Block:
         book, n = self.book, len(self.block.unknowns)
         first = place + n + n * n
         done = book.iterations.values
+        # cached values of δ in radians; the iterates are in file units
         changes = [
             (done[k + 1][:, i] - done[k][:, i]) * book.scale(v)
             for i, v in zip(self.block.unknowns, self._variables, strict=True)
@@ -199,6 +201,7 @@ def _correction(place: int, n: int, c: int, row: int) -> str:
 
     if n == 1:
         return f"=-{column_name(place)}{row}/{column_name(place + 1)}{row}"
+    # the rows of J lie side by side in one row of cells: outer products stack them to a matrix
     lines = [f"{{{_unit(r, n, ';')}}}*{span(place + n + n * r, n)}" for r in range(n)]
     entry = f"MMULT({{{_unit(c, n, ',')}}},MINVERSE({'+'.join(lines)}))"
     return f"=-SUMPRODUCT({entry},{span(place, n)})"

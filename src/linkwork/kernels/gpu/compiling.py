@@ -1,4 +1,4 @@
-"""How functions for a graphics card are compiled: the one place that knows numba.cuda."""
+"""Compiling functions for a graphics card: the only module that imports numba.cuda."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def graphics_card() -> Any:
     Raises
     ------
     MissingPackageError
-        With what to install.
+        With the package to install.
     InputError
         If there is no such device.
     """
@@ -46,7 +46,7 @@ def graphics_card() -> Any:
 
 
 def name_of(card: Any) -> str:
-    """What the graphics card in use is called."""
+    """The name of the graphics card in use."""
     name = card.get_current_device().name
     return name.decode() if isinstance(name, bytes) else str(name)
 

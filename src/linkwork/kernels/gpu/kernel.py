@@ -63,8 +63,8 @@ class DeviceKernel(SweepKernel):
     ) -> BoolArray:
         """March D designs through R rows, as a :class:`SweepKernel` does.
 
-        The march of one chunk runs while results of the one before are brought back. What is not
-        reached is left in ``found`` as it comes.
+        The march of one chunk runs while results of the chunk before are copied back. Rows that are
+        not reached keep arbitrary numbers in ``found``.
         """
         count, given = len(start), self.guess_nodes(guess, start)
         begun = np.zeros(count, dtype=bool)

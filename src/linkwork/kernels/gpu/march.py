@@ -6,13 +6,12 @@ a small array that is addressed by constants only, so that the compiler can keep
 =======================  =====================================================================
 ``r S … r S + S - 1``    the position in role r, unknowns first and t last (:class:`Shape`)
 from ``5 S``             weights a1, b1, …, b4; good; radius; live of each block
-then                     coefficients, options, and what else is noted of the trial
+then                     coefficients, options, and further results of the trial
 =======================  =====================================================================
 
 There is one loop, and one turn of it is one trial: a thread that has to repeat a step keeps no
-other one waiting, it only needs more turns. What is written out by
-:mod:`linkwork.kernels.gpu.printing` imports this module; nothing else does, because it
-loads numba.cuda.
+other thread waiting, it only needs more turns. Only code written by
+:mod:`linkwork.kernels.gpu.printing` imports this module, because it loads numba.cuda.
 """
 
 from __future__ import annotations
@@ -135,7 +134,7 @@ def _weigh(shape: Shape, w: Array, t: float, times: Array, known: int) -> None:
     for i in range(NODES):
         value, slope = 0.0, 0.0
         if i < used:
-            value, slope = _hermite_weights(t, times, i, used)
+            value, slope = _hermite_weights(t, times, i, used)  # eq. (18)
         w[_weights(shape) + 2 * i] = value
         w[_weights(shape) + 2 * i + 1] = slope
 
@@ -158,7 +157,7 @@ def begin(
     """From a guess to a position, with small steps and its own proof; see
     :func:`linkwork.kernels.march.step_trial.correct_slowly`.
 
-    ``node`` (S, M), ``begun`` (M,) bool: what is found, and whether it is a position.
+    ``node`` (S, M), ``begun`` (M,) bool: the node found, and whether it is a position.
     """
     _load(shape, w, start)
     for j in range(2 * NODES):
@@ -196,7 +195,7 @@ def _first_row(rows: Array, t: float, way: int) -> int:
 
 @on_device
 def _note(shape: Shape, w: Array, row: int, found: MarchResult) -> None:
-    """A row is reached."""
+    """Store the position of a row that is reached."""
     found.reached[row, found.first] = True
     for j in range(shape.unknowns):
         found.unknowns[j, row, found.first] = w[j]
@@ -206,7 +205,7 @@ def _note(shape: Shape, w: Array, row: int, found: MarchResult) -> None:
 
 @on_device
 def _stop(shape: Shape, w: Array, way: int, found: MarchResult) -> None:
-    """A mechanism goes no further: its last node and the one before."""
+    """Note that a mechanism stops: its last node and the node before."""
     size = shape.size
     found.end[way, found.first] = w[2 * size - 1]
     for j in range(2 * size):
@@ -258,7 +257,7 @@ def follow(
             if t == goal:
                 _note(shape, w, row, found)
                 row += 2 * way - 1
-            h = _grow(h, moved, steps[1])
+            h = _grow(h, moved, steps[1])  # eq. (22): doubled after a whole step
             known = min(known + 1, NODES)
             if moved == 0.0:  # the trial is no new node
                 known = 1
@@ -266,7 +265,7 @@ def follow(
                 for j in range(NODES * size - 1, -1, -1):
                     w[size + j] = w[j]
         else:
-            h = HALF * moved
+            h = HALF * moved  # eq. (22): halved after a failure
             if h < steps[2]:
                 _stop(shape, w, way, found)
                 return

@@ -91,7 +91,7 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
     programs : MarchPrograms
     state : ThreadState
     certified : bool
-        Whether the programs prove what they find.
+        Whether the programs prove their positions.
     """
     unknowns, size = programs.registers.named["d0.0"], programs.nodes.shape[1]
     shape = (

@@ -1,6 +1,6 @@
 """The loop-closure equations of one block as recorded arithmetic: F, J, Newton's step, rates.
 
-Everything stands by name in registers: ``v3`` the fourth variable, ``c5.re`` a coefficient,
+Registers are named: ``v3`` is the fourth variable, ``c5.re`` a coefficient,
 ``k0`` the constant of a linear row, ``r3`` a variable's derivative by the path.
 """
 
@@ -35,7 +35,7 @@ Phase = tuple[tuple[int, float], ...]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BlockPart:
-    """A block of a loop table: which equations (as in ``table.pattern``) it solves for what.
+    """A block of a loop table: its equations (numbered as in ``table.pattern``) and its unknowns.
 
     ``equations``: numbers of loops and linear rows; ``unknowns``: variables of the whole table.
     """
@@ -58,7 +58,7 @@ class Closure:
     zeros : set of str
         Coefficients that are zero in every design: nothing is computed with them.
     shared : bool
-        Whether the phasors of phases that only inputs turn stand in registers of their own.
+        Whether phasors of phases that only inputs turn have registers of their own.
     """
 
     def __init__(
@@ -120,6 +120,7 @@ class Closure:
         """c s e^{iψ}."""
         real, imag = self.bare(term)
         length = int(self.table.loops.length[term])
+        # eq. (1)
         return (real, imag) if length < 0 else (real * self.v[length], imag * self.v[length])
 
     def residual(self) -> list[Value]:
@@ -137,6 +138,7 @@ class Closure:
         return [(int(linear.variable[k]), float(linear.weight[k])) for k in mine]
 
     def _line(self, row: int) -> Value:
+        # eq. (4) with f = 0
         parts: list[Value | float] = [self.v[k] * weight for k, weight in self.entries(row)]
         name = f"k{row}"
         return self.rec.total([*parts, 0.0 if name in self.zeros else self.rec.input(name)])
@@ -155,10 +157,11 @@ class Closure:
                 weight = sum(w for k, w in self.phases.get(term, ()) if k == variable)
                 if weight:
                     a, b = self.whole(term)
+                    # eq. (2): turning, i (a + ib) = -b + ia
                     x, y = rec.subtract(x, weight * b), rec.add(y, weight * a)
                 if int(self.table.loops.length[term]) == variable:
                     a, b = self.bare(term)
-                    x, y = rec.add(x, a), rec.add(y, b)
+                    x, y = rec.add(x, a), rec.add(y, b)  # eq. (2): sliding
             real.append(x)
             imag.append(y)
         linear = self.table.linear
@@ -169,12 +172,12 @@ class Closure:
         return [*real, *imag, *lines]
 
     def bending(self, first: Moves, second: Moves) -> list[Value | float]:
-        """d²F for two directions: how dF of the one changes along the other.
+        """D²F[a, b] for two directions a and b.
 
         Parameters
         ----------
         first, second : Mapping[int, Value]
-            By variable; what is missing does not move.
+            By variable; variables that are missing do not move.
         """
         rec, real, imag = self.rec, [], []
         for k in self.loops:
@@ -192,13 +195,14 @@ class Closure:
         )
         a, b = self.whole(term)
         product = rec.multiply(turn, other)
-        x, y = -rec.multiply(product, a), -rec.multiply(product, b)
+        x, y = -rec.multiply(product, a), -rec.multiply(product, b)  # eq. (3): -s α β
         if length >= 0:
             a, b = self.bare(term)
             mixed = rec.add(
                 rec.multiply(first.get(length, 0.0), other),
                 rec.multiply(second.get(length, 0.0), turn),
             )
+            # eq. (3): i (a_s β + b_s α)
             x, y = rec.subtract(x, rec.multiply(mixed, b)), rec.add(y, rec.multiply(mixed, a))
         return x, y
 
@@ -228,6 +232,7 @@ def _merge_phases(phase: Sequence[tuple[int, float]]) -> Phase:
     for variable in sorted({k for k, _ in phase}):
         mine = [w for k, w in phase if k == variable]
         total = sum(mine)
+        # a rounded sum of weights would turn the phase differently from NumPy's
         exact = Fraction(total) == sum(map(Fraction, mine))
         merged += [(variable, total)] if exact else [(variable, w) for w in sorted(mine)]
     return tuple((k, w) for k, w in merged if w)
@@ -303,6 +308,7 @@ def _by_elimination(rec: Recorder, matrix: Sequence[Row], sides: Sequence[Row]) 
     order: list[int] = []  # of the unknowns, as they are eliminated
     left = list(range(n))
     for k in range(n - 2):
+        # few entries first: zeros of the pattern stay zeros, and cost no instruction
         column = min(left, key=lambda c: sum(not rec.is_zero(row[c]) for row in rows[k:]))
         if left.index(column) % 2:
             determinant = -determinant
@@ -352,6 +358,7 @@ def _larger_first(
         return determinant
     larger = rec.at_most(rec.absolute(rows[i][column]), rec.absolute(rows[k][column]))
     above, below = rows[k], rows[i]
+    # lanes differ in their pivots, but run the same instructions: rows are swapped under a mask
     rows[k] = [rec.where(larger, x, y) for x, y in zip(above, below, strict=True)]
     rows[i] = [rec.where(larger, y, x) for x, y in zip(above, below, strict=True)]
     return rec.where(larger, determinant, -determinant)

@@ -68,7 +68,7 @@ def dead_points(
     n, count = nodes.w.shape
     scale = np.stack([coefficients.get(f"scale{k}", np.ones(count)) for k in range(n)])
     with np.errstate(invalid="ignore"):
-        leads = np.argmax(np.abs(nodes.s) / scale, axis=0)
+        leads = np.argmax(np.abs(nodes.s) / scale, axis=0)  # eq. (35)
     found = Folds(t=np.full(count, np.nan), found=np.zeros(count, dtype=bool))
     for lead in np.unique(leads):
         mine = np.flatnonzero(leads == lead)
@@ -137,6 +137,7 @@ def _turns(
         runner = _Runner(programs, given | {"side": np.full(len(left), side)})
         good, beside, off = runner.beside(["good", f"v{n}", f"e{n}"])
         with np.errstate(invalid="ignore"):
+            # eq. (40) by values of t instead of its rates
             turns &= (good > 0.5) & (sign * (t - beside) > error + off)
     return turns
 
@@ -159,8 +160,9 @@ def _exact(table: LoopTable, coefficients: Mapping[str, float], v: Array, lead: 
 
 
 def _at_node(nodes: LastNodes, lead: int, mine: np.ndarray) -> dict[str, Array]:
-    """Registers at the nodes of some designs: places, rates by λ, what is known of the errors."""
+    """Registers at the nodes of some designs: places, rates by λ, bounds of the errors."""
     n = len(nodes.w)
+    # dt/dλ is the reciprocal of the leader's rate by t
     slope, slope0 = 1.0 / nodes.s[lead, mine], 1.0 / nodes.p[lead, mine]
     data = {f"v{k}": nodes.w[k, mine] for k in range(n)}
     data |= {f"w{k}": nodes.w[k, mine] for k in range(n)}
@@ -182,7 +184,7 @@ def _both_ends(
 
 
 class _Runner:
-    """Programs with what they read, ``given`` (D,) by register, and a workspace."""
+    """Programs with their data, ``given`` (D,) by register, and a workspace."""
 
     def __init__(self, programs: FoldPrograms, given: Mapping[str, Array]) -> None:
         self.programs, self.registers = programs, programs.registers
@@ -213,7 +215,7 @@ class _Runner:
         return out
 
     def beside(self, wanted: Sequence[str]) -> Array:
-        """Registers (W, D) at a place beside another one, and whether the arc to it is proved."""
+        """Registers (W, D) at a place near another one, and whether the arc to it is proved."""
         programs = self.programs
         out = np.empty((len(wanted), self.given.shape[1]))
         _beside(
@@ -324,7 +326,7 @@ def _beside(
     given: Array,
     out: Array,
 ) -> None:
-    """A place beside the one in ``w``, and the proof of the arc to it."""
+    """A place near that in ``w``, and the proof of the arc to it."""
     count = given.shape[1]
     for base in range(0, count, LANES):
         _load(w, places, given, base)
@@ -349,7 +351,7 @@ def _prove_in_parts(
     parts: int,
     proved: BoolArray,
 ) -> None:
-    """Places between node and dead point, each proved to lie on the curve of the one before."""
+    """Places between node and dead point, each proved to lie on the curve of the previous place."""
     count = given.shape[1]
     for base in range(0, count, LANES):
         _load(w, places, given, base)

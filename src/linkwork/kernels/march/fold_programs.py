@@ -31,7 +31,7 @@ from linkwork.kernels.program.recorder import Recorder, Value
 
 __all__ = ["FoldPrograms", "fold_programs"]
 
-_CLEARLY = 32.0  # half of it: how many errors of t the two places beside a dead point are off
+_CLEARLY = 32.0  # twice as many errors of t as lie between a dead point and the places aside
 _LEAST = 1e-9  # weighted: the nearest of them
 _FARTHEST = 0.3  # weighted: how far λ may go in one step
 
@@ -41,9 +41,9 @@ class FoldPrograms:
     """``iterate``: Newton-Raphson at a fixed λ with the rates by λ; ``move``: to the next λ.
 
     ``prove``: the arc from ``w`` to the place reached. For proofs in parts ``between`` predicts a
-    place between node and dead point; after ``advance`` the place reached is what the next part
-    begins from. ``aside``: a place so far from ``w`` that t, which turns back there, differs by
-    more than what is known of it.
+    place between node and dead point; after ``advance`` the next part begins at the place reached.
+    ``aside``: a place so far from ``w`` that t, which turns back there, differs by more than its
+    error.
     """
 
     registers: Registers
@@ -95,9 +95,10 @@ class _FoldWriter:
         here, before = rec.input(f"v{self.lead}"), rec.input("lead0")
         slope, slope0 = rec.input(f"r{self.n}"), rec.input("slope0")
         seeking = rec.input("seeking")
-        bend = (slope - slope0) / (here - before)
+        bend = (slope - slope0) / (here - before)  # eq. (37)
         far = _FARTHEST * self._scale(rec, self.lead)
-        wanted = -(slope / bend)
+        wanted = -(slope / bend)  # eq. (37)
+        # far from the dead point the secant may lead out of the arc
         change = rec.largest([rec.smallest([wanted, far]), -far])
         moved = rec.divide(rec.absolute(change), self._scale(rec, self.lead))
         rec.write("bend", rec.where(seeking, bend, rec.input("bend")))
@@ -113,7 +114,7 @@ class _FoldWriter:
         return rec
 
     def prove(self) -> Recorder:
-        """That the place reached lies on the curve of the one before, the node at first."""
+        """Prove that the place reached lies on the curve of the previous one (first: the node)."""
         rec = Recorder()
         closure = self._closure(rec)
         used = (*self.part.unknowns, *closure.known())
@@ -133,7 +134,7 @@ class _FoldWriter:
             rec.write(f"e{k}", error)
             off = rec.absolute(closure.v[k] - rec.input(f"w{k}"))
             known = rec.largest([error, rec.input(f"x{k}")])
-            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
+            masks.append(rec.at_most(off + known, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))  # eq. (33)
         rec.write("good", rec.all_of(masks))
         return rec
 
@@ -149,7 +150,7 @@ class _FoldWriter:
         for k in self.part.unknowns:
             begin, end = rec.input(f"p{k}"), rec.input(f"z{k}")
             bent = rise * rec.input(f"pr{k}") + fall * rec.input(f"zr{k}")
-            rec.write(f"v{k}", begin + ahead * (end - begin) + bent)
+            rec.write(f"v{k}", begin + ahead * (end - begin) + bent)  # eq. (19)
         return rec
 
     def advance(self) -> Recorder:
@@ -163,7 +164,7 @@ class _FoldWriter:
         return rec
 
     def aside(self) -> Recorder:
-        """A place beside ``w``: t there differs by half of ``bend`` times the distance squared."""
+        """A place near ``w``: t there differs by half of ``bend`` times the distance squared."""
         rec = Recorder()
         bend = rec.absolute(rec.input("bend"))
         away = rec.sqrt(rec.divide(_CLEARLY * rec.input(f"x{self.n}"), bend))

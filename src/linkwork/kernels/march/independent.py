@@ -45,7 +45,7 @@ _NO_TASK_YET, _NO_TASK_LEFT = -2, -1
 
 
 class _Work(NamedTuple):
-    """What every lane works at, (LANES,): its task, its next row, its direction (1 upwards).
+    """The state of every lane, (LANES,): its task, its next row, its direction (1 upwards).
 
     ``known``: how many nodes a prediction can use. ``h``: the next step at most. ``spacing``
     (LANES, 4): of the nodes for which the weights of the prediction were computed.
@@ -70,7 +70,7 @@ def _store_row(
     unknowns: int,
     found: MarchResult,
 ) -> None:
-    """A row is reached."""
+    """Store the position of a row that is reached."""
     place = found.first + member
     found.reached[row, place] = True
     for j in range(unknowns):
@@ -83,7 +83,7 @@ def _store_row(
 def _stop_design(
     w: Array, lane: int, topology: Topology, turn: int, way: int, member: int, found: MarchResult
 ) -> None:
-    """A mechanism goes no further."""
+    """Note that a mechanism stops: its last node and the node before."""
     nodes = topology.nodes
     size, place = nodes.shape[1], found.first + member
     found.end[way, place] = w[nodes[(1 - turn) % ROLES, size - 1], lane]
@@ -145,10 +145,11 @@ def _take_or_halve_step(
         if t0 == goal:
             _store_row(w, lane, topology, turn, work.row[lane], member, table.unknowns, found)
             work.row[lane] += 2 * work.way[lane] - 1
+        # eq. (22): doubled after a whole step
         work.h[lane] = grow(work.h[lane], moved, table.steps[1])
         work.known[lane] = min(work.known[lane] + 1, NODES)
     else:
-        work.h[lane] = HALF * moved
+        work.h[lane] = HALF * moved  # eq. (22): halved after a failure
         if work.h[lane] < table.steps[2]:
             _stop_design(w, lane, topology, turn, work.way[lane], member, found)
             work.row[lane] = len(rows) if work.way[lane] == 1 else -1
@@ -196,6 +197,7 @@ def march(
         np.zeros((LANES, NODES)),
     )
     standing, times, following, turn = np.ones(LANES), np.zeros(NODES), 0, 0
+    # idle lanes compute with these: zeros make no slow or invalid numbers
     w[: nodes.size] = 0.0  # they come first
     for register in topology.noted:
         w[register] = 0.0

@@ -45,7 +45,7 @@ __all__ = ["in_step"]
 
 _LINE = 64  # bytes of a cache line
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them
-_WORTH = LANES // 2  # with fewer lanes left each goes on by itself
+_WORTH = LANES // 2  # with fewer lanes left each continues with steps of its own
 
 
 @njit_no_refcount
@@ -59,7 +59,7 @@ def _leave_lockstep(
     tasks: Tasks,
     count: int,
 ) -> int:
-    """A lane goes on by itself from its last node; how many tasks there are now."""
+    """Make a lane a task of its own, from its last node; return how many tasks there are now."""
     tasks.member[count], tasks.way[count] = member, way
     nodes = topology.nodes
     for j in range(nodes.shape[1]):
@@ -80,7 +80,7 @@ def _update_lane_weights(
     """The weights of the prediction: for each lane by itself until all have the same nodes behind.
 
     ``together``: whether they have started at the same t. ``spacing`` (4,): of the trial and the
-    nodes before, for which the weights are at hand. ``times`` (4,): room.
+    nodes before, for which the weights were computed. ``times`` (4,): workspace.
     """
     nodes, weights = topology.nodes, topology.weights
     last, trial = nodes.shape[1] - 1, nodes[-turn % ROLES, nodes.shape[1] - 1]
@@ -126,7 +126,7 @@ def _store_row(
     table: InputTable,
     found: MarchResult,
 ) -> None:
-    """A row is reached by the lanes that stand."""
+    """Store a row for all lanes that take part."""
     target, radius, reached = found.unknowns, found.radius, found.reached
     place, error = topology.nodes, topology.noted[RADIUS]
     proofs = radius.shape[0] > 0
@@ -166,12 +166,12 @@ def _set_out(
     tasks: Tasks,
     count: int,
 ) -> tuple[int, bool, int]:
-    """Who goes in this direction, and who has to go alone.
+    """Find the lanes that march together in this direction; the others become tasks.
 
     Returns
     -------
     ahead, together, count : int, bool, int
-        The first row, -1 if nobody goes; whether all lanes start at the same t; how many tasks.
+        The first row, -1 if no lane marches; whether all lanes start at the same t; how many tasks.
     """
     size, width = topology.nodes.shape[1], min(LANES, node.shape[1] - base)
     for role in range(1, ROLES):
@@ -218,6 +218,7 @@ def _aim_at_row(
     while standing[lead] == 0.0:
         lead += 1
     away = table.rows[row] - w[t1, lead]
+    # equal parts instead of one long and one short step: the weights of the prediction stay
     parts = math.ceil(abs(away) / (_LARGEST * table.steps[1]))
     w[t0, :] = table.rows[row] if parts <= 1 else w[t1, lead] + away / parts
     if parts > 1 and w[t0, lead] == w[t1, lead]:
@@ -247,6 +248,7 @@ def _march_one_way(
         base, way, topology, w, begun, node, table.rows, standing, tasks, count
     )
     turn, steps, good = 0, 0, topology.noted[GOOD]
+    # with most lanes gone, marching them one by one wastes less
     left = int(standing.sum())
     while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
         away, parts = _aim_at_row(base, width, row, topology, turn, w, standing, table, found)
@@ -306,7 +308,7 @@ def in_step(
     node, begun : (S, M), (M,) where they start, and whether they do
     table : InputTable
     tasks : Tasks
-        Room for 2 M; filled with what is left to do.
+        Room for 2 M tasks; filled with those that are left.
     found : MarchResult
 
     Returns

@@ -8,11 +8,11 @@ by name, one number per lane each; ``.s`` is a role:
 ``e<k>.s``                how far the true position may be from there
 ``side<b>.s``             det J of a block
 ``u<j>.origin`` ``.rate`` inputs are u = origin + rate t
-``u<j>.spread``           how far the inputs of a row may be from those, beside their own rounding
+``u<j>.spread``           how far the inputs of a row may be from those, besides their rounding
 ``a1`` … ``b4``           weights of the nodes' unknowns and derivatives in the prediction
 ``scale<k>``              weights of variables that are lengths
 
-and what is noted of the trial on the way, which has one place whatever the roles are:
+and registers of the trial that keep their places when roles move on:
 
 ``u<j>.0``                inputs; phasors of phases that only inputs turn
 ``live<b>.0``             1.0 where block b still iterates
@@ -57,12 +57,12 @@ WEIGHTS = tuple(f"{name}{role}" for role in range(1, ROLES) for name in "ab")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarchPrograms:
-    """``predict`` the trial; what is ``given`` there; ``begin`` and ``iterate`` every block,
+    """``predict`` the trial; the inputs ``given`` there; ``begin`` and ``iterate`` every block,
     ``damped`` at the start; ``prove`` every block, if asked; ``judge``.
 
     ``nodes`` (5, S): registers of positions by role, the first ones of all. ``noted``: names of
-    what programs leave of a trial beside it; ``shared``: those of what is given that depend on t
-    alone, none where they depend on the design as well.
+    further results of a trial; ``shared``: those of the given registers that depend on t alone,
+    none where they depend on the design as well.
     """
 
     registers: Registers
@@ -144,7 +144,7 @@ class _MarchWriter:
         for k in range(self.n):
             value: Value = rec.constant(0.0)
             for role in range(1, ROLES):
-                value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")
+                value = value + rec.input(f"a{role}") * rec.input(f"x{k}.{role}")  # eq. (18)
                 value = value + rec.input(f"b{role}") * rec.input(f"d{k}.{role}")
             rec.write(f"x{k}.0", value)
         return rec
@@ -178,14 +178,14 @@ class _MarchWriter:
         closure = self._closure(number, rec)
         matrix, sides = closure.jacobian(part.unknowns), [closure.residual()]
         if not self.certified:
-            sides.append(self._drives(closure, rec))
+            sides.append(self._drives(closure, rec))  # eq. (11), right side
         answer = solve_linear(rec, matrix, sides)
         change, live = answer.columns[0], rec.input(f"live{number}.0")
         turns = [
             abs(d) for d, k in zip(change, part.unknowns, strict=True) if self.table.is_angle[k]
         ]
         if damped and turns:
-            factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])
+            factor = rec.smallest([1.0, rec.input("most_turn") / rec.largest(turns)])  # eq. (7)
             change = [factor * d for d in change]
         size = rec.largest(
             self._weigh(rec, k, d) for d, k in zip(change, part.unknowns, strict=True)
@@ -195,7 +195,7 @@ class _MarchWriter:
             rec.write(name, value if first else rec.where(live, value, rec.input(name)))
 
         for d, k in zip(change, part.unknowns, strict=True):
-            put(f"x{k}.0", closure.v[k] - d)
+            put(f"x{k}.0", closure.v[k] - d)  # eq. (6)
         for moved in answer.columns[1:]:
             rates = self._rates(closure, matrix, moved, change)
             for r, k in zip(rates, part.unknowns, strict=True):
@@ -205,7 +205,7 @@ class _MarchWriter:
             put(f"step{number}.0", size)
             if first:
                 rec.write(f"begin{number}.0", size)
-        done = rec.at_most(size, rec.input("tolerance"))
+        done = rec.at_most(size, rec.input("tolerance"))  # eq. (8)
         rec.write(f"live{number}.0", 1.0 - done if first else rec.where(done, 0.0, live))
         return rec
 
@@ -221,6 +221,7 @@ class _MarchWriter:
         rates = {k: self._rate_of_known(rec, k) for k in closure.known()}
         rates |= {k: -r for k, r in zip(unknowns, moved, strict=True)}
         correction = {k: -d for k, d in zip(unknowns, change, strict=True)}
+        # eq. (12): how rates change along the correction
         (more,) = solve_linear(rec, matrix, [closure.bending(correction, rates)]).columns
         return [rec.subtract(rates[k], m) for k, m in zip(unknowns, more, strict=True)]
 
@@ -241,6 +242,7 @@ class _MarchWriter:
         proof = BlockProof(closure, {k: self._scale(rec, k) for k in used})
         near: dict[int, Value] = {}
         far: dict[int, Value] = {}
+        # the factor covers the rounding of the difference and of the inputs at both ends
         step = abs(rec.input("t.0") - rec.input("t.1")) * (1.0 + 16.0 * UNIT_ROUNDOFF)
         for k in proof.known:
             if k < self.n:
@@ -249,6 +251,7 @@ class _MarchWriter:
                 near[k] = abs(closure.v[k]) * (4.0 * UNIT_ROUNDOFF) + rec.input(
                     f"u{k - self.n}.spread"
                 )
+                # all inputs of the step, from both rounded ends
                 far[k] = step * abs(self._rate(rec, k - self.n)) + 2.0 * near[k]
         for k, rate in zip(part.unknowns, proof.rates(self._rate_of_known), strict=True):
             rec.write(f"d{k}.0", rate)
@@ -261,7 +264,7 @@ class _MarchWriter:
             rec.write(f"y{k}.0", reach)
             away = abs(closure.v[k] - rec.input(f"x{k}.1"))
             away = away + rec.largest([error, rec.input(f"e{k}.1")])
-            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))
+            masks.append(rec.at_most(away, alone * (1.0 - 4.0 * UNIT_ROUNDOFF)))  # eq. (33)
         rec.write(f"ok{number}.0", rec.all_of(masks))
         rec.write(f"radius{number}.0", here.radius)
         return rec
@@ -271,7 +274,7 @@ class _MarchWriter:
         rec = Recorder()
         blocks = range(len(self.parts))
         masks = [rec.input(f"ok{b}.0") for b in blocks]
-        # what has not converged may be proved, but its radius would be of no use
+        # a trial that has not converged may be proved, but with a uselessly large radius
         masks += [rec.at_most(rec.input(f"live{b}.0"), 0.0) for b in blocks]
         rec.write("good.0", rec.all_of(masks))
         rec.write("radius.0", rec.largest(rec.input(f"radius{b}.0") for b in blocks))
@@ -284,10 +287,12 @@ class _MarchWriter:
         for b in range(len(self.parts)):
             masks.append(rec.at_most(rec.input(f"step{b}.0"), rec.input("tolerance")))
             masks.append(rec.at_most(rec.input(f"begin{b}.0"), rec.input("most_correction")))
+            # det J keeps its sign along a branch
             product = rec.input(f"side{b}.0") * rec.input(f"side{b}.1")
             masks.append(rec.at_most(0.0, product))
         h = rec.input("t.0") - rec.input("t.1")
         drifts = [
+            # eq. (23) without the second derivative: a coarser bound
             self._weigh(rec, k, (rec.input(f"d{k}.0") - rec.input(f"d{k}.1")) * h)
             for k in range(self.n)
         ]
@@ -296,7 +301,7 @@ class _MarchWriter:
         return rec
 
     def node_names(self, role: int) -> list[str]:
-        """What makes up a position in a role: unknowns, derivatives, evidence, t."""
+        """Registers of a position in a role: unknowns, derivatives, evidence, t."""
         own = [f"{name}{k}" for name in "xd" for k in range(self.n)]
         own += [f"e{k}" for k in range(self.n)] if self.certified else []
         own += [] if self.certified else [f"side{b}" for b in range(len(self.parts))]

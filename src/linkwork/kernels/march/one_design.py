@@ -36,7 +36,7 @@ class Ready:
 
 
 class Scout(Protocol):
-    """What finds starts from guesses that are not near; see :class:`SweepKernel`."""
+    """Finds starts from guesses that are not near; see :class:`SweepKernel`."""
 
     def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
@@ -47,7 +47,7 @@ class Scout(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleDesign:
-    """What computes the rows of one design side by side, with room for one of them at a time.
+    """The rows of one design, computed side by side; the workspace holds one design at a time.
 
     ``scale`` (D, n): weights of the unknowns.
     """

@@ -21,14 +21,14 @@ _PART = 1024  # designs that one thread works on at a time
 
 
 def at_places(
-    what: PlaceProgram,
+    reading: PlaceProgram,
     coefficients: Mapping[str, Array],
     v: Array,
     inputs: Array,
     turns: TurnArray,
     threads: int = 1,
 ) -> Array:
-    """What a program computes at D designs' positions in R rows.
+    """Run a program at the positions of D designs in R rows.
 
     Parameters
     ----------
@@ -42,17 +42,18 @@ def at_places(
 
     Returns
     -------
-    (len(what.wanted), R, D)
+    (len(reading.wanted), R, D)
     """
     n, rows, count = v.shape
-    ready = _Ready.of(what, coefficients, n + inputs.shape[1])
+    ready = _Ready.of(reading, coefficients, n + inputs.shape[1])
     design = np.array([coefficients[name] for name in ready.used]).reshape(len(ready.used), count)
-    found = np.empty((len(what.wanted), rows, count))
+    found = np.empty((len(reading.wanted), rows, count))
 
     def one(first: int) -> None:
         part = slice(first, first + _PART)
         _evaluate(
-            what.program.code, ready.space(), ready.places, np.ascontiguousarray(design[:, part]),
+            reading.program.code, ready.space(), ready.places,
+            np.ascontiguousarray(design[:, part]),
             ready.variables, v[:, :, part], inputs, turns[:, part], ready.wanted,
             found[:, :, part],
         )  # fmt: skip
@@ -62,8 +63,8 @@ def at_places(
     return found
 
 
-def along_rows(what: PlaceProgram, coefficients: Mapping[str, Array], v: Array) -> Array:
-    """What a program computes at R positions of one design.
+def along_rows(reading: PlaceProgram, coefficients: Mapping[str, Array], v: Array) -> Array:
+    """Run a program at R positions of one design.
 
     Parameters
     ----------
@@ -74,25 +75,25 @@ def along_rows(what: PlaceProgram, coefficients: Mapping[str, Array], v: Array) 
 
     Returns
     -------
-    (len(what.wanted), R)
+    (len(reading.wanted), R)
     """
-    ready = _Ready.of(what, coefficients, len(v))
+    ready = _Ready.of(reading, coefficients, len(v))
     space = ready.space()
     for name, place in zip(ready.used, ready.places, strict=True):
         space[place] = coefficients[name][0]
-    found = np.empty((len(what.wanted), v.shape[1]))
-    _follow(what.program.code, space, ready.variables, v, ready.wanted, found)
+    found = np.empty((len(reading.wanted), v.shape[1]))
+    _follow(reading.program.code, space, ready.variables, v, ready.wanted, found)
     return found
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Ready:
-    """Where a program reads and leaves what: registers by number.
+    """The registers that a program reads and writes, by number.
 
     ``used``: the coefficients that it reads, at ``places``.
     """
 
-    what: PlaceProgram
+    reading: PlaceProgram
     used: list[str]
     places: IndexArray
     variables: IndexArray
@@ -100,23 +101,23 @@ class _Ready:
     height: int
 
     @classmethod
-    def of(cls, what: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
-        named = what.registers.named
+    def of(cls, reading: PlaceProgram, coefficients: Iterable[str], variables: int) -> _Ready:
+        named = reading.registers.named
         used = [name for name in coefficients if name in named]
         # a variable that the program does not use is loaded into a register of its own
-        spare = max(what.program.height, what.registers.count)
+        spare = max(reading.program.height, reading.registers.count)
         return cls(
-            what=what,
+            reading=reading,
             used=used,
             places=np.array([named[name] for name in used], dtype=np.intp),
             variables=np.array([named.get(f"v{k}", spare) for k in range(variables)], np.intp),
-            wanted=np.array([named[name] for name in what.wanted], dtype=np.intp),
+            wanted=np.array([named[name] for name in reading.wanted], dtype=np.intp),
             height=spare + 1,
         )
 
     def space(self) -> Array:
         """A workspace with constants in place."""
-        return self.what.registers.filled(self.height, LANES)
+        return self.reading.registers.filled(self.height, LANES)
 
 
 @compiled_for(

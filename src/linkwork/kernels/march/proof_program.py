@@ -48,14 +48,14 @@ class Constants:
 
 
 class BlockProof:
-    """What a proof of one block takes from a position.
+    """The constants of a block's proof at one position.
 
     Parameters
     ----------
     closure : Closure
         At the position, by the variables of its recorder.
     scale : Mapping[int, Value]
-        Weights of the block's unknowns and of what it takes as known.
+        Weights of the block's unknowns and of its known variables.
     """
 
     def __init__(self, closure: Closure, scale: Mapping[int, Value]) -> None:
@@ -85,7 +85,7 @@ class BlockProof:
         own = (self.count + 2.0) * UNIT_ROUNDOFF
         noise = [rec.add(e, own * rec.absolute(x)) for e, x in zip(error, f, strict=True)]
         return [
-            rec.add(rec.absolute(self.product(row, f)), self.product(size, noise))
+            rec.add(rec.absolute(self.product(row, f)), self.product(size, noise))  # eq. (25): Y
             for row, size in zip(self.inverse, self.size, strict=True)
         ]
 
@@ -94,6 +94,7 @@ class BlockProof:
         found = []
         for k in range(self.count):
             entry = self.product(self.inverse[i], [row[k] for row in jacobian])
+            # eq. (25): Z0
             found.append(self.rec.absolute(self.rec.subtract(entry, 1.0 if i == k else 0.0)))
         return found
 
@@ -116,7 +117,7 @@ class BlockProof:
         ]
 
     def _group_terms(self) -> None:
-        """Terms sorted by phase; what bends along each phase, seen through the inverse."""
+        """Sort terms by phase; second derivatives along each phase, seen through the inverse."""
         closure = self.closure
         groups: dict[Phase, list[tuple[int, int]]] = {}
         pairs: dict[tuple[int, Phase], list[tuple[int, int]]] = {}
@@ -124,7 +125,7 @@ class BlockProof:
             for term in closure.terms[loop]:
                 phase = closure.phases.get(term, ())
                 length = int(closure.table.loops.length[term])
-                if phase:  # what does not turn does not bend
+                if phase:  # a term that does not turn is linear
                     groups.setdefault(phase, []).append((row, term))
                 if length >= 0:
                     pairs.setdefault((length, phase), []).append((row, term))
@@ -153,12 +154,12 @@ class BlockProof:
             extent = rec.add(extent, rec.multiply(seen, size))
         square = rec.add(rec.multiply(real, real), rec.multiply(imag, imag))
         noise = rec.multiply(UNIT_ROUNDOFF * (4.0 * len(members) + 12.0), extent)
-        return rec.add(rec.sqrt(square), noise)
+        return rec.add(rec.sqrt(square), noise)  # eq. (30): |α C| or |α D|
 
     def rates(self, rate: Callable[[Recorder, int], Value]) -> list[Value]:
         """Derivatives of the unknowns by t, given those of the known variables."""
         moved = [rate(self.rec, k) for k in self.known]
-        return [-self.product(row, moved) for row in self.signed]
+        return [-self.product(row, moved) for row in self.signed]  # eq. (11)
 
     def within(self, known: Mapping[int, Value]) -> BlockRadii:
         """The proof for every value of the known variables so far from theirs."""
@@ -180,19 +181,19 @@ class BlockProof:
         whole = omega
         if not rec.is_zero(bent):
             root = rec.sqrt(omega * omega + 8.0 * bent * rec.largest([room, 0.0]))
-            reach = 4.0 * room / (omega + root)
+            reach = 4.0 * room / (omega + root)  # eq. (28)
             whole = omega + reach * bent
-        square = room * room - 2.0 * PROOF_SLACK * whole * y
+        square = room * room - 2.0 * PROOF_SLACK * whole * y  # eq. (26)
         holds = rec.all_of([rec.at_most(_ROOM, room), rec.at_most(_TINY, square)])
         total = room + rec.sqrt(rec.largest([square, 0.0]))
-        existence_radius = 2.0 * PROOF_SLACK * y / total
-        uniqueness_radius = total / (whole * PROOF_SLACK)
+        existence_radius = 2.0 * PROOF_SLACK * y / total  # eq. (27) without cancellation
+        uniqueness_radius = total / (whole * PROOF_SLACK)  # eq. (27)
         if reach is not None:
             uniqueness_radius = rec.smallest([uniqueness_radius, reach / PROOF_SLACK])
         error_bound, isolation_radius = [], []
         for row, k in zip(rows, self.unknowns, strict=True):
             curve = row.omega if reach is None else row.omega + reach * row.bent
-            own = row.y + existence_radius * (row.z + 0.5 * curve * existence_radius)
+            own = row.y + existence_radius * (row.z + 0.5 * curve * existence_radius)  # eq. (29)
             error_bound.append(rec.smallest([own * PROOF_SLACK, existence_radius]) * self.scale[k])
             isolation_radius.append(uniqueness_radius * self.scale[k])
         return BlockRadii(holds, existence_radius, uniqueness_radius, error_bound, isolation_radius)
@@ -240,7 +241,8 @@ class _Spread:
             moved = rec.multiply(slide[p], self.known[j])
             by_slope = rec.add(by_slope, rec.multiply(moved, self.turned[g]))
             whole = rec.add(whole, moved)
-        # the rounding of the slopes by what is known is below that of the whole Jacobian
+        # the slopes by known variables are rounded less than the whole Jacobian
+        # eq. (31)
         return rec.add(rec.smallest([by_slope, whole]), rec.multiply(proof.loss[i], self.share))
 
     def _bending(self, i: int) -> tuple[Value, Value, Value]:
@@ -258,12 +260,14 @@ class _Spread:
         bent: Value = rec.constant(0.0)
         for g in range(len(proof.phases)):
             z = rec.add(z, rec.multiply(phase[g], rec.multiply(self.own[g], self.turned[g])))
+            # eq. (30)
             omega = rec.add(omega, rec.multiply(phase[g], rec.multiply(self.own[g], self.own[g])))
         for p, j, g in self.free:
             along = rec.multiply(slide[p], proof.scale[j])
             z = rec.add(z, rec.multiply(along, self.turned[g]))
             turning = rec.multiply(along, self.own[g])
-            omega = rec.add(omega, 2.0 * turning)
+            omega = rec.add(omega, 2.0 * turning)  # eq. (30)
+            # eq. (30): the part that grows with ρ
             bent = rec.add(bent, rec.multiply(turning, self.own[g]))
         for p, j, g in self.held:
             turning = rec.multiply(rec.multiply(slide[p], self.known[j]), self.own[g])
@@ -297,7 +301,7 @@ class _Rounding:
             whole = bare if length < 0 else rec.multiply(bare, rec.absolute(closure.v[length]))
             phase = closure.phases.get(term, ())
             factor = self._roundings(phase, len(terms) + _PHASOR)
-            error = rec.add(error, rec.multiply(factor, whole))
+            error = rec.add(error, rec.multiply(factor, whole))  # eq. (34)
             turning = rec.total([self.scale[k] * abs(w) for k, w in phase if k in self.scale])
             along = rec.multiply(whole, turning)
             if length >= 0:

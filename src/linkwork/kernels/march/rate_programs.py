@@ -1,4 +1,4 @@
-"""Programs that read off positions what moves how fast, and how far they are from singular ones.
+"""Programs that compute rates, condition and residual at positions, and prove these.
 
 Block by block, as in ``numerics.block_solver``:  J x' = -F_u u',  J x'' = -D²F[(x', u'), (x', u')]
 with the rates of all variables that a block knows. Registers by name:
@@ -6,13 +6,13 @@ with the rates of all variables that a block knows. Registers by name:
 ``v<k>``             variables, the inputs behind the unknowns
 ``u<j>.rate``        rate of an input by the leading one
 ``scale<k>``         weights of variables that are lengths
-``length``           what the residuals of equations of lengths are divided by
+``length``           scale of the residuals of equations of lengths
 ``first<k>`` ``second<k>``  derivatives of the unknowns by the leading input
 ``condition``        the largest ‖J‖·‖J⁻¹‖ of all blocks, weighted, in the largest norm
 ``residual``         the largest residual of all equations, scaled
-``u<j>.spread``      how far an input may be from the value it stands for, beside its rounding
-``radius`` ``unique``  a position lies within the one and no other within the other, weighted; both
-                     NaN where that is not proved
+``u<j>.spread``      how far an input may be from its true value, besides its rounding
+``radius`` ``unique``  a position lies within the first, no other one within the second, weighted;
+                     both NaN where that is not proved
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class _RateWriter:
     # ---------------------------------------------------------------- rates
 
     def rates(self) -> list[str]:
-        """Both derivatives of all unknowns; the names of what is written."""
+        """Write both derivatives of all unknowns; return the names of the registers."""
         inputs = range(self.table.variables - self.n)
         alone = len(inputs) == 1  # a single input leads
         first: dict[int, Number] = {
@@ -82,12 +82,12 @@ class _RateWriter:
         matrix, drives = closure.jacobian(unknowns), closure.jacobian(known)
         side = self._driven(drives, [first[k] for k in known])
         for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
-            first[k] = -x
+            first[k] = -x  # eq. (11)
         bends = closure.bending(first, first)
         driven = self._driven(drives, [second[k] for k in known])
         side = [self.rec.add(x, y) for x, y in zip(bends, driven, strict=True)]
         for k, x in zip(unknowns, self._solution(matrix, side), strict=True):
-            second[k] = -x
+            second[k] = -x  # eq. (12)
 
     def _solution(self, matrix: list[list[Number]], side: Sequence[Number]) -> list[Value]:
         return solve_linear(self.rec, matrix, [side]).columns[0]
@@ -130,7 +130,7 @@ class _RateWriter:
         columns = solve_linear(rec, matrix, units).columns
         forward = self._norm(matrix, weights, scales)
         inverse = [[columns[j][i] for j in range(n)] for i in range(n)]
-        return rec.multiply(forward, self._norm(inverse, scales, weights))
+        return rec.multiply(forward, self._norm(inverse, scales, weights))  # eq. (14)
 
     def _norm(
         self, matrix: Sequence[Sequence[Number]], columns: Sequence[Number], rows: Sequence[Number]
@@ -150,7 +150,7 @@ class _RateWriter:
     # ---------------------------------------------------------------- proof
 
     def proof(self) -> list[str]:
-        """That there is one position near, for all values the inputs may stand for."""
+        """Prove that one position lies near, for all true values that the inputs may have."""
         rec = self.rec
         near: dict[int, Value] = {
             k: rec.absolute(rec.input(f"v{k}")) * (4.0 * UNIT_ROUNDOFF)

@@ -41,6 +41,7 @@ def hermite_weights_of_lanes(
                 if k != j:
                     basis *= t[i] - times[k]
             away, square = t[i] - times[j], basis * basis
+            # eq. (18)
             cells[2 * j, i], cells[2 * j + 1, i] = (
                 (1.0 - 2.0 * slope * away) * square,
                 away * square,
@@ -62,6 +63,7 @@ def predict_from_nodes(
     for k in range(used):
         time, apart = w[nodes[(k + 1 - turn) % ROLES, last], 0], True
         for j in range(count):
+            # close nodes have huge weights of opposite signs, which magnify rounding
             apart &= abs(time - times[j]) > _APART * abs(w[t, 0] - w[near, 0])
         if apart:
             times[count], places[count] = time, (k + 1 - turn) % ROLES

@@ -52,9 +52,9 @@ def _prove_steps(
     found: MarchResult,
     counts: CountArray,
 ) -> bool:
-    """Prove rows from one on, each from the one before it; whether that is done.
+    """Prove LANES rows from ``first`` on, each from the row before it; whether all are proved.
 
-    While that one's error is not known it is taken to be :data:`_FAR`, and looked at afterwards.
+    The error of the row before is assumed to be :data:`_FAR`, which is checked afterwards.
     """
     nodes, n, m, rows = topology.nodes, len(scale), found.first, table.rows
     last, lanes = nodes.shape[1] - 1, min(LANES, len(rows) - first)
@@ -68,6 +68,7 @@ def _prove_steps(
         for i in range(lanes):
             w[near, i] = source[max(first + i - 1, 0), m]
         for i in range(lanes):
+            # the error of the row before, not known yet: checked after the proof
             w[nodes[1, 2 * n + k], i] = _FAR * scale[k]
     count = correct_and_judge(topology, 0, w, standing, False, lanes)
     if not _all_good(topology, w, lanes):

@@ -1,10 +1,10 @@
 """One mechanism through a long, even table: rows side by side in the lanes.
 
-A scout goes in one lane from the start to the first row, and on until it has left four nodes. From
-there on the lanes are as many rows that follow each other, predicted from six of those before them.
-All this is without proofs. Then every row is proved, and that it lies on the branch of the row
-before it; in the end that the start lies on that of the row beside it. What does not go well is
-left to :mod:`linkwork.kernels.march.independent`.
+A scout marches in one lane from the start to the first row, and on until it has left four nodes.
+Then the lanes are consecutive rows, predicted from six of the rows before them. All this is without
+proofs. Afterwards every row is proved, and that it lies on the branch of the row before it; at last
+that the start lies on the branch of the row next to it. Designs for which this fails are left to
+:mod:`linkwork.kernels.march.independent`.
 """
 
 from __future__ import annotations
@@ -48,12 +48,13 @@ _FEWEST = 4  # with fewer the march is as quick
 _ANY = 1 << 30  # nodes: as many as the way takes
 _CLOSE = 0.1  # a guess that is as near needs no care
 _BEND = 0.1  # without proofs, from row to row: a change of rates times the distance,
-_ROUGH = 0.03  # and what rates do not explain, of the way and of as much for a largest step
+_ROUGH = 0.03  # and the change that rates do not explain, part of the way and of a largest step
 
 
 @njit_no_refcount
 def _gap(rows: Array) -> float:
     """From row to row; 0 where it is not the same everywhere."""
+    # from end to end, so that the rounding of one distance is not multiplied
     gap: float = (rows[-1] - rows[0]) / (len(rows) - 1)
     for k in range(len(rows)):
         if abs(rows[k] - (rows[0] + k * gap)) > SAME * gap:
@@ -182,7 +183,7 @@ def _solve_stretch(
     found: MarchResult,
     counts: CountArray,
 ) -> int:
-    """From a row on, as far as it goes well with so many rows at once: the first row not found.
+    """Solve rows from ``first`` on, ``width`` at once; return the first row that is not found.
 
     ``before`` (S,): the start, or the row before the first one; set to the last row.
     ``trusting``: whether rows will be proved.
@@ -199,7 +200,7 @@ def _solve_stretch(
             for i in range(1, width):
                 w[register, i] = w[register, 0]
     for j in range(len(topology.weights)):
-        # the guess stands in the place of the oldest node
+        # the guess has the place of the oldest node
         for i in range(width):
             w[topology.weights[j], i] = 1.0 if j == 2 * NODES - 2 else 0.0
     block = 0
@@ -279,6 +280,7 @@ def by_rows(
     """
     rows, gap = table.rows, _gap(table.rows)
     width = 0 if gap == 0.0 else int(min(float(LANES), _STRIDE * table.steps[1] / gap))
+    # whole vectors: a rest costs as much as a full one
     width -= width % _VECTOR if width > _VECTOR else 0
     start = np.zeros(scout.nodes.shape[1])
     if solved:
@@ -296,6 +298,7 @@ def by_rows(
         reached = _solve_stretch(
             scout, own, first, width, before, table, scale, gap, certify, found, counts
         )
+        # where predictions over many rows fail, fewer rows at once may do
         first, width = reached, width // 2
     if certify and not prove_rows(topology, w, start, table, scale, found, counts):
         return LEFT

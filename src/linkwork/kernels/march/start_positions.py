@@ -37,7 +37,7 @@ def begin(
     topology : Topology
     w : (registers, LANES) workspace with constants and options in place
     design : (C, M) coefficients
-    guess, node : (S, M) the guess, and what is found from there
+    guess, node : (S, M) the guess, and the node found from it
     found : (M,) bool, set
     """
     count, nodes, good = design.shape[1], topology.nodes, topology.noted[GOOD]

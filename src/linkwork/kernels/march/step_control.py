@@ -19,7 +19,7 @@ __all__ = [
 ]
 
 STEPS = 6  # of Newton-Raphson for one block of a trial
-START_STEPS = 50  # likewise, from a guess
+START_STEPS = 50  # of Newton-Raphson for one block, from a guess
 
 aim = njit_no_refcount(step_size.aim)
 stride = njit_no_refcount(step_size.stride)

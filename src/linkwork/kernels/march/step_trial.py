@@ -1,8 +1,8 @@
 """One trial of 64 lanes: predict, correct block by block, prove, judge.
 
 Positions have five places in a lane: the trial (role 0) and the last four nodes. The places change
-roles when a trial is taken (``turn`` counts that), so nothing is copied: programs are at hand for
-all five turns.
+roles when a trial is taken (``turn`` counts that), so nothing is copied: there are programs for all
+five turns.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ __all__ = [
     "update_weights",
 ]
 
-# where a program stands in the packed code; behind BLOCKS: begin, damped, iterate, prove
+# places of programs in the packed code; behind BLOCKS: begin, damped, iterate, prove
 PREDICT, GIVEN, JUDGE, BLOCKS = 0, 1, 2, 3
-# what is noted of a trial; behind LIVE: block by block
+# results of a trial; behind LIVE: block by block
 GOOD, RADIUS, LIVE = 0, 1, 2
 
 
@@ -69,7 +69,7 @@ class Topology(NamedTuple):
     weights : registers of a1, b1, …, b4
     nodes : (5, S) registers of positions, t last
     noted : (2 + B,) registers of good, radius, and live of each block
-    shared : registers of what is given at t, if that is the same for every design
+    shared : registers of inputs and their phasors at t, if these are the same for every design
     coefficients : (C,) registers of a design's coefficients
     trial : address of the trial written out (prediction, one correction, proof, judgement), see
         :func:`linkwork.kernels.program.printing.trial_source`; 0 where the interpreter does it
@@ -181,7 +181,7 @@ def _run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> 
 
 @njit_no_refcount
 def _evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
-    """What is given at the trial."""
+    """Compute the inputs and their phasors at the trial."""
     shared = topology.shared
     if together and len(shared):
         _run_program(topology, turn, w, GIVEN, 1)
@@ -219,7 +219,7 @@ def correct_and_judge(
     for k in range(blocks):
         if not is_written:
             _run_program(topology, turn, w, BLOCKS + k, lanes)
-        elif _any(w, live[k], standing, lanes):  # what follows was computed with a worse position
+        elif _any(w, live[k], standing, lanes):  # later blocks were computed with a worse position
             for later in range(k + 1, blocks):
                 w[live[later], :lanes] = 1.0
         program = BLOCKS + 2 * blocks + k
@@ -268,6 +268,7 @@ def correct_slowly(topology: Topology, w: Array, lanes: int) -> None:
         w[live, :] = 1.0
         _iterate(topology, 0, w, BLOCKS + blocks + b, live, START_STEPS, everywhere, lanes)
     if proves_trials(topology):
+        # the second proof compares the position with itself, and knows its error
         for _ in range(2):
             for lane in range(lanes):
                 copy_lane(w, lane, nodes[1], nodes[0])
@@ -276,7 +277,7 @@ def correct_slowly(topology: Topology, w: Array, lanes: int) -> None:
 
 @njit_no_refcount
 def load_all_lanes(w: Array, registers: IndexArray, data: Array, base: int, count: int) -> None:
-    """Columns of data from ``base`` on into the lanes; behind the last one it stands again."""
+    """Load columns of data from ``base`` on into the lanes; the last one fills further lanes."""
     for j in range(len(registers)):
         register = registers[j]
         for lane in range(count):
@@ -322,7 +323,7 @@ def extrapolate(
     for j in range(len(weights)):
         w[weights[j], lane] = 0.0
     for i in range(used):
-        a, b = hermite_weights(t, times, i, used)
+        a, b = hermite_weights(t, times, i, used)  # eq. (18)
         w[weights[2 * i], lane], w[weights[2 * i + 1], lane] = a, b
 
 
@@ -338,7 +339,7 @@ def update_weights(
     times : (4,) of the last nodes
     step : from the last one
     known : how many of them there are
-    spacing : (4,) for which the weights are at hand, changed
+    spacing : (4,) for which the weights were computed; updated
     """
     if is_same_spacing(step, times, spacing):
         return False

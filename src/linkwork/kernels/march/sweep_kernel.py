@@ -32,7 +32,7 @@ from linkwork.kernels.program.program import ROLES, registers_read
 
 __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
-_FEW = 16  # designs in a part of which each goes with its rows side by side
+_FEW = 16  # designs, at most, of which each is solved with its rows side by side
 _ROUGHLY = 1e-6  # weighted: a correction behind which a proof corrects once more
 
 
@@ -96,7 +96,7 @@ class SweepKernel:
         self.weights = reg.all_of(WEIGHTS)
         self.height = max(programs.height, reg.count)
         self._sections = programs
-        #: The same without proofs, which goes ahead where rows are side by side.
+        #: The same without proofs; it scouts ahead where rows are side by side.
         self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
@@ -123,7 +123,7 @@ class SweepKernel:
         elif self._trial is None and execution.pays_compiled(len(self.code)):
             source = self.source()
             if execution.pays(len(self.code)) or is_cached(source):
-                with suppress(InputError):  # nobody asked: the interpreter serves
+                with suppress(InputError):  # compiled code was not required: the interpreter serves
                     self._trial = load_compiled(source, "trial")
 
     def source(self) -> str:
@@ -169,6 +169,7 @@ class SweepKernel:
         """
         count, given = len(start), self.guess_nodes(guess, start)
         ready, table = self._ready(coefficients, count), self._table(rows, steps)
+        # few designs cannot fill the lanes; their rows can
         if count <= _FEW and len(rows) >= LANES:
             return self._few(ready, coefficients, given, table, steps, found)
         begun = np.zeros(count, dtype=bool)
@@ -219,6 +220,7 @@ class SweepKernel:
 
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
+        # filling constants takes longer than copying a filled workspace
         blank = self._blank
         if blank is None or blank[0] != steps:
             space = self.registers.filled(self.height, LANES)

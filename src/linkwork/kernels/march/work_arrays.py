@@ -1,4 +1,4 @@
-"""What a march has to do, and where it leaves what it finds."""
+"""The tasks of a march, and the arrays of its results."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Tasks(NamedTuple):
 
 
 class MarchResult(NamedTuple):
-    """What is found of M mechanisms; the one with number k of a part stands at ``first + k``.
+    """Results of M mechanisms; the mechanism k of a part has the column ``first + k``.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class MarchResult(NamedTuple):
         Where a mechanism could go no further, downwards and upwards: the value of t last reached;
         NaN where it went through all rows.
     last : (2, 2 S, M)
-        The last node there and the one before.
+        The last node there and the node before.
     """
 
     first: int

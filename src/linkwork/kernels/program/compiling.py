@@ -1,4 +1,4 @@
-"""How functions of this package are compiled: the one place that knows numba."""
+"""Compiling functions of this package: the only module that imports Numba."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numba.core.typing.context import Context
     from numba.core.typing.templates import Signature
 
-    #: Writes what an intrinsic does, from its arguments.
+    #: Writes the code of an intrinsic, from its arguments.
     Emitter = Callable[[BaseContext, ir.IRBuilder, Signature, Sequence[ir.Value]], ir.Value]
 
 __all__ = [
@@ -65,7 +65,7 @@ def compiled_for(signature: object) -> Compiling:
 
 compiled = compiled_for(None)
 
-#: The same for functions that make no arrays: they do not count who refers to those they are given.
+#: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.
 njit_no_refcount: Compiling = _njit(
     cache=True, error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
@@ -119,8 +119,8 @@ def _call(
     return types.void(*[types.int64] * (2 + _BLOCKS)), code
 
 
-#: Calls what :func:`trial_at` has compiled, by its address, with the addresses of six blocks and
-#: the number of lanes.
+#: Calls a function compiled by :func:`trial_at`, by its address, with the addresses of six blocks
+#: and the number of lanes.
 call_at = cast(Callable[[int, int, int, int, int, int, int, int], None], intrinsic(_call))
 
 

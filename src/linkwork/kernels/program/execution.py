@@ -1,4 +1,4 @@
-"""On what a march runs, and whether its equations are compiled for it."""
+"""The device that a march runs on, and whether its equations are compiled for it."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from linkwork.kernels.program.program import ROLES
 
 __all__ = ["DEVICES", "Execution"]
 
-#: What a march can run on.
+#: Devices that a march can run on.
 DEVICES = ("cpu", "gpu")
 
 # Compiling takes some 5 ms for each instruction, of which a position then costs 0.1 ns less.
 _PAYS = 100_000_000  # positions
-_PAYS_COMPILED = 1_000_000  # where an earlier run has left what it compiled
+_PAYS_COMPILED = 1_000_000  # where an earlier run has left its compiled code
 _LONGEST = 4_000  # instructions: the compiler's time grows faster than they do
 
 
@@ -56,5 +56,5 @@ class Execution:
         return self.positions >= _PAYS and instructions <= ROLES * _LONGEST
 
     def pays_compiled(self, instructions: int) -> bool:
-        """Whether loading what an earlier run has compiled does."""
+        """Whether loading code that an earlier run has compiled saves time."""
         return self.positions >= _PAYS_COMPILED and instructions <= ROLES * _LONGEST

@@ -1,4 +1,4 @@
-"""Whether compiled code is there already; without loading any of it, nor what compiles it."""
+"""Whether compiled code exists already; found without loading it, or Numba."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def kernels_are_loaded() -> bool:
 
 
 def kernels_are_compiled() -> bool:
-    """Whether an earlier process has left the kernels compiled: beside their sources, in the user's
-    cache where that cannot be written to, or in the folder that ``NUMBA_CACHE_DIR`` names.
+    """Whether an earlier process has left the kernels compiled: next to their sources, in the
+    user's cache where that cannot be written to, or in the folder named by ``NUMBA_CACHE_DIR``.
     """
     return any(map(_is_of_this_source, _indices()))
 
 
 def _indices() -> Iterator[Path]:
-    """What numba has written about the compiled code that takes longest."""
+    """Numba's index files of the compiled code that takes longest."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(given) if given else user_cache_path("numba", appauthor=False)
     folders = list(shared.glob(f"{_LAST.parent.name}_*"))

@@ -40,8 +40,8 @@ class _Lowering:
         return Program(code=np.array(code, dtype=np.uint32).reshape(len(code), 5), height=self.top)
 
     def _copies(self) -> list[tuple[int, int, int, int, int]]:
-        """What is left to be written to named registers, in an order in which all sources still
-        hold what they held; where they go round in a circle, one is put aside.
+        """Writes to named registers that are left, in an order in which every source is read
+        before it is overwritten; of a circle of sources one is copied first.
         """
         left = {
             self.registers.of(name): self._register(value)
@@ -117,7 +117,7 @@ class _Lowering:
     def _direct_targets(self, order: list[int]) -> dict[int, int]:
         """Values computed straight into the named register they are written to.
 
-        Only where nobody reads what the register held before from then on.
+        Only where no later instruction reads the register's old value.
         """
         rec = self.recorder
         position = {k: p for p, k in enumerate(order)}
@@ -139,7 +139,7 @@ class _Lowering:
         return found
 
     def _changes(self, value: int, old: int | None) -> bool:
-        """Whether a value is the old one but for some lanes, or less something."""
+        """Whether a value is the old value in some lanes, or the old value less a number."""
         op, arguments = self.recorder.ops[value], self.recorder.arguments[value]
         if value in self.fused or arguments.count(old or -1) != 1:
             return False
@@ -193,7 +193,7 @@ class _Lowering:
 
 
 def lower_program(recorder: Recorder, registers: Registers, scratch_from: int) -> Program:
-    """The program of what was recorded, its scratch registers from a number on.
+    """The program of recorded arithmetic, its scratch registers from a number on.
 
     Every name and constant it uses must have its register before (see :func:`reserve`).
     """

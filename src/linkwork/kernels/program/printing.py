@@ -1,6 +1,6 @@
 """Programs written out as Python source: one statement for each instruction.
 
-What is written knows no names but registers, so nothing of a mechanism's text gets into it.
+The code names registers only, so no text of a mechanism's file gets into it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Body:
     changed: set[int] = field(default_factory=set)
 
     def value(self, register: int) -> str:
-        """What a register holds by now."""
+        """The expression that a register holds now."""
         if register in self.constants:
             return _number(self.constants[register])
         if register not in self.known:
@@ -60,7 +60,7 @@ class Body:
         self.changed.update(registers)
 
     def add(self, code: Code) -> None:
-        """What a program does."""
+        """The statements of a program."""
         for number, d, a, b, c in code.tolist():
             op = Op(number)
             if op is Op.SIN:
@@ -83,7 +83,7 @@ class Body:
 
 
 def _number(value: float) -> str:
-    """As Python writes it; what is not finite has a name there."""
+    """A number as Python writes it; infinities and NaN by name."""
     if math.isnan(value):
         return "math.nan"
     if math.isinf(value):

@@ -28,7 +28,7 @@ _Key = TypeVar("_Key", str, float)
 
 
 class Op(IntEnum):
-    """What an instruction does with the registers a, b, c; masks are 1.0 and 0.0."""
+    """Instructions over the registers a, b, c; masks are 1.0 and 0.0."""
 
     # The numbers stay: kernels that an earlier process has compiled know them.
     COPY = 0  # a
@@ -44,13 +44,13 @@ class Op(IntEnum):
     MAX = 10  # the larger one; not a number if one of them is not
     MIN = 11
     SQRT = 12
-    SIN = 13  # of a, and beside it
-    COS = 14  # the cosine, in the register that follows as b
+    SIN = 13  # of a; the same instruction computes
+    COS = 14  # the cosine of a, into the register that follows as b
     WHERE = 15  # b where a is a true mask, else c
     LE = 16  # a <= b as a mask
     AND = 17  # of two masks
-    KEEP = 18  # b where a is a true mask, else what the target holds
-    LESS = 19  # what the target holds, less a
+    KEEP = 18  # b where a is a true mask, else the target's present value
+    LESS = 19  # the target's present value less a
     INPUT = 20  # a named register; no instruction
     CONSTANT = 21  # no instruction
 

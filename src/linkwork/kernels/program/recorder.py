@@ -1,4 +1,4 @@
-"""Recording arithmetic: what is computed, before it is known by which interpreter or compiler."""
+"""Recording arithmetic, for any interpreter or compiler."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Recorder(Arithmetic[Value]):
         return Value(self, number)
 
     def input(self, name: str) -> Value:
-        """What a named register held before the program ran."""
+        """The value of a named register before the program ran."""
         return self._new(Op.INPUT, payload=name)
 
     def constant(self, value: float) -> Value:
@@ -81,7 +81,7 @@ class Recorder(Arithmetic[Value]):
         return held if self.ops[x.number] is Op.CONSTANT and isinstance(held, float) else None
 
     def is_zero(self, x: Value | float) -> bool:
-        """Whether something is the constant 0."""
+        """Whether a number is the constant 0."""
         return self._number(x) == 0.0
 
     def _negated(self, x: Value) -> Value | None:

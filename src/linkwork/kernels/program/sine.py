@@ -22,7 +22,7 @@ def sin_cos(x: float) -> tuple[float, float]:
     """Reduced to within π/4 of a multiple of π/2, then Taylor's series.
 
     For |x| below a million the error is below 2.5 · 2⁻⁵³, and three units in the last place; far
-    beyond, where the reduction would lose digits, what is returned is not a number.
+    beyond, where the reduction would lose digits, the result is NaN.
     """
     n = (x * _TWO_OVER_PI + _WHOLE) - _WHOLE
     r = ((x - n * _PART_1) - n * _PART_2) - n * _PART_3

@@ -90,6 +90,7 @@ class Belt(WheelPair):
             return
         distance = self.distance(checks.linkage)
         first, second = map(checks.linkage.numbers, self.radii)
+        # nearer centres leave no tangent common to both wheels
         least = first + second if self.crossed else abs(first - second)
         if distance <= least:
             what = "crossed " if self.crossed else ""

@@ -201,6 +201,7 @@ class Cam(NamedPart):
             checks.positive(self.radius, "radius", "radius")
         elif self.radius != 0:
             checks.add(f"is used with a roller only, the contact is {self.contact}", "radius")
+        # the motion determines the outline and the outline the motion: both together could disagree
         if bool(self.segments) == bool(self.profile):
             what = "both" if self.segments else "neither"
             checks.add(f"needs either segments or a profile, it has {what}")
@@ -274,6 +275,7 @@ class Cam(NamedPart):
                 checks.add(message, "segments", k, "law")
             if over <= 0:
                 checks.add(f"must be a positive angle, got {over:g}", "segments", k, "over")
+            # derivatives grow with 1/over²
             elif over < _SHORTEST * unit.turn:
                 message = f"{over:g} is too small: at least {_SHORTEST * unit.turn:g}"
                 checks.add(message, "segments", k, "over")
@@ -281,6 +283,7 @@ class Cam(NamedPart):
                 checks.add("must be 0: a dwell has no rise", "segments", k, "lift")
             overs.append(over)
             lifts.append(lift)
+        # NaN where a number is wrong already, which is reported
         total = sum(overs)
         if not math.isnan(total) and abs(total - unit.turn) > AGREE * unit.turn:
             checks.add(
@@ -344,6 +347,7 @@ class Cam(NamedPart):
         same = super().inverted(inversion)
         if self.cam == GROUND and self.profile:
             return replace(same, profile=turned_back(self.profile, turn))
+        # the law's angle is that of the cam against the follower's frame
         shift = turn * ((self.cam == GROUND) - (follower_frame(linkage, self) == GROUND))
         if not shift or not self.segments:
             return same

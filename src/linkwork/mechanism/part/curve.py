@@ -132,6 +132,7 @@ def turned_back(pairs: _Pairs, turn: float) -> _Pairs:
     c, s = math.cos(turn), math.sin(turn)
 
     def combined(x: Number, y: Number, by_x: float, by_y: float) -> Number:
+        # coordinates that are formulas stay formulas
         if isinstance(x, str) or isinstance(y, str):
             return f"({by_x!r})*({x}) + ({by_y!r})*({y})"
         return by_x * x + by_y * y

@@ -81,6 +81,7 @@ class Gear(WheelPair):
             return
         distance = self.distance(checks.linkage)
         wanted = self.modules_apart(*map(checks.linkage.numbers, self.radii))
+        # circles in mesh touch; belts only have to clear each other
         if abs(distance - wanted) > AGREE * largest((distance, wanted)):
             how = "differ by" if self.internal else "add up to"
             checks.add(

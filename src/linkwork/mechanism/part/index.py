@@ -46,7 +46,9 @@ class _Tables:
 
 #: The kind of part of every table.
 PARTS: Mapping[str, type[Part]] = {
-    table: get_args(kind)[0] for table, kind in get_type_hints(_Tables).items()
+    # the fields are tuple[Kind, ...]
+    table: get_args(kind)[0]
+    for table, kind in get_type_hints(_Tables).items()
 }
 
 

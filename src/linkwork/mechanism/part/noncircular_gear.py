@@ -112,6 +112,7 @@ class NoncircularGear(ArmPair):
         try:
             value(parse(law), {**known, "phi": 0.0}, checks.linkage.angle, law)
         except ExpressionError as error:
+            # a wrong dimension is reported at its own place
             if not checks.linkage.numbers.wrong:
                 checks.add(str(error), "law")
 
@@ -124,6 +125,7 @@ class NoncircularGear(ArmPair):
             for k, pair in enumerate(self.table)
         ]
         for k, (before, after) in enumerate(pairwise(pairs), 1):
+            # external gears turn in opposite directions
             if after[0] <= before[0] or after[1] >= before[1]:
                 checks.add("the first angle must rise, the second must fall", "table", k)
         turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
@@ -149,5 +151,6 @@ class NoncircularGear(ArmPair):
         if self.pitch_curve:
             own = turned_back(self.pitch_curve, turn) if self.wheels[0] == GROUND else None
             return same if own is None else replace(same, pitch_curve=own)
+        # the law's angle is that of the first wheel against the arm
         shift = turn * ((self.wheels[0] == GROUND) - (self.arm == GROUND))
         return replace(same, start=inversion.shifted(self.start, shift)) if shift else same

@@ -47,6 +47,7 @@ class Part:
     def __post_init__(self) -> None:
         """Turn lists into tuples, so that parts compare and cannot change."""
         for field, entry in vars(self).items():
+            # the class is frozen: only this way may it set its own fields
             object.__setattr__(self, field, _frozen(entry))
 
     @classmethod
@@ -87,6 +88,7 @@ class Part:
     @property
     def mobility(self) -> int:
         """What the part adds to Grübler's count: f - 3 for a joint of f freedoms, 3 for a link."""
+        # a joint of f freedoms takes 3 - f from the plane
         joint = 0 if self.kind is None else self.kind.freedom - 3
         return joint + 3 * len(self.ends)
 

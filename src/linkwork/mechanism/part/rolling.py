@@ -154,6 +154,7 @@ class Rolling(NamedPart):
             return
         both = {self.center, self.circle}
         links = checks.linkage.links
+        # with an arm the distance is kept twice: the pair would be overconstrained
         arm = next((name for name, own in links.items() if both <= set(own)), None)
         if arm is not None:
             checks.add(

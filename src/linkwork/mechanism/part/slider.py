@@ -96,10 +96,13 @@ class Slider(GuidePart):
         if len(self.points) == 2:
             own = phase(local[self.points[1]] - local[self.points[0]])
             d, e, a, b = (linkage.sketched(p) for p in (*self.points, *self.line))
+            # two points on a line leave two directions half a turn apart: that of the sketch is
+            # taken
             along = ((e - d) * (b - a).conjugate()).real >= 0
             return line - own + choose(along, 0.0, math.pi)
         if self.angle is not None:
             return line + linkage.numbers(self.angle) * linkage.angle.radians
+        # a block of one point has no direction of its own: it takes that of the line
         if self.link != GROUND and len(linkage.links[self.link]) < 2:
             return line
         a, b = (linkage.sketched(p) for p in self.line)
@@ -156,6 +159,7 @@ class Slider(GuidePart):
         start, end = (seen[point] for point in self.line)
         along = (end - start) / abs(end - start)
         own = seen[self.points[0]]
+        # the offset is measured to the left of the line
         foot = own - 1j * along * linkage.numbers(self.offset)
         line = []
         for name, place in (("foot", foot), ("guide", foot - (end - start))):

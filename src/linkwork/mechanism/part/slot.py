@@ -60,6 +60,7 @@ class Slot(GuidePart):
         return "point", self.point, self.on
 
     def joint(self, linkage: Bodies) -> Joint:
+        # the pin's name joins the slot to the pin of other links at this point
         links = (pinned(linkage, self.point), self.on)
         return Joint(kind=self.kind, name=self.name, links=links, point=self.point)
 

@@ -83,6 +83,7 @@ class Weld(Part):
                 "they are welded",
                 "links",
             )
+        # their angles are unknowns of their own; other links are directed by two points
         directed = {GROUND, *turning_links(checks.linkage)}
         for name, points in zip(self.links, (first, second), strict=True):
             if len(points) < 2 and name not in directed:
@@ -100,4 +101,5 @@ class Weld(Part):
         yield RigidJoint(name=self.label, links=self.links, point=shared)
 
     def inverted(self, inversion: Inversion) -> Self:
+        # the angle follows from the sketch, which is an assembled position
         return replace(super().inverted(inversion), angle=None)

@@ -132,6 +132,7 @@ class WheelPair(ArmPair):
             return linkage.numbers(self.radii[0]), linkage.numbers(self.radii[1])
         assert self.teeth is not None
         first, second = map(linkage.numbers, self.teeth)
+        # teeth fix only the ratio; the distance of the centres fixes the size
         module = self.distance(linkage) / self.modules_apart(first, second)
         return module * first, module * second
 

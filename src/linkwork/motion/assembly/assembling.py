@@ -198,6 +198,7 @@ class _Assembly:
         before = _rows_of(self.proof, rows)
         radii = prove_block(block, part, v, before.error_bound)
         error_bound = before.error_bound
+        # later blocks cannot use an infinite bound; the missing proof is kept in holds
         error_bound[:, block.unknowns] = np.where(
             np.isfinite(radii.error_bound), radii.error_bound, 0.0
         )
@@ -274,6 +275,7 @@ def _polish_roots(
     weights = block.system.variable_scale[:n]
     here = start[:, block.unknowns] / weights
     far = np.abs(done.v[:, :n] / weights - here).max(axis=1, initial=0.0)
+    # long lengths may move further
     far /= 1.0 + np.abs(here[:, ~block.system.is_angle[:n]]).max(axis=1, initial=0.0)
     good = (done.status == Status.CONVERGED.code) & (far <= _MOVED)
     good |= multiple & (done.residual <= _CLOSED) & (far <= _MOVED_DOUBLE)
@@ -294,7 +296,7 @@ def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _BlockRoots:
-    """The real solutions of one system, (R, 2M), with what is known about completeness."""
+    """The real solutions of one system, (R, 2M), with the grade of completeness."""
 
     x: ComplexArray
     multiple: BoolArray
@@ -321,6 +323,7 @@ def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> _BlockR
         bound = family.bound_of(system, off, len(roots.x))
     proofs = prove_roots(system, roots.x, off)
     m = system.size
+    # roots that no proof decides are taken by a tolerance, and lower the grade of the list
     real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < ALMOST_REAL))
     undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()
     unproved = real & ~proofs.holds
@@ -371,7 +374,7 @@ def _mirror_gap(x: ComplexArray, m: int) -> Array:
 
 
 def _theorem_note(count: PathCount) -> str:
-    """What the list of a block rests on: "a, b: 16 complex solutions, at most 16 by ..."."""
+    """The reason for a block's completeness: "a, b: 16 complex solutions, at most 16 by ..."."""
     who = ", ".join(count.unknowns)
     found = f"{count.finite} complex solution{'' if count.finite == 1 else 's'}"
     return f"{who}: {found}, at most {count.bound} by {count.theorem}"
@@ -392,5 +395,6 @@ def _fold_lengths(slide: TurnedSlide, v: Array) -> Array:
     v = v.copy()
     negative = v[:, slide.lengths[0]] < 0.0
     v[np.ix_(negative, np.array(slide.lengths))] *= -1.0
+    # half a turn, towards the angles within half a turn of zero
     v[negative, slide.angle] += np.where(v[negative, slide.angle] > 0.0, -np.pi, np.pi)
     return v

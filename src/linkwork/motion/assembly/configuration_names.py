@@ -23,7 +23,7 @@ def order_configurations(
     double: BoolArray,
     folded: bool,
 ) -> tuple[list[int], dict[int, str]]:
-    """The documented order of a block's configurations, and what each is called."""
+    """The documented order of a block's configurations, and their names."""
     dyad = form.table.loops.rows == 1
     single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
     turns = block.system.is_angle[: len(block.unknowns)]
@@ -31,6 +31,7 @@ def order_configurations(
     names = []
     for k in range(len(v)):
         own = v[k, block.unknowns]
+        # an angle that is zero but for rounding is sorted as zero, not as a full turn
         angle = np.mod(own + _ROUND, 2.0 * np.pi)
         values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
         name = "" if single else "number"

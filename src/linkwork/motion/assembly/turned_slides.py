@@ -16,7 +16,7 @@ __all__ = ["TurnedSlide", "turned_slides"]
 class TurnedSlide:
     """An unknown angle that only directs these unknown lengths.
 
-    (s, θ) and (-s, θ + π) are then the same assembly: no loop and no point tells them apart.
+    (s, θ) and (-s, θ + π) are then the same assembly: no loop and no point distinguishes them.
     """
 
     angle: int
@@ -31,6 +31,7 @@ def turned_slides(model: Model) -> tuple[TurnedSlide, ...]:
     found = []
     for block in model.compiled.solver.blocks:
         own = set(block.unknowns.tolist())
+        # an angle in a linear row determines other angles: turning it around moves them
         for angle in sorted(own - tied):
             if table.is_angle[angle]:
                 lengths = _directed(tables, angle)
@@ -40,7 +41,7 @@ def turned_slides(model: Model) -> tuple[TurnedSlide, ...]:
 
 
 def _directed(tables: tuple[PhasorRows, ...], angle: int) -> set[int]:
-    """The lengths that stand along an angle, if nothing else does and they stand nowhere else."""
+    """The lengths along an angle, if all its terms have one of them, and no other term has."""
     lengths: set[int] = set()
     for rows in tables:
         mine = _terms_with(rows, angle)

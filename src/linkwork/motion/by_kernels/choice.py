@@ -13,7 +13,7 @@ _WITHOUT_PROOF = 0.4  # as much of that time is saved where nothing is proved
 
 
 def are_served(model: Model) -> bool:
-    """Whether kernels know all of a mechanism's equations: loops and lines, none redundant."""
+    """Whether kernels can solve a mechanism: loops and lines only, no redundant links."""
     equations = model.equations
     return bool(
         not model.compiled.table.functions and not equations.redundant and len(equations.inputs)
@@ -23,7 +23,7 @@ def are_served(model: Model) -> bool:
 def kernels_pay(model: Model, rows: int, certify: bool) -> bool:
     """Whether kernels take less time for so many rows of one mechanism than plain NumPy.
 
-    Nothing is compiled for that: where nobody has solved a family yet, they do not.
+    Nothing is compiled for that: before the first family is solved, they do not.
     """
     if rows < _ROWS or not are_served(model):
         return False

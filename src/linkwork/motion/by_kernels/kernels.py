@@ -40,7 +40,7 @@ def kernel_of(
 
 
 def row_program_of(model: Model, zeros: frozenset[str], certify: bool) -> PlaceProgram:
-    """What reads off rates and evidence of a mechanism's rows, made once."""
+    """The program that computes rates and evidence of a mechanism's rows, made once."""
     known, key = _ROW_PROGRAMS.setdefault(model.compiled, {}), (zeros, certify)
     if key not in known:
         table, parts = model.compiled.table, block_parts(model)

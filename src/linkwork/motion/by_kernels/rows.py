@@ -26,7 +26,9 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["KernelRows", "kernel_rows"]
 
 _FINE = 32  # rows: a track with steps as short as that comes near to its end
-_TWICE = 1e-6  # of the distance from row to row: a row as near to another one stands twice
+_TWICE = (
+    1e-6  # of the distance between rows: two rows so near to each other are one row, listed twice
+)
 _SAME_POSITION = 1e-9  # weighted: positions nearer to each other are one
 
 
@@ -78,7 +80,7 @@ def kernel_rows(
     Parameters
     ----------
     spread : (p,)
-        How far inputs may be from those that are meant, beside their own rounding.
+        How far inputs may be from their exact values, besides their rounding.
     """
     where = _inner(track, t)
     rows = t[where]
@@ -123,9 +125,7 @@ def kernel_rows(
 
 
 def _inner(track: Track, t: Array) -> IndexArray:
-    """Rows that do not come near to the track's ends; the first and the last are none of them, nor
-    those that stand at the place of another one.
-    """
+    """Rows away from the track's ends, without the first, the last, and repeated rows."""
     times, gap = _times(track), (t[-1] - t[0]) / (len(t) - 1)
     coarse = np.flatnonzero(np.diff(times) >= _FINE * gap)
     if not len(coarse):

@@ -1,7 +1,7 @@
 """All curves of positions through given ones: closed curves, and arcs between crossings.
 
-Where two curves cross (a change point) four half-branches leave; each is followed, so that what is
-connected is found as a whole.
+Where two curves cross (a change point) four half-branches leave; each is followed, so that
+everything that is connected is found.
 """
 
 from __future__ import annotations
@@ -83,6 +83,7 @@ class Explorer:
 
         The curve is followed if it is new, with everything that branches off at change points.
         """
+        # positions that walks have passed at the starting value: the cheapest test comes first
         for v, number in self._passed:
             if same_position(self.leads, v, seed):
                 return number
@@ -167,9 +168,11 @@ class Explorer:
                 )
             )
         scaled = came_from / self.leads.scale
+        # directions are compared by their angle, not by their size
         scaled = scaled / np.linalg.norm(scaled)
         best = max(
             ((k, sign) for k in (0, 1) for sign in (1.0, -1.0)),
+            # the half-branch that points back to where the walk came from
             key=lambda which: (
                 which[1]
                 * float(
@@ -187,7 +190,7 @@ def _unit(direction: Array) -> Array:
 
 
 def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -> Array | None:
-    """A position just beyond a crossing along a direction, told from the other curve."""
+    """A position just beyond a crossing along a direction, clearly not on the other curve."""
     speed = np.abs(direction) / leads.scale
     gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
     leader = fastest_leader(leads, v, speed)
@@ -203,6 +206,7 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
         found = led.whole(done.v[0])
         moving = speed > 0.0
         off = float(np.abs((found - guess) / leads.scale)[moving].max())
+        # much nearer to this tangent than to the other: a smaller stride separates them better
         if off <= CLOSER_TANGENT * stride * gap and led.node(found).nearness < REGULAR_CONDITION:
             return found
     return None
@@ -232,7 +236,7 @@ def _branches(
 
 
 def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
-    """Whether a position is the one of a branch at the same value of the parameter.
+    """Whether a position is that of a branch at the same value of the parameter.
 
     The branch's samples are so dense that Newton's method from between two of them stays there.
     """
@@ -240,6 +244,7 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
     if own is None:
         return False
     for guess in positions_near(leads, branch, float(seed[leads.parameter])):
+        # far from the branch: Newton-Raphson could only come back to it
         if np.abs(apart(leads, guess, seed) / leads.scale).max() > _NEAR:
             continue
         done = own.solver.solve(guess[own.order][None, :])
@@ -268,6 +273,7 @@ def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -
             k = int(np.clip(np.searchsorted(t, here, side="right") - 1, 0, len(t) - 2))
             width = t[k + 1] - t[k]
             s = (here - t[k]) / width if width else 0.0
+            # samples are dense: a line between two of them lies in the basin of the branch
             guess = (1.0 - s) * branch.v[order[k]] + s * branch.v[order[k + 1]]
             guess[p] = here
             found.append(guess)
@@ -275,7 +281,7 @@ def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -
 
 
 def _rests(leads: Parametrizations, arc: Arc) -> bool:
-    """Whether the parameter stands still all along."""
+    """Whether the parameter is constant along the whole arc."""
     p = leads.parameter
     values = [leg.v[:, p] for walk in arc.walks for leg in walk.curve.legs]
     if not values:

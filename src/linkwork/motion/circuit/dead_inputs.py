@@ -25,7 +25,7 @@ __all__ = ["DeadPointCount", "DeadPointInputs", "dead_point_inputs"]
 
 _MOST_PATHS = 300  # from products of linear forms: three loops at most, or a dyad behind three
 _SAME_INPUT = 1e-9  # weighted: two inputs are one,
-_SAME_MULTIPLE_INPUT = 1e-5  # and that of a multiple solution another one's
+_SAME_MULTIPLE_INPUT = 1e-5  # and that of a multiple solution and another one
 _MOVES = 1e-6  # part of the largest change that is one
 _COMPLEX_CURVES = "not proved: complex dead points form a continuum, which may contain real ones"
 _WHOLE = 1e-12  # how far a rate may be from a whole number
@@ -41,7 +41,7 @@ _GRADES = {
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DeadPointCount:
-    """What became of the paths of one block, and how many solutions are real."""
+    """The outcome of the paths of one block, and how many solutions are real."""
 
     unknowns: tuple[str, ...]
     paths: int
@@ -167,8 +167,9 @@ class _Search:
         if lost:
             self.grade = self.grade.and_then(Completeness.NOT_PROVED)
         if roots.continuum:
-            self._tell_of_curves(form, roots.curves)
+            self._grade_curves(form, roots.curves)
         real = _real(form, roots.x, ALMOST_REAL)
+        # multiple solutions are known to the square root of rounding: a wider tolerance
         double = _real(form, _sharpen_roots(form, roots.multiple), ALMOST_DOUBLE)
         start = self.model.equations.start
         self.values += self._wrap_angle(form.positions(real, start)[:, -1].tolist())
@@ -177,8 +178,8 @@ class _Search:
         )
         self.counts.append(_count(names, form, roots, len(real) + len(double)))
 
-    def _tell_of_curves(self, form: DeadPointForm, curves: ComplexArray) -> None:
-        """Say what curves of dead points through solutions (C, n) mean; nothing if none is real."""
+    def _grade_curves(self, form: DeadPointForm, curves: ComplexArray) -> None:
+        """Grade the list where curves of dead points, through solutions (C, n), may be real."""
         open_ = [x for x in curves if not keeps_complex_input(form.system, x, form.lead)]
         if not open_:
             return
@@ -229,7 +230,9 @@ class _Search:
             for value in values:
                 gaps = np.abs([value - old for old, many in kept if many == multiple])
                 if turns:
+                    # -π and π are one value
                     gaps = np.minimum(gaps, 2.0 * np.pi - gaps)
+                # several positions lock at one input where blocks have several configurations
                 if not (gaps <= same * scale).any():
                     kept.append((value, multiple))
         kept.sort()

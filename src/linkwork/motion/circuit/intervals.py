@@ -1,6 +1,6 @@
 """Trial input values: one in each interval between neighbouring dead points.
 
-Between them the number of configurations is constant, so each configuration at one value stands for
+Between them the number of configurations is constant, so each configuration at one value represents
 a piece of a circuit over the whole interval.
 """
 
@@ -21,14 +21,14 @@ Interval = tuple[float, ...]
 
 _PLACES = (0.5, 0.45, 0.62, 0.31)  # of an interval; the middle is the furthest from both ends
 _OUTSIDE = (0.5, 0.37, 0.83)  # natural sizes of the input, beyond the outermost values
-_INSIDE = 0.2  # of an interval: how far from its ends a value of one's own stands for it
+_INSIDE = 0.2  # of an interval: how far from its ends its sample value lies
 _NARROW = 1e-12  # relative width: nothing fits between the ends
 
 
 def intervals_between(
     cuts: Array, guess: float | None, scale: float, *, turns: bool
 ) -> list[Interval]:
-    """The intervals between cuts (K,), rising, but for the one that ``guess`` stands for.
+    """The intervals between cuts (K,), rising, without the one that holds ``guess``.
 
     Parameters
     ----------
@@ -39,6 +39,7 @@ def intervals_between(
     if not len(cuts):
         return []
     if turns:
+        # around the circle the last cut is followed by the first one
         ends = [*cuts, cuts[0] + FULL_TURN]
         if guess is not None:
             guess = float(cuts[0] + np.remainder(guess - cuts[0], FULL_TURN))
@@ -58,6 +59,7 @@ def _open(ends: Sequence[float] | Array, guess: float | None) -> Iterable[tuple[
         width = b - a
         if width <= _NARROW * max(1.0, abs(a), abs(b)):
             continue
+        # a guess too near to an end may see a double configuration there
         inside = _INSIDE * width
         if guess is None or not a + inside <= guess <= b - inside:
             yield float(a), float(b)

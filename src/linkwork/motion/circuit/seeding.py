@@ -42,6 +42,7 @@ class Seeding:
         model = self.model
         start = first_position(model, model.start_inputs, NewtonOptions())
         self.start = start
+        # at a dead point the input cannot lead; the circuit is found from other inputs
         if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.drive.lead])
@@ -58,13 +59,14 @@ class Seeding:
                 progress((k + 1) / len(intervals))
 
     def _intervals(self, value: float, sure: bool) -> list[Interval]:
-        """Where to look; a ``value`` whose list is ``sure`` stands for its own interval."""
+        """Where to look; a ``value`` whose list is ``sure`` represents its interval."""
         assert self.dead is not None
         place = self.drive.leads.parameter
         turns, scale = bool(self.drive.leads.is_angle[place]), float(self.drive.leads.scale[place])
         cuts = self.dead.cuts
         found = intervals_between(cuts, value if sure else None, scale, turns=turns)
         if not len(cuts) and not sure:
+            # without a cut one value serves for all: not the guess, whose list was not sure
             found = [(value + 0.1 * scale, value - 0.17 * scale)]
         if not self.dead.cover_all:
             found += [(further,) for further in self._further_inputs(value)]
@@ -103,7 +105,7 @@ class Seeding:
         return [low + (high - low) * (k + 0.5) / _LOOKED_AT for k in range(_LOOKED_AT)]
 
     def _ends(self) -> str:
-        """What limits circuits."""
+        """The limits of circuits."""
         assert self.dead is not None
         ends = ["all dead points"]
         if self.dead.multiple.any():

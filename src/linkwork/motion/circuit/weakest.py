@@ -34,6 +34,7 @@ def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> 
         v = _close_curve(leads, branch.v)
         values = smallest_singular_values(leads, v)
         k = int(np.argmin(values))
+        # the ends of an open branch may be weakest without being a valley
         found.append((float(values[k]), v[k]))
         inner = np.arange(1, len(v) - 1)
         low = inner[(values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])]
@@ -42,6 +43,7 @@ def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> 
             valleys.append((float(values[k]), rise, v[k - 1 : k + 2]))
     best = min(found, key=lambda pair: pair[0])
     for value, rise, three in sorted(valleys, key=lambda valley: valley[0]):
+        # the true minimum can lie below the sample by about as much as its neighbours lie above it
         if value - rise < best[0]:
             bottom = _bottom(leads, three)
             if bottom is not None and bottom[0] < best[0]:

@@ -26,7 +26,7 @@ class Seen:
     turning : Mapping[str, tuple of str]
         The variables of the mechanism's own equations that give the direction of every link.
     loose : tuple of str
-        Links some of whose lengths the loops do not tell; the chain does not depend on them.
+        Links some of whose lengths the loops do not determine; the chain does not depend on them.
     """
 
     model: Model

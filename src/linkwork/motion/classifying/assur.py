@@ -1,8 +1,8 @@
 """Assur groups: links that are determined together, and the names of such groups.
 
-Every driven joint is held. What is left has no freedom, and falls apart in one way only into parts
-of no freedom that have no such part themselves: the Assur groups, in the order in which they are
-determined.
+Every driven joint is held. The remaining chain has no freedom, and falls apart in one way only
+into parts of no freedom that have no such part themselves: the Assur groups, in the order in which
+they are determined.
 
 References
 ----------
@@ -49,6 +49,7 @@ def assur_groups(linkage: Linkage, chain: Chain) -> list[FoundGroup] | None:
         pair = (which.link or "", which.relative_to or GROUND)
         if joint is None:
             held.append(pair)
+        # the input holds one pair of the links on that pin
         elif which.link is not None:
             welds.append(pair)  # a pin of more links drives only these two
         else:
@@ -133,7 +134,7 @@ class _Rows:
     ) -> list[tuple[Joint, tuple[str, ...]]]:
         """The simple joints of a block, each with the links of the block that it joins.
 
-        A pin that is known before the block joins each of its links to what is known; a new one
+        A pin that is known before the block joins each of its links to the known links; a new one
         joins them to one another. A link known before has its condition in an earlier block.
         """
         own = set(links)
@@ -165,7 +166,7 @@ def _group(
 
     A dyad has class II. Otherwise the class is the largest number of joints of a closed contour:
     of a link's own joints, or of a loop of links inside the group. The order is the number of
-    joints with which it stands on what is known.
+    joints with which it is attached to known links.
     """
 
     def told(name: str, class_number: int | None = None, order: int | None = None) -> AssurGroup:
@@ -182,7 +183,9 @@ def _group(
     elements = {link: {j.name for j, ends in joints if link in ends} for link in links}
     inner = [(link, joint.name) for joint, ends in joints if len(ends) == 2 for link in ends]
     moving = contours(dict.fromkeys(inner))
+    # Artobolevskii: the largest closed contour gives the class
     number = max([len(own) for own in elements.values()] + moving)
+    # a triad has a central link and three legs; four links around a contour are a tetrad
     if len(links) == 4 and not moving:
         return told(f"triad {_triad(links, joints)}", number, outer)
     if len(links) == 4:

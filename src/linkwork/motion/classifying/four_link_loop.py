@@ -35,12 +35,12 @@ class FourLinkLoop:
         return "".join(joint.kind.letter for joint in self.joints)
 
     def ends(self, link: str) -> tuple[Joint, Joint]:
-        """The joint before a link and the one after it."""
+        """The joint before a link and the joint after it."""
         k = self.links.index(link)
         return self.joints[k - 1], self.joints[k]
 
     def carries_its_pins(self, linkage: Linkage, link: str) -> bool:
-        """Whether both joints of a link are pins that it carries without what is welded to it."""
+        """Whether both joints of a link are pins of its own, not of links welded to it."""
         return all(
             joint.kind is JointKind.REVOLUTE and joint.name in linkage.links[link]
             for joint in self.ends(link)
@@ -53,7 +53,7 @@ class FourLinkLoop:
         return abs(local[after.name] - local[before.name])
 
     def offset(self, linkage: Linkage, angles: Mapping[str, LinkAngle]) -> float:
-        """The distance of the two pins beside the only sliding joint, across its direction."""
+        """The distance of the two pins next to the only sliding joint, across its direction."""
         slide, guide = self._slide(linkage)
         if guide is None:  # a cylinder pulls along the line of its pins
             return 0.0

@@ -69,7 +69,7 @@ def _places(model: Model, linkage: Linkage) -> dict[str, complex]:
 
 
 def inversions(model: Model) -> tuple[Inversion, ...]:
-    """Every link as ground, the present one first, with what that makes of the chain."""
+    """Every link as ground, the present one first, with the type of the inversion."""
     seen = _seen(model)
     model, linkage = seen.model, directed(seen.linkage)
     chain = Chain.of(linkage)

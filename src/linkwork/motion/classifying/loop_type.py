@@ -12,7 +12,7 @@ from linkwork.results.classification import LoopType
 
 __all__ = ["CHANGE_POINT", "loop_type"]
 
-#: Margins below this part of the longest length count as none: rounding of the lengths is larger.
+#: Margins below this part of the longest length count as zero: the lengths are rounded more.
 CHANGE_POINT = 1e-12
 
 #: By the place of the shortest link: ground, driven link, coupler, output.
@@ -23,7 +23,7 @@ _GRASHOF = (
     ("rocker-crank", "GRRC"),
 )
 _PARALLELOGRAM_OR_ANTI = "parallelogram or antiparallelogram"
-_FLAT = 1e-3  # sine of the angle of ground and driven link below which a sketch tells nothing
+_FLAT = 1e-3  # sine of the angle of ground and driven link below which a sketch decides nothing
 _AT_CHANGE_POINT = ("SCCC", "SCRR", "SRCR", "SRRC")
 
 
@@ -72,7 +72,7 @@ def _four_bar(loop: FourLinkLoop, linkage: Linkage) -> LoopType:
     if turning is not None and loop.driven is not None:
         full = turning and loop.links[lengths.index(shortest)] in loop.driven.links
     if not at_ground:
-        code = ""  # it tells which link is driven
+        code = ""  # the letter says which link is driven
     return LoopType(
         links=loop.links,
         name=name,
@@ -106,11 +106,12 @@ def _change_point(lengths: list[float], at_shortest: int, small: float) -> tuple
 
 
 def _parallelogram_as_sketched(loop: FourLinkLoop, linkage: Linkage) -> str:
-    """Which of the two equal opposite sides make: the area that they enclose tells.
+    """Which of two loops equal opposite sides make, from the area that they enclose.
 
     With signs it is that of the parallelogram on ground and driven link, or none where two sides
     cross each other. A configuration asked for by name may be the other one.
     """
+    # the start is another configuration than the sketch, perhaps
     if linkage.configuration:
         return _PARALLELOGRAM_OR_ANTI
     before, behind, far, near = (linkage.sketched(joint.name) for joint in loop.joints)
@@ -127,7 +128,7 @@ def _slider_crank(
     """A slider-crank or an inversion of it, with s + e against l.
 
     s and l are the shorter and the longer of the two links with two pins, e the distance of the
-    pins beside the slide, across it. It is a four-bar two of whose links are infinitely long.
+    pins next to the slide, across it. It is a four-bar two of whose links are infinitely long.
 
     References
     ----------
@@ -175,7 +176,7 @@ def _slider_crank(
 
 
 def _no_loop(loop: FourLinkLoop, why: str, margin: float, longest: float) -> LoopType:
-    """What cannot be put together has no type."""
+    """The result for lengths that cannot be assembled."""
     return LoopType(
         links=loop.links,
         name="no closed loop",
@@ -188,7 +189,7 @@ def _no_loop(loop: FourLinkLoop, why: str, margin: float, longest: float) -> Loo
 
 
 def _turning_words(full: bool | None) -> tuple[str, str]:
-    """What the lengths allow, of the driven joint if one of the pins is driven."""
+    """The turning that the lengths allow, of the driven joint if one of the pins is driven."""
     if full is None:
         return "a link turns fully", "no link turns fully"
     if full:

@@ -25,7 +25,7 @@ _TOUCHING = 1e-14  # relative: a gap of rounding closes, once
 
 @dataclass
 class _Sums:
-    """The terms of the loop by what they turn with and are multiplied by; keys are unknowns."""
+    """The terms of the loop, sorted by their angle and their length; keys are unknowns."""
 
     known: complex = 0j
     turning: dict[int, complex] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Dyad:
 
 
 def dyad_of(block: Block, v: Array) -> Dyad | None:
-    """The dyad that a block is, for the known variables among v (N,); ``None`` if it is none."""
+    """The block as a dyad, for the known variables among v (N,); ``None`` if it is no dyad."""
     table = block.system
     if not isinstance(table, LoopTable) or table.unknowns != 2 or table.loops.rows != 1:
         return None
@@ -78,6 +78,7 @@ def _sums(table: LoopTable, v: Array) -> _Sums | None:
         value, angle = complex(coefficient), None
         for e in np.flatnonzero(loops.phase_term == t):
             variable, weight = int(loops.phase_variable[e]), float(loops.phase_weight[e])
+            # known variables come behind the two unknowns: they become part of the coefficient
             if variable >= 2:
                 value *= cmath.exp(1j * weight * float(v[variable]))
             elif weight == 1.0 and angle is None:
@@ -107,12 +108,13 @@ def _dyad(kind: str, gap: float, size: float, roots: list[tuple[float, float]]) 
 
 def _two_links(known: complex, first: complex, second: complex) -> Dyad:
     d, a, b = abs(known), abs(first), abs(second)
-    gap = max(d - (a + b), abs(a - b) - d)
+    gap = max(d - (a + b), abs(a - b) - d)  # eq. (54)
     size = max(d, a, b)
     if d == 0.0 or a == 0.0 or b == 0.0:  # no triangle: none, or a position for every angle
         return replace(_dyad("RRR", gap, size, []), all_roots=gap > _TOUCHING * size)
     # the first link makes the angle ±ε with the vector -K that both have to span
-    cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)
+    cosine = (d * d + (a - b) * (a + b)) / (2.0 * d * a)  # eq. (54) without cancellation
+    # only rounding can leave [-1, 1] where the gap is none; other roots are dropped by the gap
     swing = math.acos(max(-1.0, min(1.0, cosine)))
     roots = []
     for side in (1.0, -1.0) if swing not in (0.0, math.pi) else (1.0,):
@@ -128,7 +130,7 @@ def _on_a_line(known: complex, link: complex, along: complex) -> Dyad | None:
         return None
     beside = (known * along.conjugate()).imag / u
     middle = -(known * along.conjugate()).real / u
-    half = math.sqrt(max(0.0, (a - abs(beside)) * (a + abs(beside))))
+    half = math.sqrt(max(0.0, (a - abs(beside)) * (a + abs(beside))))  # eq. (55)
     roots = []
     for side in (1.0, -1.0) if half else (1.0,):
         s = (middle + side * half) / u
@@ -142,7 +144,7 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
         return None
     beside = (arm * along.conjugate()).imag / u
     middle = -(arm * along.conjugate()).real / u
-    half = math.sqrt(max(0.0, (d - abs(beside)) * (d + abs(beside))))
+    half = math.sqrt(max(0.0, (d - abs(beside)) * (d + abs(beside))))  # eq. (55)
     roots = []
     for side in (1.0, -1.0) if half else (1.0,):
         s = (middle + side * half) / u
@@ -155,6 +157,7 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
 
 def _two_slides(known: complex, first: complex, second: complex) -> Dyad | None:
     area = (first.conjugate() * second).imag
+    # parallel lines meet nowhere or everywhere
     if abs(area) <= _TOUCHING * abs(first) * abs(second):
         return None
     s = -(known * second.conjugate()).imag / (first * second.conjugate()).imag

@@ -40,14 +40,13 @@ class Elsewhere:
     names: tuple[str, ...] = ()
 
 
-#: What tells the positions that exist for given inputs (p,), internal units; ``None``: not looked
-#: for.
+#: Finds the positions that exist for given inputs (p,), internal units; ``None``: not searched.
 ElsewhereAt = Callable[[Model, Array], Elsewhere | None]
 
 
 def positions_elsewhere(model: Model, inputs: Array) -> Elsewhere | None:
     """The positions of a mechanism for the inputs (p,): its configurations where they can be
-    listed, else what Newton-Raphson finds from many starts, block by block.
+    listed, else those that Newton-Raphson finds from many starts, block by block.
     """
     solver = model.compiled.solver
     if len(solver.blocks) > _MOST_BLOCKS:
@@ -114,6 +113,7 @@ def _solve_starts(block: Block, v: Array, starts: Array) -> tuple[Array, BoolArr
     lanes = np.repeat(v[block.variables][None, :], len(starts), axis=0)
     lanes[:, :n] = starts
     done = newton(block.system, lanes, NewtonOptions(max_steps=40))
+    # a small last step alone does not say that the equations hold
     good = (done.status == Status.CONVERGED.code) & (done.residual < 1e-10)
     return done.v[good, :n], good
 
@@ -122,6 +122,7 @@ def _starts(block: Block, guess: Array) -> Array:
     """Starts spread evenly by an additive recurrence: angles around, the rest around the guess."""
     n = len(guess)
     root = _recurrence_root(n)
+    # the generalised golden ratio (Roberts): evenly spread whatever the number of starts
     steps = root ** -np.arange(1.0, n + 1.0)
     even = np.mod(0.5 + np.multiply.outer(np.arange(_STARTS), steps), 1.0)
     turns = block.system.is_angle[:n]

@@ -48,8 +48,8 @@ def no_position(
 ) -> tuple[Status, Failure]:
     """Why Newton-Raphson from v (N,), inputs included, did not solve one block.
 
-    Blocks before it are solved first. If the block has no position, that is told with its gap and
-    what would help; otherwise why Newton-Raphson missed those that exist.
+    Blocks before it are solved first. If the block has no position, the failure names its gap and
+    remedies; otherwise the reason why Newton-Raphson missed the existing positions.
     """
     with np.errstate(all="ignore"):
         return _explain(model, v, status, failed_block, options)
@@ -61,15 +61,18 @@ def _explain(
     solver = model.compiled.solver
     here = solver.solve(v[None, :], options).v[0].copy()
     block = solver.blocks[failed_block]
+    # its own guess again: the failed iteration has moved it
     here[block.unknowns] = v[block.unknowns]
     miss = miss_of(block, here)
     exists = miss.closed
     if not exists and miss.known:
         exists = bool(len(block_positions(block, here)[0]))
+    # equations without a loop have no length that could close them
     if not exists and miss.known and _loops_in(model, block):
         here[block.unknowns] = miss.v[: len(block.unknowns)]
         return Status.CANNOT_CLOSE, _cannot_close(model, block, failed_block, here, miss)
     trouble = trouble_of(block, here, status, miss, options)
+    # the damped iteration is held everywhere where there is no position
     if trouble is NewtonTrouble.LOCAL_EXTREMUM and not exists:
         trouble = None
     what = status.value if trouble is None else f"{_head(status)}: {trouble.value}"
@@ -89,9 +92,9 @@ def _explain(
 
 
 def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
-    """A failure at the guess's own inputs, told to who asked for others (p,).
+    """A failure at the inputs of the guess, explained for other inputs (p,) that were asked for.
 
-    What exists is looked for at the inputs asked; a nearest input is told only if nothing does.
+    Positions are searched at the inputs asked for; the nearest input is named if there are none.
     """
     here = _failure(model, inputs, what="")
     nearest = failure if not here.configurations else here
@@ -113,7 +116,7 @@ def without_start(model: Model, failure: Failure, inputs: Array) -> Failure:
 
 
 def without_circuit(model: Model, found: Array) -> Failure:
-    """What to say of a position (N,) from which no circuit could be followed: it is singular."""
+    """The failure at a position (N,) from which no circuit could be followed: it is singular."""
     solver = model.compiled.solver
     inputs = found[solver.unknowns :]
     where = _inputs_text(model, inputs)
@@ -126,7 +129,7 @@ def without_circuit(model: Model, found: Array) -> Failure:
 
 
 def another_root(model: Model, found: Array) -> Failure | None:
-    """What to say of a position (N,) that is another one than the one beside the guess."""
+    """The failure at a position (N,) that is not the position next to the guess."""
     solver = model.compiled.solver
     here = found.copy()
     here[: solver.unknowns] = model.equations.start[: solver.unknowns]
@@ -152,14 +155,14 @@ def beyond_reach(
     status: Status,
     limits: tuple[Limit, ...],
 ) -> Failure:
-    """Why the branch of a start v (N,) does not lead to a value of its path, and what does.
+    """Why the branch of a start v (N,) does not lead to a value of its path, and which one does.
 
     Parameters
     ----------
     place : (path, lead, asked)
         The path, the number of the input that measures it, and the value asked for.
     limits
-        What was met on the way.
+        The limit that was met on the way.
     """
     path, lead, asked = place
     near = None
@@ -184,7 +187,7 @@ def beyond_reach(
 
 
 def _nearest_by_turns(value: float, asked: float, turn: float) -> float:
-    """A value as near to the one asked as whole turns bring it; exactly itself without any."""
+    """A value moved by whole turns as near to the value asked for as possible."""
     turns = round((asked - value) / turn)
     return value + turns * turn if turns else value
 
@@ -235,7 +238,7 @@ def _stays_at(model: Model, block: Block, miss: Miss) -> str:
 
 
 def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Miss) -> Failure:
-    """Which loop, how large the gap, which lengths would help, what can be reached."""
+    """The loop, the size of the gap, lengths that would help, inputs that can be reached."""
     solver = model.compiled.solver
     inputs = here[solver.unknowns :]
     count = _loops_in(model, block)
@@ -255,6 +258,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
         f"least {size:.6g} {unit} remains"
     )
     reach, reachable = None, True
+    # a circuit of a large mechanism would take longer than anybody waits for an explanation
     if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:
         lead, rate = lock_step(model.rows)
         path = InputPath(origin=inputs - rate * inputs[lead], rate=rate)
@@ -308,6 +312,7 @@ def _failure(
     scales = np.array([model.units.scale(Kind(u.kind)) for u in model.equations.unknowns])
     turns = np.array([u.kind == "angle" for u in model.equations.unknowns], dtype=bool)
     x = everywhere[:, :n]
+    # angles within half a turn, so that lists of positions can be compared
     x = np.where(turns, np.angle(np.exp(1j * np.where(turns, x, 0.0))), x) / scales
     if found is None or not found.names:
         x = np.array(sorted(x.tolist(), key=lambda row: [round(value, 6) for value in row]))

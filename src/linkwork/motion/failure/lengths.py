@@ -57,7 +57,7 @@ def lengths_of(description: Description) -> list[ChangeableLength]:
 
 
 def _dimensions(description: Description, used: set[str]) -> Iterator[ChangeableLength]:
-    """Dimensions that are plain numbers and stand as a length somewhere."""
+    """Dimensions that are plain numbers and serve as a length somewhere."""
     for name, number in description.dimensions.items():
         if isinstance(number, str) or canonical(name) not in used:
             continue
@@ -96,7 +96,7 @@ def _tree(number: Number) -> list[Node]:
 
 
 def _resolved(description: Description, trees: list[Node]) -> set[str]:
-    """The names that stand as factors or summands, those of other dimensions' formulas too."""
+    """The names that are factors or summands, also within the formulas of other dimensions."""
     formulas = {canonical(n): number for n, number in description.dimensions.items()}
     found: set[str] = set()
     while trees:
@@ -127,6 +127,7 @@ def _given(linkage: Linkage) -> Iterator[ChangeableLength]:
     """Lengths that are plain numbers; a ground distance moves the point."""
     ground = set(linkage.links[GROUND])
     for key, number in linkage.lengths.items():
+        # the distance of two ground points is changed by moving one of them, see _ground
         if isinstance(number, str) or set(key.split()) <= ground:
             continue
 

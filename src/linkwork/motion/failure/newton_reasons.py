@@ -18,7 +18,7 @@ from linkwork.numerics.newton import NewtonOptions, newton
 __all__ = ["Miss", "miss_of", "root_beside_guess", "trouble_of"]
 
 _CLOSED = 1e-10  # scaled residual of a position
-_FLAT = 1e-8  # of its natural size: a slope or curvature that is none
+_FLAT = 1e-8  # of its natural size: a slope or curvature that is zero
 _ASIDE = 0.5  # of the way from the root to the guess, where the bending is compared
 
 
@@ -39,7 +39,7 @@ class Miss:
 
 
 def miss_of(block: Block, v: Array) -> Miss:
-    """The block as near to closing as a damped iteration from v (N,) gets."""
+    """The block as near to closure as a damped iteration from v (N,) gets."""
     nearest, f = nearest_miss(block.system, v[block.variables])
     closed = np.isfinite(f).all() and np.abs(f / block.system.equation_scale).max() <= _CLOSED
     return Miss(v=nearest, f=f, closed=bool(closed))
@@ -53,7 +53,7 @@ def trouble_of(
     - stopped where J is singular: an extremum if F lies across the range of J and bends there,
       else a singular derivative;
     - the damped iteration is held where Jᵀ F = 0, F ≠ 0: a local extremum;
-    - it finds a root beside which the equations bend both ways, and Newton's steps grew: an
+    - it finds a root near which the equations bend both ways, and Newton's steps grew: an
       inflection.
     """
     iterates: list[Array] = []
@@ -73,6 +73,7 @@ def trouble_of(
     if not miss.closed:
         return NewtonTrouble.LOCAL_EXTREMUM if miss.known else None
     grew = sum(b > a for a, b in pairwise(sizes))
+    # around an inflection Newton-Raphson swings with growing steps
     if 2 * grew > len(sizes) - 1 and _bends_both_ways(block, miss.v, v[block.variables]):
         return NewtonTrouble.INFLECTION
     return None
@@ -87,6 +88,7 @@ def _is_extremum(block: Block, v: Array) -> bool:
     if not (np.isfinite(r).all() and np.isfinite(j).all()):
         return False
     size = float(np.linalg.norm(r))
+    # at a singular J that is no extremum F has a part within the range of J
     if not size or np.linalg.norm(j.T @ r) > _FLAT * size:
         return False
     _, _, right = np.linalg.svd(j)
@@ -122,6 +124,7 @@ def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
     ends = np.stack([guess[block.variables], found[block.variables]])
     weights, scale = block.system.variable_scale[:n], block.system.equation_scale
     slopes = block.system.jacobian(ends)[:, :, :n] * weights / scale[:, None]
+    # divided by the size of J, so that the limit of flatness has no unit
     signs = np.linalg.det(slopes) / np.linalg.norm(slopes, axis=(1, 2)) ** n
     if not (np.abs(signs) > _FLAT).all() or signs[0] * signs[1] > 0.0:
         return None

@@ -23,7 +23,7 @@ __all__ = ["MOST_UNKNOWNS", "ReachableRange", "assembled_near", "reach_towards"]
 
 MOST_UNKNOWNS = 200  # of a mechanism whose circuit is followed for an explanation
 _CLOSED = 1e-9  # relative gap of a position that was found with the input free
-_HELD = 0.1  # weight of the input beside the unknowns: it moves as little as need be
+_HELD = 0.1  # weight of the input relative to the unknowns: it moves as little as possible
 _TRIES = 8  # input values around the circle from which an assembled position is looked for
 _TURN = 2.0 * np.pi
 _FAST = 6.0  # where a variable moves so many times faster than the input, a dead point is near
@@ -34,7 +34,7 @@ _CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # unti
 
 @dataclass(frozen=True)
 class _Edge:
-    """A value of the path on a circuit, what is there, and its bracket if it was located."""
+    """A value of the path on a circuit, its kind of limit, and its bracket if it was located."""
 
     t: float
     kind: str = "as far as the circuit was followed"
@@ -45,9 +45,9 @@ class _Edge:
 class ReachableRange:
     """The nearest input values that a circuit reaches.
 
-    ``inputs`` (p,): file units. ``kind``: what ends the circuit there; empty if the circuit
-    reaches what was asked. ``proved``: whether it was followed with proof. ``first_dead_point``
-    (p,): the first one met on the way from the start.
+    ``inputs`` (p,): file units. ``kind``: the limit that ends the circuit there; empty if
+    the circuit reaches the value asked for. ``proved``: whether it was followed with proof.
+    ``first_dead_point`` (p,): the first dead point on the way from the start.
     """
 
     inputs: Array
@@ -57,10 +57,11 @@ class ReachableRange:
 
 
 def assembled_near(model: Model, path: InputPath, lead: int, v: Array) -> Array | None:
-    """An assembled position (N,) near v, the input moved as little as need be; ``None`` if none."""
+    """An assembled position (N,) near v, the input moved as little as possible; or ``None``."""
     locked = ParametrizedTable(model.compiled.table, path, lead).table
     n = model.compiled.solver.unknowns
     scale = locked.variable_scale.copy()
+    # small weights make a change of the input expensive
     scale[n:] *= _HELD
     free = replace(locked, unknowns=locked.variables, variable_scale=scale)
     tries = _TRIES if turns_freely(model) else 1
@@ -93,6 +94,7 @@ def reach_towards(
     period = _TURN if turns_freely(model) else None
     away = asked - float(v[leads.parameter])
     if period is not None:
+        # the shorter way around
         away = math.remainder(away, period)
     walks = _circuit(leads, v, math.copysign(1.0, away))
     if not walks:
@@ -142,6 +144,7 @@ def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns:
     inputs: Array = path.at(edge.t) / model.input_scale
     value = edge.t / scale
     if edge.bracket is not None:
+        # a short number if it lies within the proved bracket
         short = round(value, 9)
         value = short if edge.bracket[0] / scale <= short <= edge.bracket[1] / scale else value
     inputs[lead] = value + (turns * model.units.angle.turn if turns else 0.0) + 0.0
@@ -181,6 +184,7 @@ def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> T
     table = leads.table
     slope = table.jacobian(v[None, :])[0] * table.variable_scale / table.equation_scale[:, None]
     speed = np.abs(np.linalg.svd(slope)[2][-1])
+    # the parameter is fast enough to lead from here
     if speed.max() <= _FAST * speed[leads.parameter]:
         return None
     lead = int(np.argmax(speed))
@@ -199,7 +203,7 @@ def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> T
 
 
 def _edges(leads: ParametrizedTable, walk: TracedCurve) -> list[_Edge]:
-    """The values of the parameter on a curve, with what is at those where it may turn or end."""
+    """The values of the parameter on a curve, with the kind of limit where it may turn or end."""
     p = leads.parameter
     found = [_Edge(float(t)) for leg in walk.curve.legs for t in leg.v[:, p]]
     found += [_Edge(turn.t, "dead point", turn.bracket) for turn in walk.turns]

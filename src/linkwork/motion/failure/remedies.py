@@ -30,7 +30,7 @@ def remedies_of(model: Model, number: int, v: Array) -> tuple[Remedy, ...]:
     number : int
         The block that cannot be closed.
     v : (N,)
-        The blocks before it solved, itself as near to closing as it comes.
+        With the earlier blocks solved, and this block as near to closure as possible.
 
     Notes
     -----
@@ -67,6 +67,7 @@ def _needed(model: Model, length: ChangeableLength, members: list[int], v: Array
         if changed is None:
             raise ValueError(f"no mechanism has {length.name} = {p}")
         blocks = changed.compiled.solver.blocks
+        # with another topology the unknowns would not correspond
         if [blocks[k].equations for k in members] != own:
             raise ValueError(f"other blocks with {length.name} = {p}")
         return JoinedBlocks(changed.compiled.solver, members)
@@ -84,7 +85,9 @@ def _needed(model: Model, length: ChangeableLength, members: list[int], v: Array
     except (ValueError, IndexError):
         return None
     fold = locate_fold(family, v[joined.order[:n]], length.value)
+    # a fold without a solution next to it would be no remedy
     if fold is None or not fold.checked or (fold.p <= 0.0 and not length.signed):
         return None
+    # a special value, such as the sum of two lengths, is meant exactly
     short = float(np.round(fold.p, 9))
     return short if abs(short - fold.p) <= _ROUND * size else fold.p

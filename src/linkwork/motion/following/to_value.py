@@ -71,6 +71,7 @@ def follow_to_value(
     span = inputs - origin
     weights = solver.variable_scale[solver.unknowns :]
     lead = int(np.argmax(np.abs(span / weights)))
+    # the input that moves most in its weight leads, so that no rate is infinite
     rate = span / span[lead]
     path = InputPath(
         origin=origin - rate * origin[lead], rate=rate, size=leading_scale(model, lead)
@@ -145,6 +146,7 @@ def _turns_away(model: Model, way: float) -> list[int]:
     if not turns_freely(model):
         return [0]
     whole = int(way / (2.0 * np.pi))
+    # the straight way first, then short of it by whole turns, then the other way around
     return list(dict.fromkeys([0, whole, whole + int(np.copysign(1.0, way))]))
 
 

@@ -24,8 +24,8 @@ _OPTIONS = CurveOptions(most_turns=60, most_legs=200, track=replace(BOLD, most_s
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Laps:
-    """``inputs`` (p,), in file units: values so many laps nearer to the start; ``gain`` (N,): what
-    all laps left out add to the variables; ``proved``: that a lap leads back to where it began.
+    """``inputs`` (p,), in file units: values so many laps nearer to the start; ``gain`` (N,): the
+    change of the variables over all laps left out; ``proved``: that a lap leads back to its start.
     """
 
     inputs: Array
@@ -66,8 +66,10 @@ def laps_to(model: Model, v: Array, target: Array) -> Laps | None:
     gain = curve.legs[-1].v[-1] - v
     turns = round(float(gain[n]) / _TURN)
     whole = whole_turns(leads, v, curve.legs[-1].v[-1])
+    # a lap that adds nothing to the input, or other fractions of turns, cannot be left out
     if turns == 0 or not leads.repeats_after(whole):
         return None
+    # exactly whole turns, without the rounding of the traced curve
     gain = _TURN * whole
     laps = math.floor(abs(span) / (abs(turns) * unit))
     if laps * abs(turns) * unit == abs(span):

@@ -1,4 +1,4 @@
-"""Following one branch of solutions along a path of inputs, with steps as small as safety asks.
+"""Following one branch of solutions along a path of inputs, with steps as short as safety demands.
 
 Predictor: second-order Taylor. Corrector: Newton-Raphson. A step is taken only if the corrector
 contracts fast, stays near the prediction, keeps the sign of det J in every block, and arrives with
@@ -139,7 +139,7 @@ class Track:
         return self.nodes[-1].t
 
 
-#: Told every step's two nodes; the track is finished where it returns true.
+#: Called with both nodes of every step; the track is finished where it returns true.
 Watch = Callable[[Node, Node], bool]
 
 
@@ -162,7 +162,7 @@ def rows_of_nodes(nodes: Sequence[Node]) -> SolvedRows:
 def predict(here: Node, t: float) -> Array:
     """The second-order Taylor polynomial of a node at t, (N,)."""
     h = t - here.t
-    value: Array = here.v + h * here.first + (0.5 * h * h) * here.second
+    value: Array = here.v + h * here.first + (0.5 * h * h) * here.second  # eq. (17)
     return value
 
 
@@ -209,12 +209,16 @@ def follow(
 
 
 class _Trial:
-    """A step by second-order Taylor and Newton-Raphson, taken only if nothing speaks against it."""
+    """A step by second-order Taylor and Newton-Raphson, taken only if all its checks succeed."""
 
     def __init__(self, solver: BlockSolver, path: InputPath, options: TrackOptions) -> None:
         self.solver, self.path, self.options = solver, path, options
         self.quick = replace(
-            solver.options, max_steps=6, largest_turn=math.inf, solution_tolerance=_NODE_TOLERANCE
+            # a prediction that needs more steps was too far: halving costs less
+            solver.options,
+            max_steps=6,
+            largest_turn=math.inf,
+            solution_tolerance=_NODE_TOLERANCE,
         )
 
     def room(self, here: Node, sign: float) -> float:
@@ -224,9 +228,10 @@ class _Trial:
         """
         speed = np.abs(here.first) / self.solver.variable_scale
         k = int(np.argmax(speed))
+        # rates that shrink lead away from a dead point
         if speed[k] * self.path.size < _FAST or sign * here.first[k] * here.second[k] <= 0.0:
             return math.inf
-        return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))
+        return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))  # eq. (24)
 
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct and judge."""
@@ -235,18 +240,22 @@ class _Trial:
         guess[solver.unknowns :] = path.at(t)
         found = solver.solve(guess[None, :], self.quick)
         correction = float(found.first_step[0])
+        # eq. (22): Taylor's error of second order grows like h³
         factor = by_error(correction, opt.aim, 3)
         if found.status[0] != CONVERGED or found.contraction[0] > opt.contraction:
+            # a first correction says how long the step should have been only if Newton did not
+            # merely stall
             too_far = correction > opt.largest_correction
             return Attempt(None, factor if too_far else None)
         if correction > opt.largest_correction:
             return Attempt(None, factor)
         rates = solver.rates(found.v, path.rate)
+        # det J changes its sign at a dead point and at a change point: another branch
         if not (rates.orientation[0] == here.orientation).all():
             return Attempt(None)
         if not rates.nearness[0] <= opt.largest_condition:
             return Attempt(None)
-        drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale
+        drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale  # eq. (23)
         turn = float(np.abs(drift * h).max())
         if not turn <= opt.rate_error:
             return Attempt(None)
@@ -257,6 +266,8 @@ class _Trial:
 def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:
     """Rates that grow without bound are the mark of a dead point; otherwise nothing is claimed."""
     weights = solver.variable_scale
+    # at a dead point rates are infinite; the last node shows it by rates far above those of the
+    # start
     fast = scale * float(np.abs(here.first / weights).max())
     usual = scale * float(np.abs(start.first / weights).max())
     return Status.OUT_OF_REACH if fast > 1e3 * max(usual, 1.0) else Status.LOST
@@ -274,6 +285,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     v, status = found.v.copy(), found.status.copy()
     rates = solver.rates(found.v, path.rate)
     weights = solver.variable_scale
+    # a row so far from its interpolation may lie on another branch: it is followed step by step
     moved = np.abs((v - guess) / weights).max(axis=1)
     expected = np.stack([track.nodes[k].orientation for k in left])
     doubtful = (status != CONVERGED) | ~(moved <= 0.1) | (rates.orientation != expected).any(axis=1)
@@ -304,6 +316,7 @@ def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     times, v, d1, d2 = nodes.t, nodes.v, nodes.first, nodes.second
     if len(nodes) == 1:
         return np.repeat(v, len(t), axis=0), np.zeros(len(t), dtype=np.intp)
+    # the last node belongs to the last step
     left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
     h = (times[left + 1] - times[left])[:, None]
     s = (t[:, None] - times[left][:, None]) / h
@@ -311,8 +324,8 @@ def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     a1, b1 = d1[left] * h, d1[left + 1] * h
     a2, b2 = d2[left] * h * h, d2[left + 1] * h * h
     rise = v1 - v0
-    c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2
+    c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2  # eq. (20)
     c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
     c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
-    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))
+    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
     return value, left

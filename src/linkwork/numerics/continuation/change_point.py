@@ -24,7 +24,7 @@ __all__ = [
     "tangents_behind_kink",
 ]
 
-_SHARES = 17  # in which rates are led around a kink
+_SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
@@ -34,7 +34,7 @@ class ChangePoint:
     """A crossing of two branches on a path.
 
     ``t`` with ``bracket``; ``v`` (N,) the position; ``onward`` and ``other`` (N,): derivative by t
-    of the branch that was followed and of the one that crosses it (NaN if that one keeps t);
+    of the branch that was followed and of the branch that crosses it (NaN if t is constant on it);
     ``directions`` (2, N): both as weighted unit vectors, zero where a block takes no part;
     ``block`` the number of the block that becomes singular; ``located`` whether it was found to
     rounding.
@@ -86,6 +86,7 @@ def locate_change_point(
         system = JoinedBlocks(solver, closure_of(solver, block))
         mine = system.order[: system.unknowns]
         known = KnownJet.along(path)
+        # the crossing may lie a little before the last node, but not on the other side of it
         found = _locate(system, known, last.v[mine], last.t, last.first[mine])
         if found is None or (found.t - last.t) * side < -1e-3 * near:
             continue
@@ -132,19 +133,19 @@ def tangents_behind_kink(
     before: tuple[Array, Array, Array],
     after: tuple[Array, Array, Array],
 ) -> tuple[Array, Array] | None:
-    """The rates (n,) of the branch followed and of the other one, where what is known has a kink.
+    """The rates (n,) of both branches, the followed one first, at a kink of the known variables.
 
     Parameters
     ----------
     point : ChangePoint
         Of a block, at the kink.
     before, after : y, y', y'' (p,) each
-        What the block takes as known, on both sides of the kink.
+        The block's known variables, on both sides of the kink.
 
     Notes
     -----
-    The rates of what is known are led from one side to the other, and both tangents with them:
-    straight on where both rest for a moment.
+    The rates of the known variables are moved from one side to the other in small steps, and both
+    tangents with them; where both rest for a moment they are extrapolated.
     """
     block = solver.blocks[point.block]
     weights = block.system.variable_scale[: len(block.unknowns)]
@@ -159,11 +160,12 @@ def tangents_behind_kink(
         w = np.linalg.svd(crossing.linear(x, point.t)[1])[0][:, -1]
         found = crossing.tangents(x, point.t, w)
         if found is None:
-            continue  # what is known rests
+            continue  # the known variables rest
         both = np.stack([_rate(z) for z in found])
         if not np.isfinite(both).all():
             return None
         ahead = here + (share - last) * slope
+        # the quadratic equation gives its roots in any order: tangents keep to their extrapolation
         if np.abs(both[::-1] - ahead).max() < np.abs(both - ahead).max():
             both = both[::-1]
         slope = (both - here) / (share - last)
@@ -189,10 +191,12 @@ def _locate(system: Equations, known: KnownJet, x: Array, t: float, own: Array) 
     if found is None:
         return None
     x, t, w, beta, error = found
+    # β is the gap between two branches that come near each other and do not cross
     tangents = None if abs(beta) > _UNFOLDED else crossing.tangents(x, t, w)
     if tangents is None:
         return None
     mine = own / crossing.weights
+    # the branch that was followed has the tangent nearer to its last rates
     onward, other = sorted(tangents, key=lambda z: _distance(_rate(z), mine))
     return _Located(x=x, t=t, error=error, onward=onward, other=other)
 
@@ -287,6 +291,7 @@ def _ratios(solver: BlockSolver, v: Array) -> list[float]:
         n = len(block.unknowns)
         system, here = block.system, v[block.variables]
         j = system.jacobian(here[None, :])[0, :, :n]
+        # a column that is about to vanish must not be blown up to size 1
         sizes = np.maximum(
             np.abs(j / system.equation_scale[:, None]).max(axis=0), _near(system, here)
         )
@@ -302,6 +307,7 @@ def _near(system: System, v: Array) -> Array:
     i, j = (index.ravel() for index in np.indices((n, count)))
     column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
     lanes = np.repeat(v[None, :], n * count, axis=0)
+    # eq. (5)
     mixed = 0.25 * (
         system.second_directional_derivative(lanes, column + step)
         - system.second_directional_derivative(lanes, column - step)

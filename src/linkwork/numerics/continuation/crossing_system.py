@@ -29,7 +29,7 @@ _STEPS = 12
 
 @dataclass(frozen=True)
 class KnownJet:
-    """What some equations take as known as a motion: y, y', y'' by t, (p,) each."""
+    """The motion of the known variables of some equations: y, y', y'' by t, (p,) each."""
 
     at: Callable[[float], tuple[Array, Array, Array]]
 
@@ -89,12 +89,13 @@ class CrossingSystem:
         v, basis, second = self._at(x, t)
         lanes = np.repeat(v, size * size, axis=0)
         a, b = basis[i], basis[j]
+        # eq. (5)
         values = 0.25 * (
             self.system.second_directional_derivative(lanes, a + b)
             - self.system.second_directional_derivative(lanes, a - b)
         )
         matrix: Array = (values / self.scale @ w).reshape(size, size)
-        if second.any():  # what is known does not move at a constant rate
+        if second.any():  # known variables that do not move at a constant rate
             slope = self.system.jacobian(v)[0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))
         return matrix
@@ -104,17 +105,18 @@ class CrossingSystem:
         n = self.n
         _, d = self.linear(x, t)
         w = np.linalg.svd(d)[0][:, -1]
+        # the left singular vector of the smallest singular value is near the null vector
         c, beta, error = w.copy(), 0.0, np.inf
         for _ in range(_STEPS):
             f, d = self.linear(x, t)
             h = self.bend(x, t, w)
             matrix = np.zeros((2 * n + 2, 2 * n + 2))
-            matrix[:n, : n + 1] = d
+            matrix[:n, : n + 1] = d  # derivatives of eq. (41): rows F + β c, columns x, t, β, w
             matrix[:n, n + 1] = c
-            matrix[n : 2 * n + 1, : n + 1] = h
+            matrix[n : 2 * n + 1, : n + 1] = h  # rows Dᵀw
             matrix[n : 2 * n + 1, n + 2 :] = d.T
-            matrix[2 * n + 1, n + 2 :] = 2.0 * w
-            right = np.concatenate([f + beta * c, d.T @ w, [w @ w - 1.0]])
+            matrix[2 * n + 1, n + 2 :] = 2.0 * w  # row wᵀw
+            right = np.concatenate([f + beta * c, d.T @ w, [w @ w - 1.0]])  # eq. (41)
             try:
                 change = -np.linalg.solve(matrix, right)
             except np.linalg.LinAlgError:
@@ -126,6 +128,7 @@ class CrossingSystem:
             beta += float(change[n + 1])
             w = w + change[n + 2 :]
             last, error = error, abs(float(change[n]))
+            # the change of t no longer shrinks: rounding is all that is left
             if error <= 2.0 * EPSILON * max(1.0, abs(t)) or (error >= last and last < 1e-10):
                 break
         return x, t, w, beta, error
@@ -135,8 +138,9 @@ class CrossingSystem:
         _, d = self.linear(x, t)
         null = np.linalg.svd(d)[2][-2:]
         h = self.bend(x, t, w)
-        a, b, c = null[0] @ h @ null[0], null[0] @ h @ null[1], null[1] @ h @ null[1]
+        a, b, c = null[0] @ h @ null[0], null[0] @ h @ null[1], null[1] @ h @ null[1]  # eq. (42)
         square = b * b - a * c
+        # complex tangents: an isolated point, no crossing of real branches
         if square <= 0.0:
             return None
         root = np.sqrt(square)

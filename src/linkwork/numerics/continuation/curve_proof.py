@@ -1,4 +1,4 @@
-"""Proof that a traced curve is one curve: every leg, every change of leader, and its closing."""
+"""Proof that a traced curve is one curve: every leg, every change of leader, the closure."""
 
 from __future__ import annotations
 
@@ -49,6 +49,7 @@ def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
     if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
             proof = _proof_of(leg, max(_MOST_STEPS - steps, 0))
+            # from its first position, which the previous leg has proved
             legs[k] = proof.connected_to(0).all()
             steps += int(proof.pieces.sum())
             if steps > _MOST_STEPS or proof.given_up.any():
@@ -74,6 +75,7 @@ def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:
         np.sign(part.nodes[-1].t - part.nodes[0].t) * part.first[place] / leads.scale
         for part, place in ((leg, -1), (following, 0))
     )
+    # a leg that turned around would prove the way back, not the way on
     return bool(arrival @ departure > 0.0)
 
 
@@ -84,6 +86,7 @@ def leg_is_proved(leg: Leg) -> bool:
 
 def _proof_of(leg: Leg, most: int) -> ProvenPath:
     nodes = leg.nodes
+    # a leg may be traced downwards; proofs take rising values, so t and odd derivatives change sign
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
     points = SolvedRows(
         t=sign * np.array([node.t for node in nodes]),
@@ -98,10 +101,10 @@ def _proof_of(leg: Leg, most: int) -> ProvenPath:
 
 
 def same_solution(one: Parametrization, other: Parametrization, v: Array) -> bool:
-    """Whether the position that one leader proves near v (N,) is the one that another proves.
+    """Whether two leaders prove the same position near v (N,).
 
-    The true position of the first may differ from v in the other's leader, by at most what is
-    proved of it; the second is proved for all those values, and alone in its box.
+    The first position may differ from v in the other's leader by at most its proved error; the
+    second is proved for all those values, and is the only one in its box.
     """
     if one.lead == other.lead:
         return True
@@ -118,7 +121,7 @@ def _meets(leads: Parametrizations, own: Parametrization, start: Array, end: Arr
     if not leads.repeats_after(whole_turns(leads, start, end)):
         return False
     gap = apart(leads, start, end)
-    # whole turns are no floats: what is left of them, and their rounding, may be off
+    # whole turns are no floats: the gap includes their rounding
     left = np.abs(gap) + 8.0 * UNIT_ROUNDOFF * np.maximum(np.abs(end), np.abs(start))
     left = left[own.order]
     first = reach(own.solver, start[own.order][None, :], left[None, -1:])

@@ -79,7 +79,7 @@ class Leg:
 class Curve:
     """Legs in the order traced and why the curve ends.
 
-    ``passes``: the positions (N,) at which the parameter came by its starting value, whole turns
+    ``passes``: the positions (N,) at which the parameter passed its starting value, whole turns
     aside, each with the number of the leg that it ends. ``crossing``: the change point that it ends
     at, as the last leg's leader sees it.
     """
@@ -120,7 +120,7 @@ def trace(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Pass:
-    """A piece of a step in which the parameter goes one way and comes by a value."""
+    """A piece of a step in which the parameter is monotonic and passes a value."""
 
     value: float
     low: Node
@@ -138,7 +138,7 @@ class _Tracer:
         self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
-        # a value to be passed on which the curve stands, so that it is not passed again at once
+        # the starting value, on which the curve is now: it does not count as passed again at once
         self.leaving: float | None = float(start[leads.parameter])
         own = self._own()
         if own is None:
@@ -170,6 +170,7 @@ class _Tracer:
                 self.crossing = _crossing_ahead(leg)
                 if self.crossing is not None:
                     return self._end_trace(CircuitEnd.CHANGE_POINT)
+                # another leader may pass where this one could not; twice stuck is singular
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
                 if stuck > 1:
@@ -221,6 +222,7 @@ class _Tracer:
             return bool(speed.max() > opt.fast * speed[-1])
 
         size = float(weights[-1])
+        # so that a circuit that runs to infinity ends after a few legs
         if not self.leads.is_angle[led.lead]:  # a length on its way to infinity doubles in one leg
             size = max(size, abs(node.t) / _LEG)
         goal = node.t + sign * _LEG * size
@@ -256,6 +258,7 @@ class _Tracer:
                 return home
             return t + sign * 1e3 * float(self.leads.scale[self.leads.parameter])
         turns = (t - home) / period
+        # rounding may give the value that the curve is just leaving: the loop below steps on
         number = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
         while (home + number * period - t) * sign <= 0.0 or home + number * period == leaving:
             number += int(sign)
@@ -311,6 +314,7 @@ class _Tracer:
         found = own.solver.solve(near[own.order][None, :])
         v = own.whole(found.v[0])
         same = np.abs((v - near) / self.leads.scale).max() < LARGEST_POLISH
+        # close to a dead point the correction may jump to the other branch
         same = same and np.array_equal(own.node(v).orientation, side)
         return led.node(v) if found.status[0] == CONVERGED and same else here
 
@@ -319,6 +323,7 @@ class _Tracer:
         lengths = ~self.leads.is_angle
         if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
             return CircuitEnd.RUNS_TO_INFINITY
+        # only where the parameter has its starting value can the curve close
         passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1
         if passed and same_position(self.leads, v, self.start):
             return CircuitEnd.CLOSED

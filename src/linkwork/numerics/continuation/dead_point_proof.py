@@ -55,7 +55,7 @@ def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | 
     v : (N,)
         The position, in the solver's order, at which the parameter's rate is zero to rounding.
     place : int
-        Where the parameter stands in the solver's order.
+        The index of the parameter in the solver's order.
 
     Returns
     -------
@@ -72,6 +72,7 @@ def prove_dead_point(led: Parametrization, v: Array, place: int) -> FoldProof | 
     if own is None or not bend > 0.0:
         return None
     off = abs(float(rates.first[0, place])) + float(own.rates[0, place])
+    # at both ends t' has to exceed its own error: t' grows by about bend times the width
     width = max(_ROOM * off / bend, _LEAST * UNIT_ROUNDOFF * max(1.0, abs(float(v[-1]))))
     for _ in range(_WIDENINGS):
         found = _turns_within(led, v, place, width)
@@ -91,7 +92,9 @@ def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> F
     box = reach(solver, v[None, :], np.full((1, 1), whole), at_v)
     if not box.holds[0]:
         return None
+    # first-order guesses of both ends, then solved
     ends = solver.rates(v[None, :], led.path.rate).first * np.array([[-width], [width]]) + v
+    # exactly there: the product above has rounded them
     ends[:, -1] = v[-1] + np.array([-width, width])
     found = solver.solve(ends).v
     rates = solver.rates(found, led.path.rate).first
@@ -100,7 +103,7 @@ def _turns_within(led: Parametrization, v: Array, place: int, width: float) -> F
         return None
     off = np.abs(found - v)[:, :-1] + errors.error_bound[:, :-1]
     slow, error = rates[:, place], errors.rates[:, place]
-    turned = slow[0] * slow[1] < 0.0 and (np.abs(slow) > error).all()
+    turned = slow[0] * slow[1] < 0.0 and (np.abs(slow) > error).all()  # eq. (40)
     if not (turned and (off < box.isolation_radius).all()):
         return None
     weights = solver.variable_scale
@@ -155,12 +158,14 @@ def _block_errors(
     size, along = np.abs(part.inverse), np.abs(d)
     slip = matrix_vector(system.curvature(here, part.inverse).jacobian_rounding, along)
     slip += (d.shape[1] + n + 4) * UNIT_ROUNDOFF * matrix_vector(np.abs(part.jacobian), along)
+    # eq. (39): |A J d|
     y = np.abs(matrix_vector(part.inverse, matrix_vector(part.jacobian, d))) + matrix_vector(
         size, slip
     )
     y += bend.between(box, along)
     known = errors[:, block.variables]
     known[:, :n] = 0.0
+    # eq. (39): |A J_k| |e_k|
     y = (y + matrix_vector(at.slope, known[:, n:]) + bend.between(box, known)) * PROOF_SLACK
     # e ≤ y + Z e, in the block's weights
     w = system.variable_scale[:n]
@@ -172,6 +177,7 @@ def _block_errors(
     room = 1.0 - (z / w).max(axis=1)
     if not (room > 0.0).all():
         return None
+    # eq. (39) solved for the norm of e, then row by row
     norm = (y / w).max(axis=1) / room * PROOF_SLACK
     found: Array = (y + z * norm[:, None]) * PROOF_SLACK
     return found if np.isfinite(found).all() else None

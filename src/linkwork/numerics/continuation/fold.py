@@ -1,6 +1,6 @@
 """Where a family of systems begins to have solutions: the fold between none and two.
 
-At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; beside it, on the side
+At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; near it, on the side
 where -2 (wᵀF_p)(p - p0) / wᵀD²F[z, z] > 0, there are two solutions x + a z ± ..., beyond it none.
 The singularity is measured by bordering (Griewank & Reddien 1984, doi:10.1093/imanum/4.3.295).
 """
@@ -31,7 +31,7 @@ class FoldFamily:
     """Systems with a parameter p and the same unknowns; ``inputs`` are their known variables.
 
     ``low``, ``high``: the systems at two values ``step`` apart, for derivatives by p; they need
-    not lie at the p in question, since lengths stand in loops as factors.
+    not lie at the p in question, since loops are linear in lengths.
     ``size``: the natural size of a change of p.
     """
 
@@ -97,13 +97,13 @@ class _At:
         """
         n = self.n
         bordered = np.zeros((n + 1, n + 1))
-        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = self.j, self.w, self.z
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = self.j, self.w, self.z  # eq. (43)
         unit = np.eye(n + 1)[n]
         right, left = np.linalg.solve(bordered, unit), np.linalg.solve(bordered.T, unit)
         self.z, self.w = right[:n], left[:n]
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n], whole[:n, n] = self.j, self.f_p
-        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]
+        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]  # eq. (43): dg
         whole[n, n] = -self.w @ self.j_p @ self.z
         step: Array = -np.linalg.solve(whole, np.concatenate([self.f, [right[n]]]))
         return step
@@ -132,6 +132,7 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
         try:
             here = _At(family, x, p)
             slope = float(here.w @ here.f_p) * family.size
+            # the length does not change the gap: it is no remedy
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
@@ -148,6 +149,7 @@ def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] 
         if not np.isfinite(step).all():
             return None
         size = max(float(np.abs(step[:-1]).max()), abs(float(step[-1])) / family.size)
+        # far from the fold the Newton step of a singular system is too long
         step *= min(1.0, _LONGEST / size) if size else 1.0
         x = x + step[:-1] * here.weights[: here.n]
         p += float(step[-1])
@@ -164,13 +166,14 @@ def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | Non
     here = _At(family, x, p)
     if np.abs(here.f).max() > _CLOSED:
         return None
+    # solutions have to exist on the side that leads away from the present length
     towards = np.sign(p - begin) or 1.0
-    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)
+    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)  # eq. (44)
     if not np.isfinite(ratio) or ratio * towards <= 0.0:
         return None
     further = towards * _FURTHER * family.size
     system, inputs = family.at(p + further), family.inputs
-    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]
+    start = x + np.sqrt(ratio * further) * here.z * here.weights[: here.n]  # eq. (44)
     found = _is_solved_from(system, np.concatenate([start, inputs]))
     return Fold(p=p, x=x, opens=float(towards), checked=found)
 

@@ -57,7 +57,7 @@ class Parametrization:
         return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
 
     def place(self, variable: int) -> int:
-        """Where a variable of the whole stands in the solver's order."""
+        """The index of a variable of the whole in the solver's order."""
         return int(np.flatnonzero(self.order == variable)[0])
 
     def whole(self, part: Array) -> Array:
@@ -89,11 +89,12 @@ def fastest_leader(
     first: int | None = None,
 ) -> tuple[Parametrization, Node] | None:
     """The fastest variable that determines all others at a position, and the node it gives."""
-    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]
+    by_speed = [int(k) for k in np.argsort(-speed, kind="stable")]  # eq. (35)
     for lead in by_speed if first is None else [first, *by_speed]:
         led = leads.with_parameter(lead) if lead != avoid and speed[lead] > 0.0 else None
         if led is not None:
             node = led.node(v)
+            # a leader with a singular Jacobian determines nothing
             if np.isfinite(node.second).all():
                 return led, node
     return None
@@ -121,6 +122,7 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     one lies where only the other is. Where nothing is proved, they agree if they do to rounding.
     """
     turns, p = whole_turns(leads, a, b), leads.parameter
+    # the equations are the same whole turns away, but the numbers have to agree
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale
     rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
@@ -128,8 +130,10 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
     size = 1.0 + np.abs(near / leads.scale).max()
+    # equal numbers need no proof
     if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
+    # both at exactly one value of the parameter, so that only one branch is compared with the other
     near[:, p] = a[p]
     sharp = replace(own.solver.options, equation_tolerance=EPSILON)
     found = own.solver.solve(near[:, own.order], sharp).v

@@ -1,7 +1,7 @@
 """Across change points, block by block: each on its own side, driven by the blocks before it.
 
 Where several loops can close in two ways at one input, the equations as a whole lose more than one
-rank, but each block only one: with what it takes as known given as a motion y(t), a block is a
+rank, but each block only one: with its known variables given as a motion y(t), a block is a
 small system of its own, whose crossing is located as if it stood alone. Its motion on the chosen
 branch then drives the blocks behind it. So any number of crossings can lie at one input or next to
 each other.
@@ -84,7 +84,7 @@ def pass_change_points(
     Returns
     -------
     Passage or None
-        ``None`` where a block cannot be told to be on the side that was asked.
+        ``None`` where it is not certain that a block is on the side that was asked for.
     """
     for half in _HALVES:
         begin, end = near - side * half * path.size, near + side * half * path.size
@@ -129,6 +129,7 @@ def _through(
     rows, right = [], []
     for s, jet in ((0.0, at_begin), (1.0, at_end)):
         for order, value in enumerate(jet):
+            # a row of the confluent Vandermonde matrix: the derivative of every power at s
             powers = np.arange(count)
             falling = np.prod([powers - k for k in range(order)], axis=0) if order else 1.0
             rows.append(
@@ -151,6 +152,7 @@ class _Motion:
         n = self.solver.unknowns
         value, first, second = (np.zeros(self.solver.variables) for _ in range(3))
         value[n:], first[n:] = self.path.at(t), self.path.rate
+        # a point just inside the side that is asked for decides which piece holds at a kink
         inside = t + 1e-9 * (towards - t)
         for unknowns, pieces in self.pieces:
             piece = next(
@@ -215,9 +217,10 @@ class _Walk:
             waiting = [point for point in waiting if point not in same]
 
     def _lead_block(self, number: int, block: Block) -> list[_Piece] | None:
-        """The pieces of a block's motion from one kink of what drives it to the next."""
+        """The pieces of a block's motion, each from one kink of its known variables to the next."""
         x = self.start.v[block.unknowns]
         pieces: list[_Piece] = []
+        # a copy: crossings found on the way add kinks for later blocks only
         kinks = list(self.kinks)
         while len(kinks) > 1:
             steps = self._follow(block, kinks[0], kinks[1], x)
@@ -248,15 +251,15 @@ class _Walk:
         whole[block.variables] = v
         part = linearise_block(block, whole[None, :])
         slope, inverse = part.jacobian[0], part.inverse[0]
-        first = -inverse @ (slope[:, n:] @ y1)
+        first = -inverse @ (slope[:, n:] @ y1)  # eq. (11)
         bend = system.second_directional_derivative(
             v[None, :], np.concatenate([first, y1])[None, :]
         )[0]
-        second = -inverse @ (bend + slope[:, n:] @ y2)
+        second = -inverse @ (bend + slope[:, n:] @ y2)  # eq. (12)
         w, s = system.variable_scale[:n], system.equation_scale
         forward = np.abs(slope[:, :n] * w / s[:, None]).sum(axis=1).max(initial=0.0)
         backward = np.abs(inverse * s / w[:, None]).sum(axis=1).max(initial=0.0)
-        condition = float(forward * backward)
+        condition = float(forward * backward)  # eq. (14)
         return _Step(t=t, x=x, first=first, second=second), int(part.sign[0]), condition
 
     def _solve(self, block: Block, t: float, guess: Array, towards: float) -> Array | None:
@@ -273,7 +276,7 @@ class _Walk:
         steps = [here]
         for t in np.linspace(begin, end, _STEPS + 1)[1:].tolist():
             h = t - here.t
-            guess = here.x + h * here.first + 0.5 * h * h * here.second
+            guess = here.x + h * here.first + 0.5 * h * h * here.second  # eq. (17)
             x_new = self._solve(block, t, guess, begin)
             if x_new is None or not np.abs((x_new - guess) / weights).max() <= _OFF:
                 return None
@@ -286,7 +289,7 @@ class _Walk:
     def _across(
         self, number: int, block: Block, kinks: Sequence[float], x: Array
     ) -> list[_Piece] | None:
-        """The block led across the change point ahead: to the next kink, or the one behind it."""
+        """Lead the block across the change point ahead, to the next kink or the kink after that."""
         begin, end = kinks[0], kinks[1]
         before, _, condition = self._step(block, begin, x, end)
         point = self._locate(number, block, before) if condition < _REGULAR else None
@@ -313,7 +316,7 @@ class _Walk:
     def _at_kink(
         self, block: Block, before: _Step, point: ChangePoint, kink: float, end: float
     ) -> list[_Piece] | None:
-        """The block led across a change point at a kink of what drives it: both at one input."""
+        """Lead the block across a change point that lies at a kink of its known variables."""
         if not _is_at(point, kink):
             return None  # so near to each other that nothing is resolved in between
         sides = (before.t, end)
@@ -333,15 +336,15 @@ class _Walk:
         ]
 
     def _locate(self, number: int, block: Block, before: _Step) -> ChangePoint | None:
-        """The crossing of a block near the one that was met first."""
+        """The crossing of a block near the crossing that was met first."""
         known = KnownJet(lambda t: self._known(block, t, before.t))
         h = self.near - before.t
-        guess = before.x + h * before.first + 0.5 * h * h * before.second
+        guess = before.x + h * before.first + 0.5 * h * h * before.second  # eq. (17)
         own = before.first + h * before.second
         return locate_crossing(self.solver, number, known, guess, self.near, own)
 
     def _ways(self, onward: Array, other: Array) -> tuple[Array, Array]:
-        """The rates of the branch that was chosen, and of the one that is left."""
+        """The rates of the branch that was chosen, and of the other branch."""
         return (other, onward) if self.turn else (onward, other)
 
     def _keep(self, point: ChangePoint) -> None:
@@ -365,6 +368,7 @@ class _Walk:
         apart = float(np.abs((chosen - left) / weights).max())
         gap = abs(h) * apart if np.isfinite(apart) else abs(h)
         after, _, condition = self._step(block, end, x, t)
+        # the position may have jumped to the branch that was left
         close = bool(float(np.abs((x - guess) / weights).max()) <= CLOSER_TANGENT * gap)
         return after if close and condition < _REGULAR else None
 
@@ -382,5 +386,6 @@ def _is_at(point: ChangePoint, t: float) -> bool:
 
 def _less_sharp(point: ChangePoint) -> ChangePoint:
     low, high = point.bracket
+    # its known variables come from a polynomial through solved positions
     more = _DRIVEN * max(1.0, abs(point.t))
     return replace(point, bracket=(low - more, high + more))

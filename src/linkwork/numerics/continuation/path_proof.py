@@ -99,6 +99,7 @@ def prove_path(
     allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
+        # near the anchor first: beyond a step that is not proved no other one is of use
         begins.sort(key=lambda begin: abs(begin + _PIECE // 2 - anchor))
     found: dict[int, ProvenPath] = {}
     for k, begin in enumerate(begins, start=1):
@@ -167,6 +168,7 @@ def _piece(
     connected &= position.holds[1:] & position.holds[:-1]
     open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
+        # a step towards a change point is often proved from its far end only
         back = _take_expansions(places, open_ + 1)
         connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
         open_ = open_[~connected[open_]]
@@ -200,6 +202,7 @@ def _steps(
 
     The inputs are taken from the positions: those of a row may differ from the path's by rounding.
     """
+    # the factor covers the rounding of the difference
     input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
     input_radius += start.input_radius + goal.input_radius
     return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
@@ -236,7 +239,7 @@ class _Open:
 class _Halving:
     """Steps of a path (K,) halved as often as their proof needs.
 
-    ``proved``, ``given_up`` (K,): what became of them. ``pieces`` (K,): how many positions were
+    ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
     solved in between.
     """
 
@@ -266,7 +269,7 @@ class _Halving:
             queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
     def _of_use(self, queue: _Open) -> _Open:
-        """What may still be proved, nearest to the anchor first."""
+        """The steps that may still be proved, nearest to the anchor first."""
         hopeful = self.proved[queue.owner]
         if self.anchor is None:
             return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
@@ -280,13 +283,15 @@ class _Halving:
         return queue.take(keep[np.argsort(away, kind="stable")])
 
     def _halve(self, lanes: _Open) -> _Open:
-        """What is left to be proved of some steps after one more halving."""
+        """Halve some steps once more; return the halves that are not proved."""
         solver = self.solver
         np.add.at(self.pieces, lanes.owner, 1)
         middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
         proof = prove(solver, middle.v, middle.input_radius, places)
         good = found & proof.holds
+        # no number is left between the ends
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
+        # a step that has shrunk to nothing is not going to be proved
         good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
         lost = np.unique(lanes.owner[~good])
         if len(lost):
@@ -311,11 +316,11 @@ class _Halving:
 def _between(
     solver: BlockSolver, path: InputPath, left: SolvedRows, right: SolvedRows
 ) -> tuple[SolvedRows, BoolArray, list[Expansion | None]]:
-    """Positions halfway in t, started from the quintic through both ends; which were found; what
-    proofs take from them.
+    """Positions halfway in t, started from the quintic through both ends; which were found; their
+    expansions for proofs.
     """
     h = (right.t - left.t)[:, None]
-    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)
+    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)  # eq. (21)
     guess += h * h / 64.0 * (left.second + right.second)
     t = 0.5 * (left.t + right.t)
     guess[:, solver.unknowns :] = path.at(t)

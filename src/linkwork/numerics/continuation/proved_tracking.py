@@ -30,7 +30,7 @@ def follow_with_proof(
 ) -> list[Node]:
     """The branch of ``start`` towards ``t = goal``, every step proved before the next is taken.
 
-    The step size is what the proof allows: many short steps near a crossing of branches, and none
+    The proof determines the step size: many short steps near a crossing of branches, and none
     that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
     """
     bounds = StepBounds(size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=2000)
@@ -55,7 +55,7 @@ class _ProvedTrial:
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct, prove the position and the step to it."""
         solver = self.solver
-        guess = predict(here, t)
+        guess = predict(here, t)  # eq. (17)
         guess[solver.unknowns :] = self.path.at(t)
         found = solver.solve(guess[None, :])
         if found.status[0] != CONVERGED:
@@ -64,7 +64,9 @@ class _ProvedTrial:
         proof = self._proof(found.v)
         input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
         reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
+        # the position at either end may be off by its error
         both = np.maximum(proof.error_bound, self.here.error_bound)
+        # eq. (33)
         if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
             return Attempt(None)
         self.here = proof

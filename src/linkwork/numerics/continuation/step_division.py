@@ -1,4 +1,4 @@
-"""Steps of a curve divided so that a variable goes one way in each piece."""
+"""Steps of a curve divided so that a variable is monotonic in each piece."""
 
 from __future__ import annotations
 
@@ -45,6 +45,7 @@ def share_at(place: int, low: Node, high: Node, value: float) -> float:
     """The fraction of a step at which the cubic through a variable has a value."""
     h = high.t - low.t
     ends = (low.v[place], low.first[place], high.v[place], high.first[place])
+    # the cubic is monotonic in a divided step, so bisection finds the only place
     rising = ends[2] > ends[0]
     s0, s1 = 0.0, 1.0
     for _ in range(60):
@@ -82,8 +83,10 @@ def sign_change(
         width = abs(high.t - low.t)
         if least == 0.0 or width <= 4.0 * EPSILON * max(1.0, abs(low.t)):
             break
-        s = a / (a - b)
+        s = a / (a - b)  # eq. (38)
         if number % 3 == 0:
+            # false position can creep from one side: every third try has to have quartered the
+            # bracket
             s = s if width < 0.25 * before else 0.5
             before = width
         here = node_between(led, low, high, min(max(s, _EDGE), 1.0 - _EDGE), sharp)
@@ -94,11 +97,11 @@ def sign_change(
             best, least = here, abs(value)
         if (value > 0.0) == (a > 0.0):
             low, a = here, value
-            b = 0.5 * b if kept < 0 else b
+            b = 0.5 * b if kept < 0 else b  # eq. (38)
             kept = -1
         else:
             high, b = here, value
-            a = 0.5 * a if kept > 0 else a
+            a = 0.5 * a if kept > 0 else a  # eq. (38)
             kept = 1
     return best
 
@@ -110,7 +113,7 @@ def divide_step(
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
     rate halfway. The step is halved until that cubic, give or take its error, is zero at most once;
-    what turns back and forth within the rounding of the rate is not seen.
+    reversals within the rounding of the rate are not seen.
     """
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
@@ -140,6 +143,7 @@ def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: floa
     near = np.abs(value) <= error + space * steepest
     if not near.any():
         return True
+    # a function that near to the cubic has a slope of its own sign wherever it may be zero
     least = 3.1 * error + space * _steepest_change(h, v0, d0, v1, d1)
     rising, falling = slope[near] > least, slope[near] < -least
     return bool(rising.all() or falling.all())
@@ -155,7 +159,7 @@ def _hermite(
 ) -> Array:
     """The cubic through both ends of a step, at the fraction s of it."""
     rise = v1 - v0
-    bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)
+    bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)  # eq. (19)
     return np.asarray(v0 + s * (h * d0 + s * bend))
 
 

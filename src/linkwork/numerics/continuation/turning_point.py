@@ -79,6 +79,7 @@ def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoi
         if leg.led.lead == leads.parameter:
             continue
         place = leg.led.place(leads.parameter)
+        # where t and its second derivative rest, the arc keeps one input: no dead point
         still = _RESTING * leads.scale[leads.parameter] / leads.scale[leg.led.lead]
         level = _LEVEL * still / leads.scale[leg.led.lead]
         for k, (a, b) in enumerate(itertools.pairwise(leg.nodes)):
@@ -90,6 +91,7 @@ def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoi
             chain = divide_step(leg.led, place, a, b)
             for low, high in itertools.pairwise(chain):
                 if _rises(low, place) is not _rises(high, place):
+                    # one sign change per piece: divide_step has separated them
                     yield _within(leads, leg.led, low, high, (number, k))
 
 
@@ -181,7 +183,7 @@ def _follow_to_turn(options: TrackOptions) -> _Following:
 def _first_turn(
     leads: Parametrizations, led: Parametrization, node: Node, sign: float, follow_leg: _Following
 ) -> TurnAhead | None:
-    """The first dead point on the way that the leader goes in a direction."""
+    """The first dead point ahead, with the leader moving in a direction."""
     place = led.place(leads.parameter)
     turned: list[tuple[Node, Node]] = []
 
@@ -215,6 +217,7 @@ def _refine_turn(
         bracket = (min(edges[0], t), max(edges[1], t))
     else:
         off = float(proof.error_bound[place])
+        # outwards, so that the rounding of t ± off cannot shut out the dead point
         bracket = (math.nextafter(t - off, -math.inf), math.nextafter(t + off, math.inf))
     return TurningPoint(
         t=t,
@@ -236,15 +239,16 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
     sharp = replace(led.solver.options, equation_tolerance=EPSILON)
     for _ in range(60):
-        step = -here.first[place] / here.second[place] if here.second[place] else np.inf
+        step = -here.first[place] / here.second[place] if here.second[place] else np.inf  # eq. (36)
         if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
             break
         s = here.t + step
         edges = sorted((low.t, high.t))
         if not edges[0] < s < edges[1]:
+            # Newton has left the sign change: halve it
             s = 0.5 * (low.t + high.t)
             step = s - here.t
-        guess = here.v + step * here.first + 0.5 * step * step * here.second
+        guess = here.v + step * here.first + 0.5 * step * step * here.second  # eq. (17)
         guess[-1] = s
         found = led.solver.solve(guess[None, :], sharp)
         if found.status[0] != CONVERGED:
@@ -264,14 +268,15 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
 def _polish_node(led: Parametrization, here: Node) -> Node:
     """The same node after one step of Newton-Raphson with residuals that are rounded once.
 
-    Where branches nearly cross, a residual that counts as none still moves the dead point. What a
-    block's own correction is goes into those of the blocks behind before anything is rounded.
+    Where branches nearly cross, a residual within the tolerance still moves the dead point. The
+    correction of a block enters those of later blocks before anything is rounded.
     """
     solver = led.solver
     change = np.zeros_like(here.v)
     for block, part in zip(solver.blocks, solver.linearise(here.v[None, :]), strict=True):
         n, own = len(block.unknowns), block.variables
         residual = block.system.exact_residual(here.v[own])[0]
+        # the corrections of earlier blocks move the known variables
         residual = residual + part.jacobian[0, :, n:] @ change[own[n:]]
         change[block.unknowns] = -part.inverse[0] @ residual
     if not np.isfinite(change).all():

@@ -2,7 +2,7 @@
 
 Unknowns U and V, M = 2L complex numbers each, satisfy L linear equations each and M products:
 
-    left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M stands for 1).
+    left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q'     (index M: the 1).
 
 With U = e^{iθ} and V = e^{-iθ}: U_k V_k = 1 for an angle, U_z = V_z for a length along a fixed
 direction, U_z V_a = U_a V_z for one along a turning direction (Wampler 2001, J. Mech. Des. 123,
@@ -70,6 +70,7 @@ class BilinearSystem:
         count, m, loops = len(x), self.size, self.loops
         u, v = _with_one(x[:, :m]), _with_one(x[:, m:])
         p, q, p1, q1 = self.rows
+        # eq. (45)
         f = np.concatenate(
             [u @ self.left.T, v @ self.right.T, u[:, p] * v[:, q] - u[:, p1] * v[:, q1]], axis=1
         )
@@ -86,7 +87,7 @@ class BilinearSystem:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvedRoots:
-    """What is proved of each root, (R,): ``holds``, and ``real`` or ``complex``.
+    """The proofs of roots, (R,): ``holds``, and ``real`` or ``unreal``.
 
     A root is neither if that could not be decided. ``apart``: no two proved roots are the same.
     """
@@ -139,6 +140,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     y_max, z_max = PROOF_SLACK * y.max(axis=1), PROOF_SLACK * z.sum(axis=2).max(axis=1)
     omega = PROOF_SLACK * (size[:, :, m:] @ system._curvature).max(axis=1)
     holds, exists, unique, _ = radii(y_max, z_max, omega, np.zeros_like(omega))
+    # a real root has V = conj(U), so it is its own mirror image
     mirrored = np.concatenate([x[:, m:], x[:, :m]], axis=1).conj()
     gap = np.abs(x - mirrored).max(axis=1, initial=0.0)
     apart = True
@@ -147,7 +149,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
         apart &= bool((away > (exists[k + 1 :] + exists[k]) * PROOF_SLACK)[holds[k + 1 :]].all())
     return ProvedRoots(
         holds=holds,
-        real=holds & (gap + exists < unique),
+        real=holds & (gap + exists < unique),  # eq. (52)
         unreal=holds & (gap > 2.0 * exists * PROOF_SLACK),
         apart=apart,
     )

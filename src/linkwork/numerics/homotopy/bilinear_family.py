@@ -1,4 +1,4 @@
-"""Families of bilinear systems: what makes two mechanisms relatives.
+"""Families of bilinear systems: mechanisms with the same structure.
 
 Systems with the same products, the same zeros and the same sums within the columns of their closure
 matrices (a link with three joints enters three loops with a, b and a + b) form a family.
@@ -27,7 +27,7 @@ __all__ = ["Structure", "structure_of"]
 
 @dataclass(frozen=True)
 class Structure:
-    """What systems of one family share: products, and columns as sums of free coefficients."""
+    """The structure of a family of systems: products, and columns as sums of free coefficients."""
 
     rows: tuple[tuple[int, ...], ...]
     columns: Columns

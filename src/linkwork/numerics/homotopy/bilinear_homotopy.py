@@ -43,7 +43,7 @@ def _patch(rng: np.random.Generator, size: int) -> ComplexArray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Patched:
-    """What both homotopies share: patches, null spaces, and the products of a bilinear system."""
+    """The common part of both homotopies: patches, null spaces, products of a bilinear system."""
 
     rows: IndexArray
     patches: tuple[ComplexArray, ComplexArray]
@@ -130,7 +130,7 @@ class StartHomotopy(_Patched):
         left += z * t[:, :, None] * a[:, 1:]
         right = y * (u[:, p, None] * nv[q, 1:] - u[:, p1, None] * nv[q1, 1:])
         right += z * s[:, :, None] * b[:, 1:]
-        return x * g + (1.0 - x) * f, np.concatenate([left, right], axis=2), g - f
+        return x * g + (1.0 - x) * f, np.concatenate([left, right], axis=2), g - f  # eq. (47)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -166,6 +166,7 @@ class ParameterHomotopy(_Patched):
         turns = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 2))
         pairs = ((start.left, goal.left), (start.right, goal.right))
         if nearest:
+            # the phase that makes the scalar product of both matrices real and positive
             turns = np.array([np.exp(1j * np.angle(np.vdot(a, b))) for a, b in pairs])
         p, q, p1, q1 = goal.rows
         signs = np.ones((2 * goal.size, 1))
@@ -213,7 +214,7 @@ class ParameterHomotopy(_Patched):
         under = 1.0 / (x * (self.pole - 1.0) + 1.0)
         z = np.ones((count, 2, m // 2 + 1, 1), dtype=complex)
         z[:, :, 1:, 0] = w.reshape(count, 2, m // 2)
-        n = self.base - (self.wide * (x * under)[:, :, None, :]) @ self.kernel
+        n = self.base - (self.wide * (x * under)[:, :, None, :]) @ self.kernel  # eq. (48)
         both = n @ z  # (B, 2, 2M, 1): the factors of every product
         rate = -(self.wide @ ((under * under)[:, :, :, None] * (self.kernel @ z)))
         others = both[:, ::-1]

@@ -1,6 +1,6 @@
-"""Columns of closure matrices as sums of free coefficients: what families of mechanisms share.
+"""Columns of closure matrices as sums of free coefficients: the structure of a family.
 
-A link with three joints stands in the loops with a, b and a + b, a link that a loop does not pass
+A link with three joints enters the loops with a, b and a + b, and loops that do not pass it
 with 0. Which coefficients of a column are zero, and which are sums of others, is the same for all
 mechanisms of one structure; the free coefficients are their dimensions.
 """
@@ -101,6 +101,7 @@ def column_ranks(columns: Columns) -> list[int]:
         bit = 1 << k
         for s in range(len(ranks)):
             if s & bit:
+                # minimum over subsets, one element at a time
                 ranks[s] = min(ranks[s], ranks[s ^ bit])
     return [rank + s.bit_count() for s, rank in enumerate(ranks)]
 
@@ -138,6 +139,7 @@ def _sums(column: list[complex]) -> tuple[tuple[int, ...], ...]:
     found: list[tuple[int, ...]] = []
     for value in column:
         few = free[:_LARGEST_FREE]
+        # 0 first: a sparse sum before a dense one
         for weights in product((0, 1, -1), repeat=len(few)):
             rest = value - sum(w * c for w, c in zip(weights, few, strict=True))
             if abs(rest) <= _SAME_SUM * size:

@@ -6,7 +6,7 @@ and lengths, the input among them:
     left · (U, 1) = 0,     right · (V, 1) = 0,     U_p V_q = U_p' V_q',
 
 as in :mod:`linkwork.numerics.homotopy.bilinear`. The block locks where its own unknowns have rates
-ρ ≠ 0 while everything it depends on and the input stand still. With directions t = e^{iθ} and
+ρ ≠ 0 while all variables it depends on and the input rest. With directions t = e^{iθ} and
 lengths z along them, t' = iωt and z' = i(ωz + σt), so its own loops give
 
     Σ left_lk ω_k t_k + Σ left_lj (ω_a z_j + σ_j t_a) = 0
@@ -36,7 +36,7 @@ Slot = tuple[int, int, int, float, float]
 
 def most_dead_points(own: int, size: int) -> int:
     """2 own C(2L + 1, L) for ``own`` loops of a block and ``size`` = 2L + 1 unknowns."""
-    return 2 * own * math.comb(size, size // 2)
+    return 2 * own * math.comb(size, size // 2)  # eq. (53)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,7 +72,7 @@ class DeadPointSystem:
 
     @property
     def parts(self) -> tuple[slice, slice, slice]:
-        """Where (U, 1), (V, 1) and ρ stand in the homogeneous vector X."""
+        """The slices of (U, 1), (V, 1) and ρ in the homogeneous vector X."""
         m = self.size + 1
         return slice(0, m), slice(m, 2 * m), slice(2 * m, 2 * m + 2 * self.own)
 
@@ -108,6 +108,7 @@ class DeadPointSystem:
         t[e, p1, v.start + q1] -= 1.0
         for column, factor, number, weight, mirrored in self.slots:
             r = rates.start + number
+            # eq. (53)
             t[count : count + own, u.start + factor, r] += weight * self.left[-own:, column]
             t[count + own :, v.start + factor, r] += mirrored * self.right[-own:, column]
         both: ComplexArray = t + t.transpose(0, 2, 1)
@@ -115,7 +116,7 @@ class DeadPointSystem:
 
     @cached_property
     def _affine(self) -> IndexArray:
-        """Where the unknowns x stand in X."""
+        """The indices of the unknowns x in X."""
         one = [part.stop - 1 for part in self.parts[:2]]
         return np.delete(np.arange(self.parts[2].stop), one)
 

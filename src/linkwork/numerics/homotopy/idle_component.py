@@ -1,4 +1,4 @@
-"""Curves of dead points: can the mechanism really move while its input stands still?
+"""Curves of dead points: can the mechanism really move while its input rests?
 
 Where equal links lie on each other, a :class:`DeadPointSystem` has curves of solutions besides the
 isolated ones. A position is real if V = U* and its rates are those of real angles and lengths,
@@ -7,7 +7,7 @@ Elsewhere one is looked for by Gauss-Newton steps among points of this kind,
 
     U = a + i b,   V = a - i b,   ω,   σ = -i s     with a, b, ω, s real,
 
-and then a second one beside it that has the same input.
+and then a second one near it that has the same input.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def keeps_complex_input(system: DeadPointSystem, x: ComplexArray, lead: Lead) ->
 def real_motion(
     system: DeadPointSystem, x: ComplexArray, lead: Lead
 ) -> tuple[ComplexArray, ComplexArray] | None:
-    """Two real positions, (n,) each, of a motion during which the input stands still.
+    """Two real positions, (n,) each, of a motion during which the input rests.
 
     Parameters
     ----------
@@ -79,6 +79,7 @@ def real_motion(
 def _kernel(matrix: ComplexArray | Array) -> ComplexArray:
     """A basis (n, k) of the null space of a matrix (m, n), rounding allowed for."""
     _, sizes, rows = np.linalg.svd(matrix)
+    # the rank with rounding allowed for
     rank = int((sizes > _FREE * sizes[0]).sum())
     basis: ComplexArray = rows[rank:].conj().T.astype(complex)
     return basis
@@ -92,6 +93,8 @@ class RealPoints:
         self.system, self.lead = system, lead
         self.turning = np.ones(rates, dtype=bool)
         for _, _, number, weight, mirrored in system.slots:
+            # rates of angles are mirrored with the same sign, those of lengths with the opposite
+            # one
             self.turning[number] &= weight == mirrored
         one = np.eye(m)
         self.basis = np.zeros((2 * m + rates, 2 * m + rates), dtype=complex)

@@ -145,6 +145,7 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
         care = CAREFUL if attempt else BOLD if expected <= _FEW else PathOptions()
         ends = _follow_paths(family, generic, system, rng, care, nearest=not attempt)
         if best is None or _quality(ends) >= _quality(best):
+            # two independent sets of paths that agree: missing solutions are at infinity
             agreed = best is not None and _agree(ends, best)
             best = ends
             if ends.regular.all() or (agreed and not ends.failed.any()):
@@ -190,6 +191,7 @@ def _close_paths(
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
+        # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
         back = _Generic(system=away, x=_distinct(there.x[there.regular]))
@@ -237,9 +239,10 @@ def _follow_paths(
 
 
 def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) -> _Ends:
-    """Ends of paths in the system's unknowns, sorted by what they are."""
+    """Ends of paths in the system's unknowns: regular, infinite, singular or failed."""
     (x, scale), (_, before) = homotopy.points(paths.w), homotopy.points(paths.near)
     singular = paths.state == SINGULAR
+    # on its patch a path to infinity ends regularly, with a vanishing homogenising coordinate
     infinite = (paths.state == ARRIVED) & (scale < _FINITE)
     infinite |= singular & (scale < _FADING * before)
     finite = (paths.state == ARRIVED) & ~infinite
@@ -248,6 +251,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
         with np.errstate(all="ignore"):
             better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
+        # slow convergence marks a multiple solution, a long way another one
         regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     for k in np.flatnonzero(finite & ~regular):
@@ -324,6 +328,8 @@ def _on_a_curve(system: PolynomialSystem, x: ComplexArray) -> bool:
     """Whether a singular solution can move: a step along the null direction leads to others."""
     reach = 1e-2
     with np.errstate(all="ignore"):
+        # singular ends are known roughly: Gauss-Newton finds the curve again, at half the distance
+        # a step
         x = nearest_solution(system, x, 30)
         _, jacobian = system.residual_and_jacobian(x[None])
         _, _, rows = np.linalg.svd(jacobian[0])

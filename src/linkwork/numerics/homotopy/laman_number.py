@@ -1,7 +1,7 @@
 """Laman numbers: how many solutions closures over directions and lengths have almost always.
 
 With x = (U, 1) in the null space of the closures and y = (V, 1) in that of their conjugates, a
-block without lengths asks for pairs with the products U_k V_k = 1, one for each link, the ground
+block without lengths requires pairs with the products U_k V_k = 1, one for each link, the ground
 among them (:mod:`linkwork.numerics.homotopy.matroid_pair`). With one coordinate for each bar of a
 framework their number is the framework's Laman number; rigid links with more than two joints need
 no bars.
@@ -39,7 +39,7 @@ def laman_number(columns: Columns, lengths: Sequence[tuple[int, int]] = ()) -> i
     Parameters
     ----------
     columns : M + 1 columns of L coefficients
-        Of the unknowns, then of what is known.
+        Of the unknowns, then of the constant part.
     lengths : (column, column of its direction) for each length
 
     Returns
@@ -64,7 +64,7 @@ class _NotCounted(Exception):
 
 @dataclass(frozen=True)
 class _Order:
-    """Levels from the lowest one of x, the highest one of y, upwards, and what is left for more.
+    """Levels upwards from the lowest of x, the highest of y, and the coordinates that are left.
 
     A level is a set of coordinates and the sides it is on: directions on ``xy``, one length that
     does not follow from higher levels on ``x`` or ``y``. All sets are bit masks.
@@ -170,7 +170,7 @@ class _Orders:
         rows = []
         for bit, base in self.lengths:
             x, y = (self._level(levels, bit, way) for way in (on_x[::-1], on_y))
-            # a length that follows from an earlier one's level has none of its own
+            # a length that follows from the level of an earlier length has no level
             if any(levels[k][0] < bit for k, side in ((x, "x"), (y, "y")) if levels[k][1] == side):
                 return 0
             row = [0] * len(levels)

@@ -53,7 +53,7 @@ class MatroidPair:
         return self._known[key]
 
     def _share_out(self, here: int, forgotten: int, zero: int) -> int:
-        """Over all ways to share out what is left without the coordinate ē."""
+        """Sum over all ways to share out the other coordinates, without the pivot ē."""
         pivot = here & -here
         rest = here ^ pivot
         total = 0

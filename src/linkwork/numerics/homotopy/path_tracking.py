@@ -104,7 +104,7 @@ class _Tracker:
         self.sigma = np.ones(count)
         self.step = np.full(count, _FIRST_STEP)
         _, jacobian, change = homotopy.evaluate(start, self.sigma)
-        slope = -solve_linear(jacobian, change[:, :, None])[:, :, 0]
+        slope = -solve_linear(jacobian, change[:, :, None])[:, :, 0]  # eq. (49)
         # points and slopes: here, there, before, there
         self.path = np.stack([start, slope, start, slope])
         self.gone = np.zeros(count)  # length of the last step, 0 before the first
@@ -125,6 +125,7 @@ class _Tracker:
         s = h[:, None] / g
         # a polynomial in s with ends at -1 (before) and 0 (here), slopes per σ downwards
         a, rise = g * slope, here - before
+        # Hermite's cubic in s, with both slopes scaled to the last step
         c = g * slope_before + a + 2.0 * rise
         cubic: ComplexArray = here - s * (a + s * (c + a + rise + s * c))
         first = self.gone == 0.0
@@ -134,26 +135,31 @@ class _Tracker:
 
     def _advance(self) -> None:
         evaluate, h = self.homotopy.evaluate, np.minimum(self.step, self.sigma)
+        # exactly 0: the last system is the one that was asked for
         goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
         guess = self._predict(h)
         f, jacobian, _ = evaluate(guess, goal)
         first = solve_linear(jacobian, f[:, :, None])[:, :, 0]
         w = guess - first
         f, jacobian, change = evaluate(w, goal)
+        # one factorisation serves the second correction and the slope
         both = solve_linear(jacobian, np.stack([f, change], axis=2))
         second = both[:, :, 0]
         w -= second
         size = 1.0 + np.abs(w).max(axis=1)
         e1, e2 = np.abs(first).max(axis=1) / size, np.abs(second).max(axis=1) / size
         aim = self.options.error
+        # quadratic convergence: the second correction must be much smaller than the first
         near = np.minimum(self.options.contraction * e1, np.where(goal == 0.0, _ARRIVAL, aim))
         good = (e1 < 4.0 * aim) & (e2 <= np.maximum(near, _ROUNDING))
-        factor = _CAUTION * (aim / np.maximum(e1, 1e-12)) ** 0.25
+        factor = _CAUTION * (aim / np.maximum(e1, 1e-12)) ** 0.25  # eq. (50)
         factor = np.minimum(np.maximum(factor, _SMALLEST_CHANGE), _LARGEST_CHANGE)
+        # eq. (49): the slope of the next prediction
         arrived = np.stack([w, -both[:, :, 1], self.path[0], self.path[1]])
         if good.all():
             self.step, self.gone, self.path = h * factor, self.sigma - goal, arrived
         else:
+            # a singular Jacobian on the way: try a shorter step
             factor[np.isnan(factor)] = _SMALLEST_CHANGE
             self.step = h * np.where(good, factor, np.minimum(factor, 0.5))
             self.gone = np.where(good, self.sigma - goal, self.gone)

@@ -1,4 +1,4 @@
-"""Square systems of polynomial equations: what following their solutions needs to know of them."""
+"""Square systems of polynomial equations, as the tracking of their solutions sees them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PolynomialSystem(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Roots:
-    """Isolated solutions of one system and what became of every path.
+    """Isolated solutions of one system, and the outcome of every path.
 
     Parameters
     ----------
@@ -67,6 +67,7 @@ def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArra
         x[live] -= change
         size = np.abs(change).max(axis=1, initial=0.0)
         size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
+        # no longer quadratic: what remains is rounding
         done = (size <= 1e-13) | ((size <= 1e-8) & (size > 0.25 * last))  # rounding is all
         steps[live[done]] = k + 1
         stay = ~done & np.isfinite(size)

@@ -26,9 +26,9 @@ def quadratic_roots(system: BilinearSystem) -> Roots:
     spaces = (null_space(system.left)[0], null_space(system.right)[0])
     forms, size = _forms(spaces, system.rows)
     (a, b), (c, d) = forms
-    quadratic = np.array([_det(a, c), _det(a, d) + _det(b, c), _det(b, d)])
+    quadratic = np.array([_det(a, c), _det(a, d) + _det(b, c), _det(b, d)])  # eq. (46)
     everywhere = np.abs(quadratic).max() <= _NOTHING * size
-    if everywhere:  # any û has its v̂: what one of them is like tells what the curve is like
+    if everywhere:  # any û has its v̂: one of them shows whether the curve is finite
         ways, double = [np.array([0.6, 0.8j])], False
     else:
         ways, double = _zeros(quadratic)
@@ -36,6 +36,7 @@ def quadratic_roots(system: BilinearSystem) -> Roots:
     curve = everywhere
     for k, u in enumerate(ways):
         w1, w2 = u[0] * a + u[1] * b, u[0] * c + u[1] * d
+        # both are parallel; the longer one is rounded less
         w = w1 if np.linalg.norm(w1) >= np.linalg.norm(w2) else w2
         length = float(np.linalg.norm(w))
         free = length <= _NOTHING * np.sqrt(size)  # any v̂ will do
@@ -78,6 +79,7 @@ def _zeros(quadratic: ComplexArray) -> tuple[list[ComplexArray], bool]:
         pair = [np.array([-q1, 2.0 * q0]) if abs(q0) >= abs(q2) else np.array([2.0 * q2, -q1])]
     else:
         root = complex(np.sqrt(square))
+        # the root without cancellation; the other one follows from their product
         far = q1 + root if abs(q1 + root) >= abs(q1 - root) else q1 - root
         pair = [np.array([-far, 2.0 * q0]), np.array([-2.0 * q2, far])]
     return [z / np.linalg.norm(z) for z in pair], len(pair) == 1

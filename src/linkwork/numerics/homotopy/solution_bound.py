@@ -52,9 +52,9 @@ def bound_by_products(products: Products) -> SolutionBound:
         wider = [0] * (len(row) + g)
         for k, number in enumerate(row):
             for j in range(k, k + g + 1):
-                wider[j] += number
+                wider[j] += number  # eq. (51)
         row = wider
-    return SolutionBound(number=row[len(products[0]) // 2], theorem=Theorem.BEZOUT)
+    return SolutionBound(number=row[len(products[0]) // 2], theorem=Theorem.BEZOUT)  # eq. (51)
 
 
 @cache

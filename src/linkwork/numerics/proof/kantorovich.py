@@ -2,17 +2,17 @@
 
 For F(x) = 0, A ≈ J(x0)⁻¹ and the weighted norm ‖x‖ = max |x_i|/w_i let
 
-    Y ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.       (1)
+    Y ≥ ‖A F(x0)‖,   Z0 ≥ ‖I - A J(x0)‖,   ω ≥ Lipschitz constant of A J within ρ of x0.
 
 There is exactly one solution within min(r+, ρ) of x0, and it lies within r-, if
 
-    (1 - Z0)² > 2 ω Y,                                                                       (2)
-    r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω                                               (3)
+    (1 - Z0)² > 2 ω Y,
+    r± = [(1 - Z0) ± √((1 - Z0)² - 2 ω Y)] / ω
 
 (Kantorovich 1948; Rump 2010, doi:10.1017/S096249291000005X). With ω = ω0 + ω1 ρ, ρ is chosen so
 that the uniqueness radius just fits in:
 
-    ρ (ω0 + ω1 ρ) = 2 (1 - Z0).                                                              (4)
+    ρ (ω0 + ω1 ρ) = 2 (1 - Z0).
 
 All constants include the rounding of their own computation. Known quantities (inputs, unknowns of
 blocks solved before) may be uncertain: the proof then holds for every value in their intervals.
@@ -53,7 +53,7 @@ class Bounds:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Radii:
-    """What was proved, (B,): ``holds``; a solution within ``existence_radius``, no other within
+    """Results of proofs, (B,): ``holds``; a solution within ``existence_radius``, no other within
     ``uniqueness_radius``.
 
     ``error_bound`` (B, n): a bound of every unknown's error in its own unit, never larger than
@@ -72,7 +72,7 @@ class Radii:
 class Expansion:
     """A system at B positions, seen through an approximate inverse A of its Jacobian.
 
-    All that a proof takes from there, whatever is known of the p known variables.
+    All data that a proof needs, whatever the uncertainty of the p known variables.
 
     ``residual`` (B, n): |A F| with its rounding. ``defect`` (B, n, n): |I - A J|. ``slope``
     (B, n, p): |A F_k| by the known variables; ``lines`` (B, n, p): the part of linear rows.
@@ -127,12 +127,13 @@ def expansion(
     loss = size @ bend.jacobian_rounding
     f, rounding, slope = system.residual(v), bend.rounding, jacobian[:, :, n:]
     if exact:
+        # near change points the rounding of F decides where a dead point lies
         f, rounding = (np.stack(part) for part in zip(*map(system.exact_residual, v), strict=True))
     lines = np.abs(matrix[:, :, rest] @ slope[:, rest])
     return Expansion(
-        residual=np.abs(matrix_vector(matrix, f))
+        residual=np.abs(matrix_vector(matrix, f))  # eq. (25): Y
         + matrix_vector(size, rounding + (n + 2) * UNIT_ROUNDOFF * np.abs(f)),
-        defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],
+        defect=np.abs(np.eye(n) - matrix @ jacobian[:, :, :n]) + loss[:, :, :n],  # eq. (25): Z0
         slope=np.abs(matrix @ slope) + loss[:, :, n:],
         lines=lines + size[:, :, rest] @ bend.jacobian_rounding[:, rest, n:],
         loop_phases=bend.loop_phases,
@@ -173,6 +174,7 @@ class Majorant:
         self.lengths = at.pair_length[mine]
         self.held, self.held_group = at.slide[:, :, given], at.pair_group[given]
         self.spread = known[:, at.pair_length[given] - n]
+        # eq. (31)
         by_slope = matrix_vector(at.slope, known) + 0.5 * matrix_vector(at.phase, self.turned**2)
         # a law's phase is a second derivative, no bound of the change itself
         loops, bent = slice(None, at.loop_phases), slice(at.loop_phases, None)
@@ -182,7 +184,7 @@ class Majorant:
         if given.size:
             by_slope += matrix_vector(self.held, self.spread * self.turned[:, self.held_group])
             as_a_whole += matrix_vector(self.held, self.spread)
-        self.y = at.residual + np.minimum(by_slope, as_a_whole)
+        self.y = at.residual + np.minimum(by_slope, as_a_whole)  # eq. (31)
 
     def linear(self, x: Array) -> Array:
         """Z x, (B, n), for x (B or 1, n)."""
@@ -197,7 +199,7 @@ class Majorant:
     def quadratic(self, x: Array) -> Array:
         """M(x, x), (B, n), for x (B or 1, n)."""
         own = x @ self.turning
-        rows = matrix_vector(self.phase, own**2)
+        rows = matrix_vector(self.phase, own**2)  # eq. (30)
         if self.lengths.size:
             rows += matrix_vector(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
         if self.held_group.size:
@@ -205,10 +207,11 @@ class Majorant:
         return rows
 
     def cubic(self, x: Array) -> Array:
-        """What M(x, x) grows by where unknown lengths have changed by x (B or 1, n), (B, n)."""
+        """The growth of M(x, x) where unknown lengths have changed by x (B or 1, n), (B, n)."""
         if not self.lengths.size:
             return np.zeros_like(self.y)
         own = x @ self.turning
+        # eq. (30): the part that grows with ρ
         return matrix_vector(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
 
     def bounds(self, weights: Array) -> Bounds:
@@ -224,7 +227,7 @@ class Majorant:
     def fit_weights(self, scale: Array) -> Array:
         """Weights (B, n) in which the proof nearly always succeeds where there are any such.
 
-        An unknown's weight is how far it may move: y, or what the others bring about. With
+        An unknown's weight is how far it may move: y, or the effect of the others. With
         w ≥ y, w ≥ c M(w, w) and w ≥ d Z w the rows of the proof are balanced, whatever the ratio
         of the lengths; a long link that hardly turns does not spoil the proof of a short one.
 
@@ -237,7 +240,8 @@ class Majorant:
         start: Array = np.maximum(self.y, np.maximum(_LEAST * largest, _TINY) * scale)
         w = start
         for _ in range(_FITTINGS):
-            grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)
+            grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)  # eq. (32)
+            # where the proof fails weights would grow without end
             w = np.maximum(start, np.minimum(grown, _MOST * scale))
         return w
 
@@ -246,16 +250,16 @@ def radii(y: Array, z: Array, omega: Array, slope: Array) -> tuple[BoolArray, Ar
     """Whether the theorem holds, r-, the uniqueness radius and ρ, from Y, Z0, ω0 and ω1 (B,)."""
     room = 1.0 - z
     with np.errstate(all="ignore"):
-        rho = np.where(  # (4)
+        rho = np.where(  # eq. (28)
             slope > 0.0,
             4.0 * room / (omega + np.sqrt(omega**2 + 8.0 * slope * np.maximum(room, 0.0))),
             2.0 * room / omega,
         )
         whole = omega + np.where(slope > 0.0, rho * slope, 0.0)
         square = room**2 - 2.0 * whole * y * PROOF_SLACK
-        holds = (room > 0.0) & (square > 0.0)  # (2)
+        holds = (room > 0.0) & (square > 0.0)  # eq. (26)
         root = np.sqrt(square)
-        # (3): r- without cancellation; without curvature r- = Y/(1 - Z0) and r+ = ∞
+        # eq. (27): r- without cancellation; without curvature r- = Y/(1 - Z0) and r+ = ∞
         existence = np.where(holds, 2.0 * y / (room + root) * PROOF_SLACK, np.inf)
         uniqueness = np.where(holds, np.minimum((room + root) / whole, rho) / PROOF_SLACK, 0.0)
     return holds, existence, uniqueness, rho
@@ -268,6 +272,7 @@ def weighted_radii(b: Bounds, weights: Array) -> Radii:
     )
     with np.errstate(all="ignore"):
         bent = b.omega + np.where(b.omega_slope > 0.0, rho[:, None] * b.omega_slope, 0.0)
+        # eq. (29)
         error_bound = b.y + b.z * existence[:, None] + 0.5 * bent * existence[:, None] ** 2
     return Radii(
         holds=holds,

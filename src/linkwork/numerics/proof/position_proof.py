@@ -37,11 +37,11 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Proof:
-    """What is proved at B positions with K blocks.
+    """Proofs of B positions with K blocks.
 
     ``holds`` (B,): all blocks proved. ``existence_radius``, ``uniqueness_radius`` (B, K): radii per
     block, weighted. ``error_bound`` (B, N): how far every variable may be from its value, in its
-    own unit; for the inputs what was given.
+    own unit; for the inputs the given radius.
     """
 
     holds: BoolArray
@@ -63,7 +63,8 @@ class Proof:
 
 
 def rounding_of_inputs(v: Array, unknowns: int) -> Array:
-    """How far an input may be from the value it stands for, (B, p): conversion of units."""
+    """How far an input may be from its exact value, (B, p): conversion of units."""
+    # a degree in a file is a rounded number of radians: one rounding of π, one of the product
     input_radius: Array = 2.0 * UNIT_ROUNDOFF * np.abs(v[:, unknowns:])
     return input_radius
 
@@ -75,7 +76,7 @@ def expansions(
     *,
     exact: bool = False,
 ) -> list[Expansion | None]:
-    """What proofs take from positions v (B, N), block by block.
+    """The data that proofs need of positions v (B, N), block by block.
 
     ``exact``: see :func:`~linkwork.numerics.proof.kantorovich.expansion`. ``None`` for a block
     without a curvature bound (function rows).
@@ -141,7 +142,7 @@ def prove(
 
 
 def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) -> Radii:
-    """Prove one block at v (B, N) for all values of what it takes as known.
+    """Prove one block at v (B, N) for all values of its known variables.
 
     Parameters
     ----------
@@ -158,6 +159,7 @@ def prove_block(block: Block, part: Linearised, v: Array, error_bound: Array) ->
 def _position(block: Block, place: Expansion, error_bound: Array) -> Radii:
     """In the block's own weights; where they do not suffice, in fitted ones."""
     found = _radii(block, place, error_bound)
+    # fitting costs several products: the usual weights serve for most positions
     open_ = np.flatnonzero(~found.holds)
     if not len(open_):
         return found
@@ -165,6 +167,7 @@ def _position(block: Block, place: Expansion, error_bound: Array) -> Radii:
     weights = block.system.variable_scale[: len(block.unknowns)]
     found.holds[open_], found.error_bound[open_] = fitted.holds, fitted.error_bound
     found.isolation_radius[open_] = fitted.isolation_radius
+    # back in the usual weights, in which radii are reported
     found.existence_radius[open_] = (fitted.error_bound / weights).max(axis=1)
     found.uniqueness_radius[open_] = (fitted.isolation_radius / weights).min(axis=1)
     return found
@@ -240,6 +243,6 @@ def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> 
         How far the true positions at both ends may be from ``v`` and ``following``.
     """
     n = reached.isolation_radius.shape[1]
-    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.isolation_radius
+    inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.isolation_radius  # eq. (33)
     held: BoolArray = reached.holds & inside.all(axis=1)
     return held

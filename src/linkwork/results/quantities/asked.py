@@ -97,6 +97,7 @@ class Asked:
         if self.rate is None:
             return
         self.rate.check(self.own.name, speed)
+        # checked by name, before anything is computed
         if self.needs > 2:
             raise UnknownNameError(
                 f'"{self.name}" is not known: positions have two derivatives, '
@@ -109,6 +110,7 @@ class Asked:
             return solved.own(self.own.name)
         with np.errstate(all="ignore"):
             jet = self.row.evaluate(self.names, solved, self.part)
+        # a quantity may give one NaN for derivatives that it does not know
         rates = (np.broadcast_to(rate, np.shape(jet.v)) for rate in (jet.d1, jet.d2))
         return Jet(jet.v / self.names.units.scale(self.own.kind), *rates)
 

@@ -152,6 +152,7 @@ class MotionRows:
     def cycle(self) -> BoolArray:
         """Which motions come back after one turn of the input, at the last row, (…,)."""
         span = self.input[-1] - self.input[0]
+        # a turn in radians is no float, and rows come from degrees
         around = self.turn > 0.0 and abs(abs(span) - self.turn) <= EQUAL_ROWS * self.turn
         size = np.fmax.reduce(np.abs(self.value), axis=-1)
         same = np.abs(self.value[..., -1] - self.value[..., 0]) <= EQUAL_ROWS * size
@@ -178,6 +179,7 @@ def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Arra
 def folded(angle: Jet, period: float) -> Jet:
     """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
     rest = angle.v - period * np.round(angle.v / period)
+    # where the angle is zero its size has a corner, and no derivative
     side = np.sign(rest)
     return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
 

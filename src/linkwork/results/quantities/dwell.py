@@ -41,11 +41,13 @@ def _range(rows: MotionRows, band: float) -> tuple[Array, Array]:
     cycle = np.broadcast_to(up.cycle, shape).reshape(-1)
     once = len(u)
     if cycle.any():
+        # a dwell may go on across the end of the turn
         u = np.concatenate([u, u[1:] + up.turn])
         again = np.where(cycle[:, None], f[:, 1:], np.nan)
         f = np.concatenate([f, again], axis=1)
     count = np.minimum(_counts(f, band), once)
     width = np.where(np.isnan(f), -1.0, u[np.arange(f.shape[1]) + count - 1] - u)
+    # places of the second turn only serve ranges that begin in the first
     width[:, once:] = -1.0
     width[cycle, 0] = -1.0  # the same place as a turn later, where what is before it is known
     start = width.argmax(axis=1)

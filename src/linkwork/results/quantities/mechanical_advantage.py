@@ -39,7 +39,7 @@ def _parts(names: MechanismNames) -> Mapping[str, Kind]:
 
 def _advantage(names: MechanismNames, solved: Solved, part: str) -> Jet:
     moved = solved.own(part)
-    value = np.where(moved.d1 == 0.0, np.inf, 1.0 / moved.d1)
+    value = np.where(moved.d1 == 0.0, np.inf, 1.0 / moved.d1)  # eq. (61)
     rate = np.where(moved.d1 == 0.0, np.nan, -moved.d2 / moved.d1**2)
     return Jet(value, rate, UNKNOWN)
 

@@ -43,6 +43,7 @@ def _bend(
     place = solved.place(point)
     cross = (place.d1.conj() * place.d2).imag
     still, bent = np.abs(place.d1), np.abs(place.d2)
+    # of a straight path only rounding is left of the cross product
     cross = np.where(np.abs(cross) <= _STRAIGHT * still * bent, 0.0, cross)
     reach = 1.0 if names.by == "rad" else np.nanmax(np.abs(place.v), initial=0.0)
     return place.v, place.d1, cross, still > _STILL * reach * bent
@@ -50,11 +51,12 @@ def _bend(
 
 def _curvature(names: MechanismNames, solved: Solved, point: str) -> Jet:
     _, rate, cross, moves = _bend(names, solved, point)
-    return Jet(np.where(moves, cross / np.abs(rate) ** 3, np.nan), UNKNOWN, UNKNOWN)
+    return Jet(np.where(moves, cross / np.abs(rate) ** 3, np.nan), UNKNOWN, UNKNOWN)  # eq. (59)
 
 
 def _centre(names: MechanismNames, solved: Solved, point: str) -> ComplexArray:
     place, rate, cross, moves = _bend(names, solved, point)
+    # eq. (60)
     away = 1j * rate * np.abs(rate) ** 2 / np.where(moves & (cross != 0.0), cross, np.nan)
     found: ComplexArray = place + away
     return found

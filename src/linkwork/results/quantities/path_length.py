@@ -24,7 +24,7 @@ def _length(rows: MotionRows, _: tuple[float, ...]) -> Array:
     total = np.zeros(begin.shape)
     for place, weight in zip(*np.polynomial.legendre.leggauss(_POINTS), strict=True):
         rate = cubic(0.5 * (1.0 + place), (begin, end), slopes)
-        total += 0.5 * weight * np.abs(rate)
+        total += 0.5 * weight * np.abs(rate)  # eq. (62)
     chord = np.abs(np.diff(rows.value, axis=-1))
     parts = np.where(np.isfinite(total), total * np.abs(step), chord)
     found: Array = np.where(np.isfinite(chord).any(axis=-1), np.nansum(parts, axis=-1), np.nan)

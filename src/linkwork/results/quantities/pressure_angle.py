@@ -60,7 +60,7 @@ def _angle(names: MechanismNames, solved: Solved, part: str) -> Jet:
         dyad = _blocks(names)[part]
         force = (solved.place(dyad.pin) - solved.place(dyad.arms[0])).direction()
         way = _line(names, solved, part)
-    return folded(force - way, np.pi)
+    return folded(force - way, np.pi)  # eq. (58)
 
 
 def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
@@ -75,6 +75,7 @@ def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Jet:
     cam = next(outline for outline in outlines if outline.name == follower.name)
     turning = solved.own(cam.link)
     arm = solved.place(follower.point) - solved.place(cam.center)
+    # less the velocity of the cam's own point at the same place
     rate = arm.d1 - 1j * turning.d1 * arm.v
     bend = arm.d2 - 1j * (turning.d2 * arm.v + turning.d1 * arm.d1)
     return Jet(rate, bend, UNKNOWN)

@@ -100,6 +100,7 @@ class Quantities:
                 found[own.name] = Asked(
                     names=self.names, own=own, group=Group.DERIVED, row=row, part=part
                 )
+        # names of the file come before derived ones
         return {name: asked for name, asked in found.items() if name not in self.own}
 
     @cached_property
@@ -132,6 +133,7 @@ class Quantities:
 
     def _find(self, name: str) -> Asked:
         whole, rate = Rate.split(name)
+        # the mechanism's own names come first: a point may be named like a rate
         for table in (self.own, self.evidence):
             own = find_spelling(whole, table)
             if own in table and not (rate and table[own].group is Group.EVIDENCE):
@@ -268,6 +270,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     mates = [own for own in folded if dot and own.startswith(f"{part}.")]
     mates += [own for own in folded if dot and own.endswith(f".{word}")]
     others = get_close_matches(wanted, folded, n=3, cutoff=0.0)
+    # relatives first: a mistyped part or word is likelier than another name
     near = dict.fromkeys([*get_close_matches(wanted, mates, n=3, cutoff=0.0), *others])
     told = ", ".join(folded[own] for own in [*near][:3])
     return f"(nearest: {told}; all: linkwork quantities FILE)"

@@ -25,11 +25,12 @@ def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     up = rows.ascending()
     if up is None or not up.turn or len(up.input) < 3:
         return np.full(rows.value.shape[:-1], np.nan)
+    # argmax takes NaN for the largest value; such motions are left out below
     filled = np.where(np.isfinite(up.value), up.value, 0.0)
     highest = _turning(up, filled.argmax(axis=-1), 1.0)
     lowest = _turning(up, filled.argmin(axis=-1), -1.0)
     part = np.mod(highest - lowest, up.turn)
-    ratio = np.maximum(part, up.turn - part) / np.minimum(part, up.turn - part)
+    ratio = np.maximum(part, up.turn - part) / np.minimum(part, up.turn - part)  # eq. (63)
     found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
 

@@ -35,9 +35,10 @@ def _angle(names: MechanismNames, solved: Solved, pin: str) -> Jet:
     if dyad.guide is None:
         other = (solved.place(dyad.arms[1]) - place).direction()
     else:
+        # the block passes its force on across its line
         start, end = (solved.place(point) for point in dyad.guide.line)
         other = (end - start).direction() + np.pi / 2
-    return folded(one - other, FULL_TURN)
+    return folded(one - other, FULL_TURN)  # eq. (57)
 
 
 TRANSMISSION_ANGLE = RowQuantity(

@@ -71,6 +71,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         text.put(("lengths", measured), edit.value)
         return Followed()
     written = quantity.written(description)
+    # a number in place of a formula would silently cut its tie to the dimensions
     if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
         raise InputError(
             f'"{quantity.name}" is the formula {written}: change a dimension in '
@@ -115,6 +116,7 @@ def _move_pivot(
         return False
     base = description.sketched(first)
     span = description.sketched(second) - base
+    # lengths on ground follow from coordinates: both change together
     _put_place(text, second, base + span / abs(span) * length)
     text.put(("lengths", quantity.key), length)
     return True
@@ -140,6 +142,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
         for key, number in getattr(linkage, table).items():
             if point not in key.split():
                 continue
+            # a formula keeps its tie to the dimensions
             if isinstance(number, str) or not edit.lengths_follow:
                 stayed.append(key)
                 continue
@@ -192,6 +195,7 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
                 f'"{edit.drive}" cannot be driven {choices("kinds", _DRIVES, edit.drive)}'
             )
         text.put((*here, edit.drive), edit.name)
+        # an input has exactly one kind
         for other in (*_DRIVES, "relative_to"):
             if other != edit.drive and text.has((*here, other)):
                 text.remove((*here, other))

@@ -95,7 +95,10 @@ class Guard:
             return Refusal(status=404, message="there is nothing here")
         offered = list(subprotocols)
         tokens = [offer.removeprefix(_TOKEN) for offer in offered if offer.startswith(_TOKEN)]
+        # compared in constant time, so that the time of an answer reveals nothing of the token
         known = [hmac.compare_digest(token.encode(), self.token.encode()) for token in tokens]
+        # a browser cannot send headers of its own with a WebSocket: the token comes as a
+        # subprotocol
         if SUBPROTOCOL not in offered or known != [True]:
             return Refusal(status=403, message="the token is missing or wrong")
         return None
@@ -104,6 +107,7 @@ class Guard:
         """Requests under another name, or from a page of another origin."""
         hosts = [host.encode() for host in self.hosts]
         named = _all(headers, b"host")
+        # a foreign name that resolves to this machine (DNS rebinding) is refused
         if len(named) != 1 or named[0].lower() not in hosts:
             return Refusal(status=421, message="this server does not answer under that name")
         origins = _all(headers, b"origin")

@@ -52,6 +52,7 @@ class History:
             return
         self._steps[self._here + 1 :] = [_Step(text, what)]
         self._here += 1
+        # the current text and the one before it are always kept
         while self._here > 1 and sum(len(s.text) for s in self._steps) > _MOST_CHARACTERS:
             del self._steps[0]
             self._here -= 1

@@ -67,6 +67,7 @@ class MechanismFile:
             return None
         self._stamp = stamp
         digest = self._digest_now()
+        # the date changes also when the same text is written again
         if digest == self._reported:
             return None
         self._reported = digest
@@ -102,6 +103,7 @@ class MechanismFile:
                 "or save again and overwrite it"
             )
         save_text(text, self._path)
+        # this program's own writing is no news
         self._stamp = self._stamp_now()
         self.accept(text)
 
@@ -117,6 +119,7 @@ class MechanismFile:
             number = "" if k == 1 else f"-{k}"
             beside = self._path.with_name(f"{self._path.stem}.unsaved{number}.toml")
             try:
+                # "x" fails if the file exists, also if it was made a moment ago
                 with beside.open("x", encoding="utf-8", newline="") as file:
                     file.write(text)
                 return beside
@@ -133,6 +136,7 @@ class MechanismFile:
             found = self._path.stat()
         except OSError:
             return None
+        # the inode changes when an editor replaces the file, even within one tick of the clock
         return found.st_mtime_ns, found.st_size, found.st_ino
 
 

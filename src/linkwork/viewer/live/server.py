@@ -50,6 +50,7 @@ class LiveServer:
     def __init__(self, workbench: Workbench, port: int = 0) -> None:
         self._socket = _listening(port)
         self.port: int = self._socket.getsockname()[1]
+        # other programs and web pages on this machine can reach the port, but do not know the token
         self.token = secrets.token_urlsafe(32)
         self._guard = Guard(port=self.port, token=self.token, paths=served_pages())
         self._workbench = workbench
@@ -142,6 +143,7 @@ class LiveServer:
             await send({"type": "websocket.close"})  # before it is accepted: the answer is 403
             return
         await send({"type": "websocket.accept", "subprotocol": SUBPROTOCOL})
+        # one page at a time: two could undo each other
         if self._page is not None:
             message = encoded(Refused(message=_OCCUPIED_MESSAGE))
             await send({"type": "websocket.send", "text": message})
@@ -159,6 +161,7 @@ class LiveServer:
     async def _receive(self, receive: Receive, telling: asyncio.Queue[str]) -> None:
         """Requests until the page is gone."""
         while True:
+            # not reading from the socket holds the page back
             while max(self._desk.waiting, telling.qsize()) > _MOST_WAITING:
                 await asyncio.sleep(0.02)
             message = await receive()
@@ -185,6 +188,7 @@ class LiveServer:
             return
         messages = [encoded(event, number) for event in events]
         try:
+            # queues of asyncio may be used from their own thread only
             loop.call_soon_threadsafe(self._put, messages)
         except RuntimeError:  # the loop is closed: there is nobody to tell
             return
@@ -238,6 +242,7 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
         server_header=False,
         date_header=False,
         ws_max_size=LARGEST_MESSAGE,
+        # on one machine compression costs more time than it saves
         ws_per_message_deflate=False,
         limit_concurrency=_MOST_CONNECTIONS,
         h11_max_incomplete_event_size=_LARGEST_HEAD,

@@ -91,6 +91,8 @@ class Desk:
         while getattr(request, "live", False) and self._waiting:
             if not _replaces(self._waiting[0][0], request):
                 break
+            # a point that is dragged sends places faster than they are solved: only the last
+            # matters
             request, number = self._waiting.popleft()
         return request, number
 
