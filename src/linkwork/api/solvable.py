@@ -218,8 +218,7 @@ class SolvableMechanism(DescribedMechanism):
         Parameters
         ----------
         guess : Mapping[str, number], optional
-            Values of some or all unknowns, in file units; the others keep the guess of the
-            mechanism.
+            Values of some or all unknowns, in file units; others keep the mechanism's guess.
         at : number or Mapping[str, number], optional
             Input value(s) in file units; by default those of the guess.
         options : NewtonOptions, optional
