@@ -8,7 +8,7 @@ __all__ = ["GROWTH", "HALF", "aim", "by_error", "grow", "is_lost", "stride"]
 
 GROWTH = 2.0  # largest factor from one step to the next
 HALF = 0.5  # of a step that failed: the next attempt
-_WHOLE = 0.5  # part of the allowed step: after one as long as this a larger step may succeed
+_NEARLY_FULL = 0.5  # part of the allowed step: after one as long as this a larger step may succeed
 
 
 def aim(goal: float, here: float, h: float) -> float:
@@ -31,7 +31,7 @@ def is_lost(t: float, here: float, goal: float) -> bool:
 
 def grow(h: float, moved: float, largest: float) -> float:
     """The next step's bound after a step of length ``moved`` that was taken."""
-    return min(GROWTH * h, largest) if moved >= _WHOLE * h else h
+    return min(GROWTH * h, largest) if moved >= _NEARLY_FULL * h else h
 
 
 def by_error(error: float, target: float, order: int) -> float:

@@ -13,8 +13,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
+from linkwork.motion.aligned_links import links_in_line
 from linkwork.motion.drive import Drive
-from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import End, Node, Track
 from linkwork.numerics.continuation.change_point import (
