@@ -232,7 +232,7 @@ class Circuits:
         Raises
         ------
         InputError
-            If there is no circuit, or more branches than stand beside each other.
+            If there is no circuit, or there are more branches than panels fit on a page.
         UnknownNameError
             For a name that does not exist.
         """

@@ -32,7 +32,9 @@ from linkwork.kernels.program.program import ROLES, registers_read
 
 __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
-_FEW = 16  # designs, at most, of which each is solved with its rows side by side
+# Up to so many designs are solved one at a time with their rows side by side. Side by side
+# themselves they would leave three quarters of the 64 lanes idle.
+_FEW = LANES // 4
 _ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
 
 
