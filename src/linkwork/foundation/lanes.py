@@ -1,15 +1,14 @@
 """Numbers of many designs at once, for code written for one design.
 
 The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
-such a number in n designs; arithmetic goes lane by lane. Where the code tests a
-condition (``if``, ``and``, ``max``), one lane, the leader, gives the answer, and the lanes with
-another answer leave the :class:`Consensus`. Results are valid for the remaining lanes; the others
-are built again, with a leader among them. So every design takes the same branches of the code as
-it does alone.
+such a number in n designs; arithmetic goes lane by lane. Where the code tests a condition (``if``,
+``and``, ``max``), one lane, the leader, gives the answer, and the lanes with another answer leave
+the :class:`Consensus`. Results are valid for the remaining lanes; the others are built again, with
+a leader among them. So every design takes the same branches of the code as it does alone.
 
-Lanes pass through functions that are annotated for ``float`` and ``complex``, as a number would;
-:mod:`~linkwork.foundation.elementwise` has functions for both. Everything else that wants a plain
-number (``float``, ``math``, arrays) gets a :class:`NotElementwise` from lanes.
+Functions annotated for ``float`` and ``complex`` accept lanes;
+:mod:`~linkwork.foundation.elementwise` has functions for both. Operations that need a plain number
+(``float``, ``math``, arrays) raise :class:`NotElementwise` for lanes.
 """
 
 from __future__ import annotations

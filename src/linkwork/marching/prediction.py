@@ -7,7 +7,7 @@ from linkwork.foundation.arrays import Array
 __all__ = ["SAME", "hermite_weights", "is_same_spacing", "keep_spacing", "trusted_nodes"]
 
 SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
-_FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
+_FAR = 2.5  # times the step before: beyond this distance fewer nodes are trusted
 
 
 def trusted_nodes(t: float, times: Array, known: int) -> int:

@@ -30,7 +30,7 @@ _PARALLEL = 1e-9  # relative: links that turn at rates as near as this have thei
 
 @dataclass(frozen=True, kw_only=True)
 class InstantCentre:
-    """Where two links have the same velocity.
+    """The place at which two links have the same velocity.
 
     Parameters
     ----------
