@@ -12,7 +12,7 @@ from benchmarks.timing import bar, interleaved
 from linkwork.batch import Designs, designs_of
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
-from linkwork.mechanism.quantities import quantities
+from linkwork.mechanism.varied_number import varied_numbers
 
 __all__ = ["measure"]
 
@@ -53,7 +53,7 @@ def _asked(mechanism: lw.Mechanism, table: str) -> Mapping[str, Array]:
     ground = set(getattr(mechanism.description, "links", {}).get("ground", ()))
     return {
         quantity.name: quantity.of(mechanism.description) * rng.uniform(0.99, 1.01, _COUNT)
-        for quantity in quantities(mechanism.description)
+        for quantity in varied_numbers(mechanism.description)
         if quantity.table == table and not ground.issuperset(quantity.key.split())
     }
 

@@ -17,14 +17,14 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.batch import Family, latin_hypercube
+from linkwork.batch.design_sweep import TablePath
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.lane_rows import Path
 from linkwork.foundation.errors import InputError
 from linkwork.kernels.gpu.compiling import graphics_card, name_of
 from linkwork.kernels.gpu.kernel import DeviceKernel
 from linkwork.kernels.march.sweep_kernel import Steps
 from linkwork.kernels.program.execution import Execution
-from linkwork.mechanism.quantities import quantities
+from linkwork.mechanism.varied_number import varied_numbers
 
 __all__ = ["FAMILIES", "Compared", "compared", "family_of", "kernel_speed", "main"]
 
@@ -45,7 +45,7 @@ def family_of(name: str, table: str, share: float, count: int) -> Family:
     ground = set(getattr(mechanism.description, "links", {}).get("ground", ()))
     own = {
         quantity.name: quantity.of(mechanism.description)
-        for quantity in quantities(mechanism.description)
+        for quantity in varied_numbers(mechanism.description)
         if quantity.table == table and not ground.issuperset(quantity.key.split())
     }
     ranges = {
@@ -106,7 +106,7 @@ def kernel_speed(family: Family, certify: bool, positions: int) -> tuple[int, fl
     seconds.
     """
     model = family.designs.base
-    path = Path.of(model)
+    path = TablePath.of(model)
     assert path is not None
     march = path.march(family.designs, certify, 1, Execution(device="gpu"))
     kernel = march.kernel

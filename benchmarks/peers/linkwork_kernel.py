@@ -15,13 +15,13 @@ from benchmarks.peers.work import Work
 from linkwork.foundation.arrays import Array
 
 if TYPE_CHECKING:  # compiled code is loaded by those who use it
-    from linkwork.batch.lane_rows import March
+    from linkwork.batch.design_sweep import FamilyMarch
     from linkwork.kernels.march.one_design import RowsOfOne
 
 __all__ = ["LinkworkKernel", "rows_of_one"]
 
 
-def rows_of_one(march: March, t: Array) -> RowsOfOne:
+def rows_of_one(march: FamilyMarch, t: Array) -> RowsOfOne:
     """The rows of a family of one design, to be computed again and again."""
     steps = import_module("linkwork.kernels.march.sweep_kernel").Steps()
     return march.kernel.prepare_single(
@@ -54,7 +54,7 @@ class LinkworkKernel(Peer):
         motion = family.sweep(certify=self.certify, threads=1, specialised=self.compiled)
         model = family.designs.base
         # compiled code is loaded by those who use it
-        path = import_module("linkwork.batch.lane_rows").Path.of(model)
+        path = import_module("linkwork.batch.design_sweep").TablePath.of(model)
         assert path is not None
         execution = import_module("linkwork.kernels.program.execution").Execution
         march = path.march(family.designs, self.certify, 1, execution(specialised=self.compiled))

@@ -14,7 +14,7 @@ from linkwork.batch.designs import designs_of
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, MechanismError, UnknownNameError
 from linkwork.mechanism import link_shape
-from linkwork.mechanism.quantities import Quantity, quantities
+from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from tests.batch.single_design import agree
 from tests.thinned import thinned
 
@@ -57,7 +57,7 @@ def _slider_crank(offset: float | str = 0) -> lw.Mechanism:
 
 def _varied(
     mechanism: lw.Mechanism,
-    chosen: list[Quantity],
+    chosen: list[VariedNumber],
     spread: float,
     rng: np.random.Generator,
     count: int = 3,
@@ -74,8 +74,8 @@ def _varied(
 @pytest.mark.parametrize("name", thinned(lw.examples()))
 def test_every_kind_of_number_of_every_library_mechanism_varies_as_by_itself(name: str) -> None:
     mechanism, rng = lw.example(name), np.random.default_rng(7)
-    tables: dict[str, list[Quantity]] = {}
-    for quantity in quantities(mechanism.description):
+    tables: dict[str, list[VariedNumber]] = {}
+    for quantity in varied_numbers(mechanism.description):
         tables.setdefault(quantity.table, []).append(quantity)
     for chosen in tables.values():
         agree(designs_of(mechanism, _varied(mechanism, chosen, 1e-3, rng)), 1e-13)
@@ -178,8 +178,8 @@ def test_an_offset_of_zero_keeps_its_term_where_it_varies() -> None:
 def test_gears_of_another_ratio_have_another_structure_and_scaled_ones_do_not() -> None:
     mechanism = lw.example("geared-five-bar")
     factor = np.array([1.0, 1.1, 1.3, 1.0])
-    numbers = {q.name: q.of(mechanism.description) for q in quantities(mechanism.description)}
-    dimensions = [q.name for q in quantities(mechanism.description) if q.table == "dimensions"]
+    numbers = {q.name: q.of(mechanism.description) for q in varied_numbers(mechanism.description)}
+    dimensions = [q.name for q in varied_numbers(mechanism.description) if q.table == "dimensions"]
     scaled = {name: numbers[name] * factor for name in dimensions}
     agree(designs_of(mechanism, scaled))
 
@@ -337,7 +337,7 @@ def test_sides_of_the_sketch_need_no_pass_of_their_own(monkeypatch: pytest.Monke
 
 def test_shapes_that_do_not_converge_stop_no_others() -> None:
     mechanism, rng = lw.example("rapier-drive-links"), np.random.default_rng(6)
-    chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
+    chosen = [q for q in varied_numbers(mechanism.description) if q.table == "lengths"]
     designs = designs_of(mechanism, _varied(mechanism, chosen, 0.4, rng, 80))
     assert 0 < np.count_nonzero(designs.problem) < 40
     agree(designs, 1e-12)
@@ -346,7 +346,7 @@ def test_shapes_that_do_not_converge_stop_no_others() -> None:
 def test_shapes_that_go_on_by_themselves_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link_shape._gauss_newton, "__defaults__", (1,))
     mechanism, rng = lw.example("watt-linkage"), np.random.default_rng(6)
-    chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
+    chosen = [q for q in varied_numbers(mechanism.description) if q.table == "lengths"]
     agree(designs_of(mechanism, _varied(mechanism, chosen, 0.1, rng, 20)), 1e-13)
 
 
@@ -376,6 +376,6 @@ def test_a_term_more_than_the_base_has_is_another_structure(
 def test_ordinary_designs_are_not_built_one_at_a_time() -> None:
     rng = np.random.default_rng(2)
     mechanism = lw.example("jansen-leg")
-    chosen = [q for q in quantities(mechanism.description) if q.table == "lengths"]
+    chosen = [q for q in varied_numbers(mechanism.description) if q.table == "lengths"]
     designs = designs_of(mechanism, _varied(mechanism, chosen, 0.3, rng, 3000))
     assert 0 < np.count_nonzero(designs.problem) < 3000

@@ -19,7 +19,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march import one_design, sweep_kernel
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.quantities import quantities
+from linkwork.mechanism.varied_number import varied_numbers
 from linkwork.motion import sweep
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
@@ -48,7 +48,7 @@ def family_of(name: str, *factors: float) -> Family:
     """A mechanism with its first number times some factors."""
     mechanism = lw.example(name)
     own = mechanism.description
-    quantity = next(q for q in quantities(own) if abs(q.of(own)) > 1e-9)
+    quantity = next(q for q in varied_numbers(own) if abs(q.of(own)) > 1e-9)
     return mechanism.family({quantity.name: quantity.of(own) * np.array(factors)})
 
 

@@ -8,7 +8,7 @@ import pytest
 import linkwork as lw
 from benchmarks.peers.linkwork_kernel import rows_of_one
 from linkwork.batch import Family
-from linkwork.batch.lane_rows import March, Path
+from linkwork.batch.design_sweep import FamilyMarch, TablePath
 from linkwork.kernels.march.row_proof import prove_rows
 from linkwork.kernels.march.rowwise import _is_smooth
 from linkwork.kernels.march.work_arrays import MarchResult
@@ -18,9 +18,9 @@ from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
 
 
-def _march(family: Family, certify: bool) -> tuple[March, np.ndarray]:
+def _march(family: Family, certify: bool) -> tuple[FamilyMarch, np.ndarray]:
     designs = family.designs
-    path = Path.of(designs.base)
+    path = TablePath.of(designs.base)
     assert path is not None
     t = designs.base.rows[:, path.lead]
     return path.march(designs, certify, 1, Execution()), np.ascontiguousarray(t)

@@ -9,7 +9,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.motion.circuit.dead_inputs import DeadPointInputs, dead_point_inputs
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.campaigns.motion import FAMILIES, random_mechanism
 from tests.oracles.cranked import cranked_truss
@@ -28,7 +28,7 @@ _BESIDE = 1e-5
 def dead_inputs_of(mechanism: lw.Mechanism) -> DeadPointInputs:
     """All dead points of a mechanism driven as its file says."""
     model = mechanism.model
-    lead, rate = lock_step(model.rows)
+    lead, rate = leading_input(model.rows)
     own = model.start_inputs
     path = InputPath(origin=own - rate * own[lead], rate=rate)
     return dead_point_inputs(model, path, lead)

@@ -11,7 +11,7 @@ from flint import arb, ctx
 
 import linkwork as lw
 from linkwork.equations.parametrized_table import ParametrizedTable
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.oracles.four_bar import FourBar, random_crank_rockers
 
@@ -122,7 +122,7 @@ def test_at_dead_points_and_change_points_the_value_vanishes() -> None:
 def test_the_rate_of_the_smallest_value_is_its_slope() -> None:
     mechanism = lw.example("rapier-drive")
     model = mechanism.model
-    lead, rate = lock_step(model.rows)
+    lead, rate = leading_input(model.rows)
     leads = ParametrizedTable(model.compiled.table, InputPath(origin=np.zeros(1), rate=rate), lead)
     led = leads.with_parameter(leads.parameter)
     assert led is not None

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 import linkwork as lw
 from linkwork.cli.main import linkwork
 from linkwork.motion.failure import failing
-from linkwork.motion.failure.elsewhere import Elsewhere
+from linkwork.motion.failure.other_positions import Elsewhere
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.thinned import thinned
 

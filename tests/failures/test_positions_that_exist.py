@@ -10,7 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.motion.failure.dyads import dyad_of
-from linkwork.motion.failure.elsewhere import block_positions, positions_elsewhere
+from linkwork.motion.failure.other_positions import block_positions, positions_elsewhere
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 

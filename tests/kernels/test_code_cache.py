@@ -99,20 +99,20 @@ def kernel() -> SweepKernel:
 
 def test_many_positions_are_worth_a_compilation(monkeypatch: pytest.MonkeyPatch) -> None:
     few, many = kernel(), kernel()
-    few.shift(Execution(positions=99_999_999))
+    few.choose_execution(Execution(positions=99_999_999))
     assert few.trial == 0
-    many.shift(Execution(positions=100_000_000))
+    many.choose_execution(Execution(positions=100_000_000))
     assert many.trial != 0
     again = kernel()
-    again.shift(Execution(positions=999_999))
+    again.choose_execution(Execution(positions=999_999))
     assert again.trial == 0
-    again.shift(Execution(positions=1_000_000))  # what the run before has compiled
+    again.choose_execution(Execution(positions=1_000_000))  # what the run before has compiled
     assert again.trial == many.trial
-    again.shift(Execution(specialised=False, positions=1 << 40))  # and no more
+    again.choose_execution(Execution(specialised=False, positions=1 << 40))  # and no more
     assert again.trial == 0
     monkeypatch.setattr(execution, "_LONGEST", 10)
     long = kernel()
-    long.shift(Execution(positions=1 << 40))
+    long.choose_execution(Execution(positions=1 << 40))
     assert long.trial == 0
 
 
@@ -161,11 +161,11 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     taken.write_text("")
     monkeypatch.setenv("LINKWORK_CACHE", str(taken))
     with pytest.raises(lw.InputError) as told:
-        kernel().shift(Execution(specialised=True))
+        kernel().choose_execution(Execution(specialised=True))
     assert str(told.value) == (
         f"compiled code cannot be stored in {taken} ({os.strerror(17)}): "
         "name another folder in LINKWORK_CACHE, or use specialised=False"
     )
     mine = kernel()
-    mine.shift(Execution(positions=1 << 40))
+    mine.choose_execution(Execution(positions=1 << 40))
     assert mine.trial == 0

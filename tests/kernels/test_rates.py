@@ -10,7 +10,7 @@ import linkwork as lw
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
 from linkwork.kernels.march.rate_programs import evidence_program, rate_program
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 
 Array = npt.NDArray[np.float64]
@@ -46,7 +46,7 @@ def coefficients(model: Model) -> dict[str, Array]:
         given[f"k{row}"] = np.full(DESIGNS, constant)
     for k in np.flatnonzero(~table.is_angle):
         given[f"scale{k}"] = np.full(DESIGNS, table.variable_scale[k])
-    for j, rate in enumerate(lock_step(model.rows)[1]):
+    for j, rate in enumerate(leading_input(model.rows)[1]):
         given[f"u{j}.rate"] = np.full(DESIGNS, rate)
     return given | {"length": np.full(DESIGNS, model.equations.length_scale)}
 
@@ -77,7 +77,7 @@ def test_rates_and_evidence_are_those_of_the_solver(name: str, threads: int) -> 
         [v, np.broadcast_to(inputs.T[:, :, None], (inputs.shape[1], ROWS, DESIGNS))]
     )
     flat = whole.reshape(len(whole), -1).T
-    scalar = solver.rates(flat, lock_step(model.rows)[1])
+    scalar = solver.rates(flat, leading_input(model.rows)[1])
     weights = solver.variable_scale[:n]
     for order, own, other in ((1, rates[:n], scalar.first), (2, rates[n:], scalar.second)):
         size = np.maximum(np.abs(other[:, :n] / weights).max(axis=1), 1.0)[:, None]

@@ -14,7 +14,7 @@ import linkwork as lw
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.curve_branches import TracedCurve, branches_of, trace_with_proof
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.start import first_position
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.curve_proof import prove_curve
@@ -44,7 +44,7 @@ def around(
 def circuit_of(mechanism: lw.Mechanism, way: float = 1.0) -> tuple[ParametrizedTable, TracedCurve]:
     """The curve of a mechanism through its start, which lies on its table."""
     model = mechanism.model
-    lead, rate = lock_step(model.rows)
+    lead, rate = leading_input(model.rows)
     path = InputPath(origin=model.rows[0] - rate * model.rows[0, lead], rate=rate)
     start = first_position(model, model.start_inputs, NewtonOptions())
     assert start.status.ok

@@ -8,7 +8,7 @@ import pytest
 import linkwork as lw
 from linkwork.equations.dead_point_form import DeadPointForm, dead_point_form
 from linkwork.motion.drive import Drive
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.numerics.homotopy.dead_point_family import dead_point_roots
 from linkwork.numerics.homotopy.idle_component import RealPoints, keeps_complex_input, real_motion
 
@@ -24,7 +24,7 @@ def _driven(text: str, variable: str, **guess: float) -> lw.Mechanism:
 def _form(mechanism: lw.Mechanism, number: int) -> DeadPointForm:
     """Of a block, its inputs in lock-step."""
     model = mechanism.model
-    lead, rate = lock_step(model.rows)
+    lead, rate = leading_input(model.rows)
     drive = Drive.through(model, model.start_inputs, rate, lead)
     form = dead_point_form(drive.leads, model.compiled.solver, drive.path, number)
     assert form is not None

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import linkwork as lw
-from linkwork.mechanism.quantities import Quantity, quantities
+from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from linkwork.textfile.text_edits import TextEdits
 
 TEXT = """\
@@ -112,7 +112,7 @@ def test_line_ends_and_bom_stay(end: str, bom: str) -> None:
     assert text.text == bom + wanted.replace("\n", end)
 
 
-def place(quantity: Quantity) -> tuple[str | int, ...]:
+def place(quantity: VariedNumber) -> tuple[str | int, ...]:
     if quantity.table == "points":
         return ("points", quantity.key, quantity.axis)
     return (quantity.table, quantity.key)
@@ -127,7 +127,7 @@ def test_a_number_of_the_library_reads_back_changed_and_all_others_as_they_were(
     before = lw.example(name).description
     numbers = [
         q
-        for q in quantities(before)
+        for q in varied_numbers(before)
         if q.table != "sliders" and not isinstance(q.written(before), str)
     ]
     if not numbers:
@@ -141,7 +141,7 @@ def test_a_number_of_the_library_reads_back_changed_and_all_others_as_they_were(
         after = lw.loads(text.text).description
     except lw.MechanismFileError:  # ground that disagrees with its lengths, and the like
         return
-    for quantity in quantities(after):
+    for quantity in varied_numbers(after):
         wanted = value if quantity == chosen else quantity.of(before)
         if not isinstance(quantity.written(after), str):
             assert math.isclose(quantity.of(after), wanted, rel_tol=0, abs_tol=0)

@@ -25,7 +25,7 @@ from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.mechanism.quantities import Quantity, with_numbers
+from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model, model_of
 
 __all__ = ["Builder", "build_design", "family_base", "write_equations"]
@@ -56,7 +56,7 @@ class Builder:
     ----------
     base : Model
         The family's structure; see :func:`family_base`.
-    values : Mapping[Quantity, (B,)]
+    values : Mapping[VariedNumber, (B,)]
         The varied numbers, in file units.
     together : bool
         Whether designs can be built in passes; otherwise one at a time.
@@ -70,7 +70,7 @@ class Builder:
     """
 
     base: Model
-    values: Mapping[Quantity, Array]
+    values: Mapping[VariedNumber, Array]
     together: bool
     arrays: dict[str, AnyArray] = field(default_factory=dict)
     problem: IndexArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
@@ -205,7 +205,7 @@ def build_design(description: Description) -> Model:
     return model_of(description)
 
 
-def family_base(model: Model, varied: Sequence[Quantity]) -> tuple[Model, bool]:
+def family_base(model: Model, varied: Sequence[VariedNumber]) -> tuple[Model, bool]:
     """The structure of a family, and whether designs can be built in passes.
 
     The structure is that of the mechanism, except that varied numbers keep their terms at the value

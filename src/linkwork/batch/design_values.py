@@ -11,7 +11,7 @@ from linkwork.batch.rates import DesignRates
 from linkwork.expression.jets import Jet
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, TurnArray
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.quantity_values import QuantityValues
 
 __all__ = ["DesignValues"]
@@ -76,7 +76,7 @@ class DesignValues(QuantityValues):
             value = value + self.turns * FULL_TURN
         if rates is None:
             return Jet(value, _NONE, _NONE)
-        rate = lock_step(self.model.rows)[1][k - n]
+        rate = leading_input(self.model.rows)[1][k - n]
         first, second = (
             np.where(self.lost | ~driven, np.nan, own)
             for driven, own in zip(rates.driven, (rate, 0.0), strict=True)

@@ -14,7 +14,7 @@ from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.quantities import Quantity, quantity_named, with_numbers
+from linkwork.mechanism.varied_number import VariedNumber, number_named, with_numbers
 from linkwork.motion.model import Model
 
 __all__ = ["Designs", "designs_of"]
@@ -39,7 +39,7 @@ class Designs:
         are 0 in the mechanism, such as the offset of a slider.
     dimensions : Mapping[str, (B,)]
         The varied numbers, in file units, by the names given.
-    quantities : tuple of Quantity
+    quantities : tuple of VariedNumber
         The corresponding numbers of the description, in the same order.
     loops : (B, T) complex
         Coefficients of ``base.compiled.table.loops``, in the order of its terms, [length].
@@ -67,7 +67,7 @@ class Designs:
 
     base: Model
     dimensions: Mapping[str, Array]
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[VariedNumber, ...]
     loops: ComplexArray
     linear: Array
     points: ComplexArray
@@ -172,7 +172,7 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
             "a family needs a mapping of names and their values, as in "
             f'{{"a2": [40, 50]}}, got {as_told(dimensions)}'
         )
-    quantities = tuple(quantity_named(model.description, name) for name in dimensions)
+    quantities = tuple(number_named(model.description, name) for name in dimensions)
     _check_different(dict(zip(dimensions, quantities, strict=True)))
     columns = _columns(dimensions)
     base, together = family_base(model, quantities)
@@ -199,10 +199,10 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     )
 
 
-def _check_different(named: Mapping[str, Quantity]) -> None:
+def _check_different(named: Mapping[str, VariedNumber]) -> None:
     if not named:
         raise InputError("this family varies no numbers: give a dimension and its values")
-    first: dict[Quantity, str] = {}
+    first: dict[VariedNumber, str] = {}
     for name, quantity in named.items():
         if first.setdefault(quantity, name) != name:
             raise InputError(f'"{first[quantity]}" and "{name}" are the same number: give it once')

@@ -8,9 +8,9 @@ from warnings import warn
 
 import numpy as np
 
+from linkwork.batch.design_sweep import design_rows
 from linkwork.batch.designs import Designs, designs_of
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.lane_rows import design_rows
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_name

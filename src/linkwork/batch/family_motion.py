@@ -32,7 +32,7 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Rate
@@ -102,7 +102,7 @@ class FamilyMotion:
     def leading(self) -> Array:
         """The leading input, (R,) [rad] or [length]."""
         rows = self.designs.base.rows
-        return rows[:, lock_step(rows)[0]]
+        return rows[:, leading_input(rows)[0]]
 
     @property
     def quantities(self) -> Quantities:
@@ -232,7 +232,7 @@ class FamilyMotion:
     def limits(self) -> FamilyLimits:
         """The range of inputs of every design, on the branch of its start."""
         model = self.designs.base
-        unit = float(model.input_scale[lock_step(model.rows)[0]])
+        unit = float(model.input_scale[leading_input(model.rows)[0]])
         return FamilyLimits.of(self.rows.limits, self.rows.limit_kinds, unit)
 
     @property

@@ -19,10 +19,10 @@ from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.position_programs import at_places
 from linkwork.kernels.march.rate_programs import PlaceProgram, evidence_program, rate_program
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.quantities import with_numbers
+from linkwork.mechanism.varied_number import with_numbers
 from linkwork.motion.by_kernels import block_parts, lines_of_lengths
 from linkwork.motion.drive import Drive
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.speeds import leading_speeds
 
 __all__ = ["DesignEvidence", "DesignRates", "design_evidence", "design_rates", "design_speeds"]
@@ -126,7 +126,7 @@ class _Reading:
         coefficients = loop_coefficients(designs)
         zeros = zero_coefficients(designs, coefficients)
         coefficients["length"] = designs.length_scale
-        for j, rate in enumerate(lock_step(designs.base.rows)[1]):
+        for j, rate in enumerate(leading_input(designs.base.rows)[1]):
             coefficients[f"u{j}.rate"] = np.full(len(designs), rate)
         return cls(
             designs=designs,
@@ -138,7 +138,7 @@ class _Reading:
     def run(self, program: PlaceProgram, rows: DesignRows, threads: int) -> Array:
         """Run at the inputs of the solved positions, on the straight line of the table."""
         model = self.designs.base
-        lead, rate = lock_step(model.rows)
+        lead, rate = leading_input(model.rows)
         inputs = Drive.through(model, model.rows[0], rate, lead).path.at(model.rows[:, lead])
         return at_places(program, self.coefficients, rows.v, inputs, rows.turns, threads)
 

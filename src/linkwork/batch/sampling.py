@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.batch.design_table import numbers, read_columns
+from linkwork.batch.table_columns import numbers, read_columns
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.frozen import read_only

@@ -10,7 +10,7 @@ from linkwork.api import Mechanism
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
 from linkwork.foundation.certification import Certification
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.results.position import Certificate, NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
@@ -139,7 +139,7 @@ def _points(position: Position) -> list[str]:
 def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, str]]:
     inputs = list(position.input)
     if inputs:
-        lead = inputs[lock_step(mechanism.model.rows)[0]]
+        lead = inputs[leading_input(mechanism.model.rows)[0]]
         others = ", the other inputs in lock-step" if len(inputs) > 1 else ""
         unit = f" ({position.derivative_unit})" if position.derivative_unit else ""
         yield "derivatives", f"with respect to {lead}{unit}{others}"

@@ -101,7 +101,7 @@ def sweep(
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
-    columns, numbers = _asked(mechanism, names)
+    columns, numbers = _split_names(mechanism, names)
     with progress("sweeping") as tell:
         motion = mechanism.sweep(
             start=start,
@@ -138,8 +138,8 @@ def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> S
     return picture.sweep_scene(position, motion) if position.status.ok else None
 
 
-def _asked(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], list[str]]:
-    """The columns, and the numbers of the whole motion, among the requested names."""
+def _split_names(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], list[str]]:
+    """Split the requested names into columns and numbers of the whole motion; check both."""
     quantities = mechanism.model.quantities
     numbers = [name for name in names if "(" in name]
     columns = [name for name in names if name not in numbers]

@@ -96,7 +96,7 @@ def _tokens(text: str) -> list[_Token]:
         c, column = text[k], k + 1
         if c.isspace():
             k += 1
-        # a single point does not begin a number
+        # a dot without a digit does not begin a number
         elif c in "0123456789." and text[k : k + 2].strip("."):
             end = _number_end(text, k)
             found.append(_Token("number", text[k:end], column))
@@ -114,7 +114,7 @@ def _tokens(text: str) -> list[_Token]:
         elif _is_name_start(c):
             end = k + 1
             while end < len(text) and (
-                # coordinates are names with a point: B.x
+                # the name of a coordinate contains a dot: B.x
                 _is_name_part(text[end])
                 or (text[end] == "." and end + 1 < len(text) and _is_name_start(text[end + 1]))
             ):

@@ -25,7 +25,7 @@ class _JetArithmetic(Arithmetic["Jet"]):
     """Sums, products and powers with the product rule and the chain rule."""
 
     def plain(self, number: float) -> Jet:
-        """A value that does not change."""
+        """A constant as a jet: both derivatives are 0."""
         zero = np.zeros(())
         return Jet(np.asarray(number, dtype=float), zero, zero)
 
@@ -52,7 +52,7 @@ class _JetArithmetic(Arithmetic["Jet"]):
         return x * y.chain(r, -(r**2), 2.0 * r**3)
 
     def power(self, x: Jet, y: Jet) -> Jet:
-        """x to the power y: of a fixed exponent for any base, else for positive ones."""
+        """x to the power y; an exponent that is not constant needs a positive base."""
         if np.any(y.d1) or np.any(y.d2):
             return _exp(y * _ln(x))
         p = y.v
@@ -62,7 +62,7 @@ class _JetArithmetic(Arithmetic["Jet"]):
         return x.chain(x.v**p, first, second)
 
     def absolute(self, x: Jet) -> Jet:
-        """|x|; its slope is 0 where x is."""
+        """|x|; its derivatives are 0 where x is 0."""
         return x.chain(np.abs(x.v), np.sign(x.v), np.zeros_like(x.v))
 
 
@@ -83,7 +83,7 @@ class Jet(Operand):
 
     @classmethod
     def constant(cls, value: float) -> Jet:
-        """A value that does not change."""
+        """A constant as a jet: both derivatives are 0."""
         return _JETS.plain(value)
 
     def chain(self, f: Array, f1: Array, f2: Array) -> Jet:
@@ -188,7 +188,7 @@ _TO_ANGLE: dict[str, Callable[..., Jet]] = {
 def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
     """The jet of a formula; all its names must be in ``names`` (checked by the reader).
 
-    Outside a function's domain the entries are NaN: a solver turns that into a status.
+    Outside a function's domain the entries are NaN, which a solver reports as a status.
     """
     match node:
         case Number():

@@ -40,7 +40,7 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     Raises
     ------
     ValueError, OverflowError
-        As in ``math``: outside the domain; if the value is too large.
+        As in ``math``: outside the domain, or if the value is too large.
     """
     given: list[object] = list(arguments)
     first = next(number for number in given if isinstance(number, Lanes))

@@ -1,4 +1,4 @@
-"""Angle units. Radians inside; the file's unit in files, tables and results."""
+"""Angle units: radians in computations, the file's unit in files, tables and results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FULL_TURN = 2.0 * math.pi
 
 
 def within_half_a_turn(gap: Array, turns: BoolArray) -> Array:
-    """Differences (..., N) with those of angles reduced by whole turns to at most half a turn.
+    """Differences (..., N) in which angles are reduced by whole turns to at most half a turn.
 
     ``turns`` (N,): which of them are angles [rad].
     """
@@ -47,13 +47,13 @@ class AngleUnit(Enum):
         return math.pi / 180.0 if self is AngleUnit.DEGREE else 1.0
 
     def from_radians(self, angle: float) -> float:
-        """The angle in this unit; the short decimal number if one means the same radians.
+        """The angle in this unit, rounded to ten decimals if that gives the same radians.
 
         ``60°`` becomes 1.047… radians and must come back as 60, not 59.99999999999999.
         """
         value = angle / self.radians
         short = round(value, 10)
-        # bit by bit, so that no result changes when it is read back
+        # equal in all bits, so that no result changes when it is read back
         return short if short * self.radians == angle else value
 
     @property
@@ -63,5 +63,5 @@ class AngleUnit(Enum):
 
     @property
     def sign(self) -> str:
-        """What follows a printed number: ``°`` or `` rad``."""
+        """The unit as printed after a number: ``°`` or `` rad``."""
         return "°" if self is AngleUnit.DEGREE else " rad"

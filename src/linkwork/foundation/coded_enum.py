@@ -25,5 +25,5 @@ class CodedEnum(Enum):
 
     @classmethod
     def of_codes(cls, codes: StatusArray) -> tuple[Self, ...]:
-        """Those with these codes (B,)."""
+        """The members with these codes (B,)."""
         return tuple(map(tuple(cls).__getitem__, codes.tolist()))

@@ -12,7 +12,7 @@ class DisjointSets:
         self.above = list(range(count))
 
     def add(self) -> int:
-        """The next number, in a set of its own."""
+        """Add the next number as a set of one element."""
         self.above.append(len(self.above))
         return self.above[-1]
 
@@ -23,7 +23,7 @@ class DisjointSets:
         return k
 
     def unite(self, a: int, b: int) -> bool:
-        """Make the sets of a and b one set; whether they were two."""
+        """Unite the sets of a and b; returns whether they were different."""
         # the smaller root stays, so that names of sets do not depend on the order of unions
         first, second = sorted((self.root(a), self.root(b)))
         self.above[second] = first

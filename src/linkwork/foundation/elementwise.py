@@ -1,6 +1,6 @@
-"""Functions of plain numbers and of numbers of many designs alike.
+"""Functions that take plain numbers as well as numbers of many designs (lanes).
 
-A plain number takes the path that it took before there were lanes.
+Plain numbers are computed by ``math`` and ``cmath``, lanes by NumPy.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _first_of_many(numbers: Iterable[object]) -> Lanes | None:
 
 
 def _apply(of_arrays: _Function, of_numbers: _Function, *numbers: object) -> Any:
-    """A function of arrays where a number is one of many designs, else one of plain numbers."""
+    """Apply a function of arrays if an argument has lanes, else a function of plain numbers."""
     lanes = _first_of_many(numbers)
     return of_numbers(*numbers) if lanes is None else lanes.apply(of_arrays, *numbers)
 
@@ -111,12 +111,12 @@ def hypot(x: float, y: float) -> float:
 
 
 def copysign(size: float, sign: float) -> float:
-    """A plain size with the sign of a number."""
+    """The size of a plain number with the sign of another number."""
     return cast(float, _apply(np.copysign, math.copysign, size, sign))
 
 
 def remainder(x: float, period: float) -> float:
-    """x less whole periods, at most half a period in size; exact."""
+    """x minus whole periods, at most half a period in size; exact."""
     return cast(float, _apply(remainders, math.remainder, x, period))
 
 
@@ -139,14 +139,14 @@ def finite(x: float) -> bool:
 
 
 def is_fractional(x: float) -> bool:
-    """Whether a number is no whole number."""
+    """Whether a number is not an integer."""
     if is_batched(x):
         return cast(bool, x.holds(x.values != np.floor(x.values)))
     return not float(x).is_integer()
 
 
 def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
-    """``yes`` where the condition holds, else ``no``; both are computed."""
+    """``yes`` in lanes where the condition holds, else ``no``; both are computed."""
     truths: object = condition
     if isinstance(truths, Truths):
         lanes = _first_of_many((yes, no))
@@ -158,7 +158,7 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
 
 
 def everywhere(condition: bool) -> bool:
-    """Whether it holds in all lanes that are left: no lane leaves for it."""
+    """Whether a condition holds in all lanes that still agree; it excludes no lane."""
     truths: object = condition
     if isinstance(truths, Truths):
         return bool((truths.values | ~truths.consensus.agreeing).all())
@@ -189,32 +189,32 @@ def _extreme(numbers: list[float], default: float, *, most: bool) -> float:
 
 
 def is_structurally_nonzero(x: complex) -> bool:
-    """Whether something of this size is there."""
+    """Whether a term with this coefficient belongs to the equations."""
     return (is_batched(x) and x.arithmetic.widest) or bool(x)
 
 
 def display_value(x: complex) -> complex:
-    """The plain number by which something is shown."""
+    """The plain number that is displayed: of lanes, the first."""
     return complex(x.values[0]) if is_batched(x) else x
 
 
 def as_float(x: float) -> float:
-    """A float of any plain number; lanes as they are."""
+    """A plain number as a float; lanes are returned unchanged."""
     return cast(float, x) if is_batched(x) else float(x)
 
 
 def leader_value(x: float) -> float:
-    """The leader's number."""
+    """The number in the leading lane."""
     return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
 
 
 def uniform_value(x: float) -> float:
-    """A number that has to be one for all designs, as a weight of an angle."""
+    """A number that must be equal in all designs, such as the weight of an angle."""
     return cast(float, x.arithmetic.settle(x)) if is_batched(x) else x
 
 
 def row_of(numbers: Iterable[float]) -> Array:
-    """Numbers as an array (k,); with lanes among them, of objects."""
+    """Numbers as an array (k,); its entries are objects if some have lanes."""
     found = list(numbers)
     if _first_of_many(found) is None:
         return np.array(found)

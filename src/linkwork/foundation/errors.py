@@ -1,9 +1,9 @@
-"""Every exception Linkwork raises.
+"""All exceptions that Linkwork raises.
 
 ::
 
-    LinkworkError                   exit code 3: our fault unless a subclass says otherwise
-    ├── InputError                  exit code 2: what was asked cannot be understood
+    LinkworkError                   exit code 3: an error of Linkwork, except for the subclasses
+    ├── InputError                  exit code 2: the input is wrong
     │   ├── ExpressionError         a formula: text, column, what was expected
     │   ├── MechanismError          a mechanism: every problem found, each with its key
     │   │   └── MechanismFileError  the same, with file name and line numbers
@@ -11,7 +11,7 @@
     │   └── MissingPackageError     an optional package, with its install command
     └── NotConvergedError           exit code 1: raised only on request (``throw=True``)
 
-Wrong input raises. Mathematics that does not work out returns a
+Wrong input raises an error. A computation that fails returns a
 :class:`~linkwork.foundation.status.Status`.
 """
 
@@ -52,7 +52,7 @@ class LinkworkError(Exception):
 
 
 class InputError(LinkworkError):
-    """Wrong input: it cannot be understood or contradicts itself; base of all such errors.
+    """Wrong or contradictory input; the base of all such errors.
 
     Examples
     --------
@@ -142,7 +142,7 @@ class Problem:
 
 
 class MechanismError(InputError):
-    """A mechanism that cannot be understood; it carries every problem that was found.
+    """A wrong description of a mechanism, with every problem that was found.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ class NotConvergedError(LinkworkError):
 
 
 def key_text(key: Sequence[str | int]) -> str:
-    """A key path as it would be written in TOML: ``lengths."O2 A"``, ``input[2].from``."""
+    """A key path in TOML notation: ``lengths."O2 A"``, ``input[2].from``."""
     parts: list[str] = []
     for part in key:
         if isinstance(part, int):
@@ -259,7 +259,7 @@ def key_text(key: Sequence[str | int]) -> str:
 
 
 def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
-    """What exists, for the end of a message: ``(joints: A, C, D)``, nearest names first."""
+    """The existing names for the end of a message: ``(joints: A, C, D)``, nearest names first."""
     known = list(names)
     if not known:
         return f"(there are no {kind})"

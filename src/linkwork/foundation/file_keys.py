@@ -1,4 +1,4 @@
-"""The kinds of keys that tables of files have: what may be written there, said once.
+"""The kinds of keys in tables of files, each with its allowed values.
 
 Checks of files and their JSON Schemas are both generated from such keys.
 """
@@ -30,7 +30,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or a formula of the named dimensions."""
+    """A number, or a formula in the named dimensions."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ Kind = (
 
 @dataclass(frozen=True)
 class Key:
-    """One key: its name, what may stand there, and one line for people."""
+    """One key: its name, its allowed values, and one line of description."""
 
     name: str
     kind: Kind

@@ -1,15 +1,14 @@
 """Numbers of many designs at once, for code written for one design.
 
 The code that builds a mechanism computes with floats and complex numbers. :class:`Lanes` stand for
-such a number in n designs; arithmetic goes lane by lane. Where the code asks *whether* something
-holds (``if``, ``and``, ``max``), one lane leads: the answer is the leader's, and the lanes in which
-it is another one leave the :class:`Consensus`. What is computed is right for the lanes that are
-left; the others are built anew, with a leader of their own. So every design goes exactly the way
-that it would have gone alone.
+such a number in n designs; arithmetic goes lane by lane. Where the code tests a condition (``if``,
+``and``, ``max``), one lane, the leader, gives the answer, and the lanes with another answer leave
+the :class:`Consensus`. Results are valid for the remaining lanes; the others are built again, with
+a leader among them. So every design takes the same branches of the code as it does alone.
 
-Lanes pass through functions that are annotated for ``float`` and ``complex``, as a number would;
-:mod:`~linkwork.foundation.elementwise` has functions for both. Everything else that wants a plain
-number (``float``, ``math``, arrays) gets a :class:`NotElementwise` from lanes.
+Functions annotated for ``float`` and ``complex`` accept lanes;
+:mod:`~linkwork.foundation.elementwise` has functions for both. Operations that need a plain number
+(``float``, ``math``, arrays) raise :class:`NotElementwise` for lanes.
 """
 
 from __future__ import annotations
@@ -31,23 +30,23 @@ _Number = TypeVar("_Number", float, complex)
 
 
 class Consensus(Arithmetic[Any]):
-    """An arithmetic of n lanes, and which of them went the leader's way.
+    """An arithmetic of n lanes, with a record of the lanes that agree with the leader.
 
     Parameters
     ----------
     count : int
         n lanes.
     leader : int
-        The lane that decides. What is only shown (a sign in a printed equation) follows lane 0.
+        The lane that decides. Displayed values (a sign in a printed equation) are those of lane 0.
     widest : bool
-        Whether what varies counts as there where it is 0: the terms of all lanes together.
+        Whether a varied coefficient that is 0 keeps its term: all lanes then have the same terms.
 
     Attributes
     ----------
     agreeing : (n,) bool
         Lanes in which every decision was the leader's.
     apart : (n,) bool
-        Lanes with another value of a number that has to be one for all, as a gear ratio.
+        Lanes with another value of a number that must be equal in all, such as a gear ratio.
     """
 
     def __init__(self, count: int, leader: int = 0, *, widest: bool = False) -> None:
@@ -57,13 +56,13 @@ class Consensus(Arithmetic[Any]):
         self.apart: BoolArray = np.zeros(count, dtype=bool)
 
     def decide(self, truths: BoolArray) -> bool:
-        """The leader's answer; lanes with another one leave."""
+        """The leader's answer; lanes with another answer leave."""
         answer = bool(truths[self.leader])
         self.agreeing &= truths if answer else ~truths
         return answer
 
     def settle(self, number: Any) -> Any:
-        """The leader's value of a number; lanes with another one stand apart."""
+        """The leader's value of a number; lanes with another value are marked as ``apart``."""
         value = number.values[self.leader]
         self.apart |= number.values != value
         return value.item()
@@ -82,7 +81,7 @@ class Consensus(Arithmetic[Any]):
 
 
 class Truths:
-    """Whether something holds, lane by lane; as a condition the leader's answer."""
+    """A condition lane by lane; its truth value is the leader's answer."""
 
     __slots__ = ("consensus", "values")
 
@@ -198,7 +197,7 @@ class LaneArithmetic(Consensus):
         return Lanes(np.asarray(function(*map(_bare, numbers))), self)
 
     def plain(self, number: Any) -> Lanes:
-        """The same number in all lanes, which NumPy spreads where it is used."""
+        """The same number in all lanes; NumPy broadcasts it."""
         return Lanes(number, self)
 
     def add(self, x: Lanes, y: Lanes) -> Lanes:
@@ -258,10 +257,10 @@ def is_batched(number: object) -> TypeGuard[Lanes]:
 
 
 class Rest:
-    """The lanes in which something is not done yet, by themselves, with the leader.
+    """The lanes in which an iteration has not ended, and the leader, as an arithmetic of their own.
 
-    Work goes on with the numbers of these lanes only, led as before; :meth:`leave` tells the whole
-    which of them left meanwhile.
+    The iteration continues with these lanes only and the same leader; :meth:`leave` then removes
+    from the whole those that disagreed.
     """
 
     def __init__(self, done: Truths) -> None:
@@ -272,23 +271,23 @@ class Rest:
         self.part = LaneArithmetic(len(self.lanes))
 
     def narrow(self, number: _Number) -> _Number:
-        """A number in these lanes."""
+        """A number restricted to these lanes."""
         if not is_batched(number):
             return number
         return cast(_Number, Lanes(number.values[self.lanes], self.part))
 
     def widen(self, whole: _Number, part: _Number) -> _Number:
-        """A number of all lanes with what has become of it in these."""
+        """A number of all lanes, with the values of ``part`` in these lanes."""
         values = np.array(np.broadcast_to(_bare(whole), self.whole.agreeing.shape))
         values[self.lanes] = _bare(part)
         return self.whole.lanes(values)
 
     def leave(self) -> None:
-        """Lanes that went another way leave the whole."""
+        """Remove the lanes that disagreed from the whole."""
         self.whole.agreeing[self.lanes] &= self.part.agreeing
 
 
 def rest_of(done: bool) -> Rest | None:
-    """The lanes in which something is not done; ``None`` for a plain condition."""
+    """The lanes in which ``done`` is false; ``None`` for a plain condition."""
     truths: object = done
     return Rest(truths) if isinstance(truths, Truths) else None

@@ -1,4 +1,4 @@
-"""Names as people write them: ``θ₁₂``, ``ϑ12``, ``θ12`` and ``theta12`` are one name."""
+"""Spellings of names: ``θ₁₂``, ``ϑ12``, ``θ12`` and ``theta12`` are the same name."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def as_name(name: object) -> str:
     Raises
     ------
     InputError
-        For what is no text.
+        If it is not a text.
     """
     if not isinstance(name, str):
         raise InputError(f"a name must be a text, got {as_told(name)}")
@@ -48,12 +48,12 @@ def as_name(name: object) -> str:
 
 
 def canonical(name: str) -> str:
-    """The one form under which a name is looked up: NFKC, Greek letters spelled out.
+    """The form in which names are compared: NFKC, Greek letters spelled out.
 
     Raises
     ------
     InputError
-        For what is no text.
+        If it is not a text.
     """
     return _canonical(as_name(name))
 
@@ -66,13 +66,13 @@ def _canonical(name: str) -> str:
 
 
 def find_spelling(name: str, known: Iterable[str]) -> str:
-    """The spelling among ``known`` of a name that may be written otherwise, else the name."""
+    """The spelling of a name in ``known``, or the name itself if it is not there."""
     folded = canonical(name)
     return next((other for other in known if canonical(other) == folded), name)
 
 
 def is_name(text: str) -> bool:
-    """Whether ``text`` can name something: a letter or ``_``, then letters, digits, _ and '."""
+    """Whether ``text`` is a valid name: a letter or ``_``, then letters, digits, _ and '."""
     folded = unicodedata.normalize("NFKC", text)
     body = folded.rstrip("'")
     return body.isidentifier() and len(folded) <= 80
@@ -105,7 +105,7 @@ def latex_name(name: str) -> str:
 
 
 def free_name(name: str, taken: set[str]) -> str:
-    """A name that nothing has yet, from now on taken (canonical names)."""
+    """``name``, with a number if it is in ``taken`` (canonical names); it is added to them."""
     found, k = name, 1
     while canonical(found) in taken:
         found, k = f"{name}{k}", k + 1

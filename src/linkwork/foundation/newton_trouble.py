@@ -1,4 +1,4 @@
-"""The four ways in which Newton-Raphson misses a root, as in textbook sketches."""
+"""The four ways in which Newton-Raphson fails to find a root, as textbooks draw them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Overloaded arithmetic, in one place: ``a * b + 2`` means what the operands' arithmetic computes.
+"""Overloaded operators: ``a * b + 2`` is computed by the arithmetic of the operands.
 
-:class:`Operand` has the operators, and nothing else in the package has them. What they do is up to
-an :class:`Arithmetic`, of which there are five: numbers of many designs
+:class:`Operand` is the only class of the package with operators. They call an
+:class:`Arithmetic`, of which there are five: numbers of many designs
 (:mod:`~linkwork.foundation.lanes`), values with two derivatives (:mod:`linkwork.expression.jets`),
 formulas of cells, numbers with such formulas (both in ``linkwork.export.workbook``), and programs
 for kernels (``linkwork.kernels.program.recorder``).
@@ -23,7 +23,7 @@ _PLAIN = (int, float, complex, np.number)
 
 
 class NotElementwise(TypeError):
-    """An arithmetic was asked for an operation, or given an operand, that it does not know."""
+    """An arithmetic does not define an operation, or does not accept an operand."""
 
 
 class Arithmetic(Generic[T]):
@@ -35,7 +35,7 @@ class Arithmetic(Generic[T]):
         Raises
         ------
         NotElementwise
-            For anything else, as an array or an operand of another arithmetic.
+            For anything else, such as an array or an operand of another arithmetic.
         """
         if isinstance(number, Operand):
             if number.arithmetic is self:
@@ -78,7 +78,7 @@ class Arithmetic(Generic[T]):
 
 
 class Operand:
-    """A number with which one computes as with floats; ``arithmetic`` says how."""
+    """A number with the operators of a float; ``arithmetic`` computes them."""
 
     __slots__ = ()
     arithmetic: Arithmetic[Self]

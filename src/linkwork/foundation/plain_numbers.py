@@ -17,9 +17,9 @@ _LONGEST_TOLD = 40
 
 
 def plain_number(given: object) -> float | None:
-    """The float of a real number or of an array of no axes; ``None`` for anything else.
+    """A real number or an array without axes as a float; ``None`` for anything else.
 
-    Truth values, texts and rows are no numbers; one beyond every float is infinite.
+    Booleans, texts and rows are not numbers; a number too large for a float is infinite.
     """
     if isinstance(given, np.ndarray) and given.ndim == 0:
         given = given[()]
@@ -39,7 +39,7 @@ def finite_number(what: str, given: object) -> float:
     Raises
     ------
     InputError
-        If it is none, or not finite; ``what`` names it in the message.
+        If it is not a number, or not finite; ``what`` names it in the message.
     """
     number = plain_number(given)
     if number is None or not math.isfinite(number):
@@ -54,7 +54,7 @@ def whole_number(what: str, given: object, *, least: int = 0) -> int:
     Raises
     ------
     InputError
-        If it is none, or too small; ``what`` names it in the message.
+        If it is not an integer, or too small; ``what`` names it in the message.
     """
     if isinstance(given, bool) or not isinstance(given, Integral) or given < least:
         told = as_told(given)
@@ -63,7 +63,7 @@ def whole_number(what: str, given: object, *, least: int = 0) -> int:
 
 
 def as_told(given: object) -> str:
-    """What was given, in a message: as Python shows it, NumPy's numbers plain, cut short."""
+    """A given value for a message: its ``repr``, with NumPy's numbers as plain ones, cut short."""
     told = repr(_plain(given))
     return told if len(told) <= _LONGEST_TOLD else f"{told[:_LONGEST_TOLD]}…"
 

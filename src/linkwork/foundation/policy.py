@@ -10,7 +10,7 @@ __all__ = ["ChangePointPolicy"]
 
 
 class ChangePointPolicy(Enum):
-    """Which way a motion goes on at a change point; nothing but this choice decides it."""
+    """The branch on which a motion continues at a change point; only this choice decides it."""
 
     STOP = "stop"
     STRAIGHT = "straight"

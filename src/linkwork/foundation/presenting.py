@@ -1,4 +1,4 @@
-"""Results call the functions that show them; a layer above results registers those functions."""
+"""Registration of the functions that display results, by the layers above ``results``."""
 
 from __future__ import annotations
 

@@ -19,10 +19,10 @@ def cores() -> int:
 
 
 def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: int) -> None:
-    """Do something to every item; whoever is free takes the next one.
+    """Apply ``work`` to every item; a free thread takes the next one.
 
-    The thread that asks works too: waiting, it would keep a core for nothing while new threads look
-    for theirs. What is raised first is raised here, and no further item is begun.
+    The calling thread works too, since a waiting thread would occupy a core while the new threads
+    start. The first exception is raised here, and no further item is begun.
     """
     left, lock = iter(items), Lock()
 
@@ -39,7 +39,7 @@ def share_out(work: Callable[[Item], object], items: Iterable[Item], threads: in
                 work(item)
             except BaseException:
                 with lock:
-                    # after an error nobody begins a further item
+                    # after an error no thread begins a further item
                     left = iter(())
                 raise
 

@@ -1,4 +1,4 @@
-"""The verbs of a march along a path: aim, predict, attempt, resize.
+"""The operations of path following: aim, predict, attempt, resize.
 
 They are plain functions of numbers. NumPy's paths call them as they are, Numba compiles them for
 lanes, and a graphics card runs them in its threads; so the package knows neither NumPy's solvers

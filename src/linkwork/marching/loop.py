@@ -39,7 +39,7 @@ class Trial(Protocol[N]):
         """A step from a node to the parameter t."""
 
     def room(self, here: N, sign: float) -> float:
-        """How far a step from a node may go at most, in the direction of ``sign``."""
+        """The largest step allowed from a node, in the direction of ``sign``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class StepBounds:
 
 @dataclass(frozen=True)
 class Stop(Generic[N]):
-    """Where a march ended before its goal: the last node, and the parameter that was not reached.
+    """The end of a march before its goal: the last node, and the parameter that was not reached.
 
     ``exhausted``: all attempts were used.
     """
@@ -75,8 +75,8 @@ def march(
     bounds: StepBounds,
     watch: Callable[[N, N], bool] | None = None,
 ) -> tuple[list[N], Stop[N] | None]:
-    """Go from a node towards ``t = goal``, or until ``watch``, which sees both ends of every step,
-    answers true.
+    """March from a node to ``t = goal``, or until ``watch``, called with both ends of every step,
+    returns true.
 
     Returns
     -------

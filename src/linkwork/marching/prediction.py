@@ -7,11 +7,11 @@ from linkwork.foundation.arrays import Array
 __all__ = ["SAME", "hermite_weights", "is_same_spacing", "keep_spacing", "trusted_nodes"]
 
 SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
-_FAR = 2.5  # times the step before: further ahead fewer nodes are trusted
+_FAR = 2.5  # times the step before: beyond this distance fewer nodes are trusted
 
 
 def trusted_nodes(t: float, times: Array, known: int) -> int:
-    """How many of the ``known`` last nodes, at ``times`` (K,), predict well at t."""
+    """The number of the ``known`` last nodes, at ``times`` (K,), that predict well at t."""
     step, used = abs(t - times[0]), min(known, len(times))
     for k in range(len(times) - 1, 0, -1):
         # a polynomial far outside its nodes is worse than one through fewer of them
@@ -35,7 +35,7 @@ def hermite_weights(t: float, times: Array, i: int, count: int) -> tuple[float, 
 
 
 def is_same_spacing(step: float, times: Array, spacing: Array) -> bool:
-    """Whether nodes at ``times`` (K,) and the step from the last one have the ``spacing`` (K,)."""
+    """Whether the step and the distances between nodes at ``times`` (K,) equal ``spacing`` (K,)."""
     near = SAME * abs(step)
     # "not <=" instead of ">": a spacing of NaN or infinity equals no other one
     other = int(not abs(step - spacing[0]) <= near)
@@ -45,7 +45,7 @@ def is_same_spacing(step: float, times: Array, spacing: Array) -> bool:
 
 
 def keep_spacing(step: float, times: Array, spacing: Array) -> None:
-    """Note in ``spacing`` (K,) the step and the distances of nodes at ``times`` (K,)."""
+    """Store in ``spacing`` (K,) the step and the distances between nodes at ``times`` (K,)."""
     spacing[0] = step
     for k in range(1, len(times)):
         spacing[k] = times[k - 1] - times[k]

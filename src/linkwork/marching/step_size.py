@@ -1,4 +1,4 @@
-"""How large the next step of a march is: towards a goal, after success, after failure."""
+"""The size of the next step of a march: towards a goal, after a success, after a failure."""
 
 from __future__ import annotations
 
@@ -7,31 +7,34 @@ import math
 __all__ = ["GROWTH", "HALF", "aim", "by_error", "grow", "is_lost", "stride"]
 
 GROWTH = 2.0  # largest factor from one step to the next
-HALF = 0.5  # of a step that failed: the next attempt
-_WHOLE = 0.5  # part of the allowed step: after one as long as this a larger step may succeed
+HALF = 0.5  # the next attempt after a step that failed, as a part of it
+# A step often ends early, at a row of the table, and then tests only a part of its bound. The bound
+# grows where that part is half or more: it is then at most 4 (GROWTH / 0.5) times a step that
+# succeeded, while rows just short of the bound do not keep it from growing.
+_NEARLY_FULL = 0.5
 
 
 def aim(goal: float, here: float, h: float) -> float:
-    """Where a step of at most ``h`` from ``here`` towards ``goal`` ends: at the goal, if it can."""
+    """The end of a step of at most ``h`` from ``here`` towards ``goal``."""
     away = goal - here
     # the goal itself: here + away may be off by a rounding
     return goal if abs(away) <= h else here + math.copysign(h, away)
 
 
 def stride(goal: float, here: float, h: float) -> float:
-    """The step that :func:`aim` takes, with its sign."""
+    """The length of the step to :func:`aim`, with its sign."""
     away = goal - here
     return away if abs(away) <= h else math.copysign(h, away)
 
 
 def is_lost(t: float, here: float, goal: float) -> bool:
-    """Whether rounding leaves nothing of a step that should lead on."""
+    """Whether a step is lost to rounding: it ends where it began, before the goal."""
     return t == here and t != goal
 
 
 def grow(h: float, moved: float, largest: float) -> float:
-    """The next step's bound after a step of length ``moved`` that was taken."""
-    return min(GROWTH * h, largest) if moved >= _WHOLE * h else h
+    """The bound of the next step after a successful step of length ``moved``."""
+    return min(GROWTH * h, largest) if moved >= _NEARLY_FULL * h else h
 
 
 def by_error(error: float, target: float, order: int) -> float:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         solve_configuration as solve_configuration,
         start_in_configuration as start_in_configuration,
     )
-    from linkwork.motion.described import as_described as as_described
     from linkwork.motion.extremes import check_quantities as check_quantities
     from linkwork.motion.iterating import (
         guessed_points as guessed_points,
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
         Model as Model,
         model_of as model_of,
     )
+    from linkwork.motion.named_start import as_described as as_described
     from linkwork.motion.nearest_assembling import nearest_assembly as nearest_assembly
     from linkwork.motion.solving import solve as solve
     from linkwork.motion.sweeping import sweep as sweep

@@ -13,9 +13,9 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
-from linkwork.motion.last_rows import fill_last_rows, fill_passed_rows
 from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
+from linkwork.motion.rows_near_limits import fill_last_rows, fill_passed_rows
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,

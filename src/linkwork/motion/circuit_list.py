@@ -24,8 +24,8 @@ from linkwork.motion.circuit.seeding import Seeding
 from linkwork.motion.circuit.weakest import weakest_place
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.limits import change_point_limit, dead_point_limit
-from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.redundancy import FITS, misfit
@@ -74,7 +74,7 @@ class _Group:
 
 class _Circuits:
     def __init__(self, model: Model, certify: bool) -> None:
-        lead, rate = lock_step(model.rows)
+        lead, rate = leading_input(model.rows)
         self.model, self.certify = model, certify
         self.drive = Drive.through(model, model.start_inputs, rate, lead)
         self.leads = self.drive.leads

@@ -13,8 +13,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
+from linkwork.motion.aligned_links import links_in_line
 from linkwork.motion.drive import Drive
-from linkwork.motion.lined_up import links_in_line
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import End, Node, Track
 from linkwork.numerics.continuation.change_point import (
@@ -39,7 +39,10 @@ __all__ = [
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
-_SOUND = 1e4  # condition up to which a node is as good as any
+# Condition up to which a node is far enough from a dead point to begin the search for it. Nodes
+# must be proved up to 1e5 (motion.proving) and exist up to 3e6 (TrackOptions): a tenth of the first
+# leaves no doubt that this one is proved.
+_SOUND = 1e4
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 

@@ -27,8 +27,8 @@ from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
-from linkwork.motion.lock_step import lock_step
-from linkwork.motion.rails import rails_of
+from linkwork.motion.guides_from_equations import rails_of
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results import quantities
@@ -104,7 +104,7 @@ class Model:
         equations = self.equations
         released = {part.variable for part in equations.redundant}
         inputs = {v.name: Kind(v.kind) for v in equations.inputs}
-        lead = equations.inputs[lock_step(self.rows)[0]].name if inputs else ""
+        lead = equations.inputs[leading_input(self.rows)[0]].name if inputs else ""
         return Quantities(
             MechanismNames(
                 units=self.units,
@@ -183,7 +183,7 @@ class Model:
         """The unit of the input in derivatives: ``rad`` or the length unit of the leading input."""
         if not self.equations.inputs:
             return ""
-        return self.units.of_rate(Kind(self.equations.inputs[lock_step(self.rows)[0]].kind))
+        return self.units.of_rate(Kind(self.equations.inputs[leading_input(self.rows)[0]].kind))
 
     @cached_property
     def speed(self) -> float | None:

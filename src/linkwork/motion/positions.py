@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named
 from linkwork.motion.redundancy import largest_misfits
@@ -90,7 +90,7 @@ def target_values(model: Model, at: float | Mapping[str, float] | None) -> Array
 def input_rate(model: Model) -> Array:
     """How all inputs move by the leading one, (p,)."""
     rows = model.rows if model.description.inputs else np.zeros((1, 0))
-    return lock_step(rows)[1]
+    return leading_input(rows)[1]
 
 
 def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Array) -> Position:

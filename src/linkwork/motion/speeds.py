@@ -10,7 +10,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError, MechanismError, Problem
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.speed import speed_per_second
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 
 __all__ = ["input_speed", "leading_speeds"]
 
@@ -47,7 +47,7 @@ def leading_speeds(
     MechanismError
         For a speed that cannot be read.
     """
-    _, rate = lock_step(rows)
+    _, rate = leading_input(rows)
     return {
         k: _speed(description, k, inputs[k].kind) / float(rate[k]) if rate[k] else math.nan
         for k, which in enumerate(description.inputs)

@@ -18,8 +18,8 @@ from linkwork.motion.circuit_sweep import further_branches
 from linkwork.motion.crossing import beyond_change_point, ends_passed
 from linkwork.motion.drive import Drive
 from linkwork.motion.extremes import check_quantities, output_limit_at, output_limits
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.limits import BranchEnd
-from linkwork.motion.lock_step import lock_step
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import fitting, motion_of_rows
 from linkwork.motion.path_entry import enter_path
@@ -125,7 +125,7 @@ def _begin_sweep(
     start = first_position(model, model.start_inputs, options, explained=explained)
     if not start.status.ok:
         return start
-    lead, rate = lock_step(rows)
+    lead, rate = leading_input(rows)
     drive = Drive.through(model, rows[0], rate, lead)
     asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
     entry = enter_path(drive, start, asked.t, certify)

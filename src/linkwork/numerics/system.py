@@ -1,4 +1,4 @@
-"""A set of equations as numerical methods see it, and nothing else."""
+"""The interface between equations and the numerical methods that solve and prove them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class SmallSystem(Protocol):
 
     @property
     def unknowns(self) -> int:
-        """n, the first variables."""
+        """The number n of unknowns, which are the first variables."""
 
     @property
     def equation_scale(self) -> Array:
@@ -29,7 +29,7 @@ class SmallSystem(Protocol):
 
 
 class System(SmallSystem, Protocol):
-    """Equations with everything that tracking and proving need."""
+    """Equations with the further functions that path following and proofs need."""
 
     @property
     def is_angle(self) -> BoolArray:
@@ -51,7 +51,7 @@ class System(SmallSystem, Protocol):
 
     @property
     def has_curvature_bound(self) -> bool:
-        """Whether :meth:`curvature` knows a bound."""
+        """Whether :meth:`curvature` gives a bound."""
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:
         """Moduli of the second derivatives multiplied by a matrix (B, n, m)."""
@@ -69,7 +69,7 @@ class Curvature(Protocol):
 
     @property
     def loop_phases(self) -> int:
-        """How many of the phases belong to loops; later ones bend along one sum each."""
+        """How many of the phases belong to loops; each later one belongs to one sum."""
 
     @property
     def phase(self) -> Array:
@@ -77,7 +77,7 @@ class Curvature(Protocol):
 
     @property
     def slide(self) -> Array:
-        """(B, n, P) the same for the terms with a variable length, without it."""
+        """(B, n, P) the same for terms with a variable length, without that length."""
 
     @property
     def weights(self) -> Array:

@@ -14,9 +14,9 @@ __all__ = ["BlockSummary", "CheckReport"]
 
 @dataclass(frozen=True, kw_only=True)
 class BlockSummary:
-    """Equations that are solved together, by label, for the named unknowns.
+    """A block: the labels of equations that are solved together, and their unknowns.
 
-    ``group``: the Assur group that they are.
+    ``group``: the Assur group of the block.
     """
 
     equations: tuple[str, ...]

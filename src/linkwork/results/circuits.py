@@ -128,7 +128,7 @@ class Circuit:
         return self.motion[name]
 
     def range(self, name: str) -> tuple[float, float]:
-        """Smallest and largest value among the positions along the circuit, some degrees apart."""
+        """Smallest and largest value at the computed positions of the circuit."""
         values = self.motion[name]
         return float(np.nanmin(values)), float(np.nanmax(values))
 
@@ -232,7 +232,7 @@ class Circuits:
         Raises
         ------
         InputError
-            If there is no circuit, or more branches than stand beside each other.
+            If there is no circuit, or there are more branches than panels fit on a page.
         UnknownNameError
             For a name that does not exist.
         """

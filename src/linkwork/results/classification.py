@@ -11,7 +11,7 @@ _ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
 
 def roman(number: int) -> str:
-    """A class in the customary way: ``II``."""
+    """A class as a Roman numeral: ``II``."""
     return _ROMAN[number] if number < len(_ROMAN) else str(number)
 
 

@@ -62,7 +62,7 @@ class PathCount:
     theorem: str = ""
 
     def plus(self, other: PathCount) -> PathCount:
-        """Both together."""
+        """The sum of two counts."""
         kept = ("unknowns", "solved", "theorem")
         numbers = [f.name for f in fields(self) if f.name not in kept]
         sums = {name: getattr(self, name) + getattr(other, name) for name in numbers}
@@ -161,7 +161,7 @@ class Configurations:
 
 
 def configurations_summary(found: Configurations) -> Summary:
-    """One row per configuration, then completeness and what became of the paths."""
+    """One row per configuration, then the completeness and the ends of the paths."""
     at = driven_text(found.input, found.input_units)
     head = f"Configurations of {found.mechanism}" + (f" at {at}" if at else "")
     rows = []

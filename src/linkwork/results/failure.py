@@ -49,7 +49,7 @@ class Remedy:
 
     @property
     def change(self) -> float:
-        """By how much the length has to grow; negative if it has to shrink."""
+        """The change that the length needs; negative if it has to be shorter."""
         return self.needed - self.now
 
 
@@ -80,11 +80,11 @@ class Failure:
     nearest_proved : bool
         Whether the circuit was followed with proof.
     through : Mapping[str, float]
-        The dead point behind which the circuit reaches the requested values.
+        The dead point beyond which the circuit reaches the requested values.
     unreachable : bool
         Whether no input value was found at which the mechanism can be assembled.
     trouble : NewtonTrouble, optional
-        In which of four ways Newton-Raphson missed the root.
+        The way in which Newton-Raphson missed the root.
     configurations : tuple of Mapping[str, float]
         The positions that exist at the requested values: unknowns by name.
     configuration_names : tuple of str
@@ -130,11 +130,11 @@ class Failure:
 
     @property
     def message(self) -> str:
-        """The whole story in sentences."""
+        """All sentences as one text."""
         return "; ".join(text for _, text in self.sentences())
 
     def sentences(self) -> Iterator[tuple[str, str]]:
-        """A word that says what each is about, and the sentence."""
+        """The sentences, each with a word for its subject."""
         yield "why", self.what
         if self.meant:
             another = self.trouble is NewtonTrouble.ANOTHER_ROOT

@@ -30,7 +30,7 @@ _PARALLEL = 1e-9  # relative: links that turn at rates as near as this have thei
 
 @dataclass(frozen=True, kw_only=True)
 class InstantCentre:
-    """Where two links have the same velocity.
+    """The place at which two links have the same velocity.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ class Centrodes:
 
 
 def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
-    """The centres of all pairs of links that move against each other.
+    """The centres of all pairs of links that move relative to each other.
 
     Raises
     ------
     InputError
-        If the position was not found, or has no rates by the input: at a dead point, or without
-        a moving input.
+        If the position was not found, or has no derivatives with respect to the input: at a dead
+        point, or without a moving input.
     """
     if not position.status.ok:
         raise InputError(f'"{position.mechanism}" has no position here: {position.message}')
@@ -98,7 +98,7 @@ def instant_centres(position: Position) -> tuple[InstantCentre, ...]:
 def _centre(
     position: Position, one: LinkMotion, two: LinkMotion, size: float, fastest: float
 ) -> InstantCentre | None:
-    """The centre of two links; ``None`` if they do not move against each other."""
+    """The centre of two links; ``None`` if they do not move relative to each other."""
     links = (one.link, two.link)
     shared = [point for point in one.points if point in two.points]
     if shared:

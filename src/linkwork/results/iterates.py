@@ -29,14 +29,14 @@ class Iterate:
     norm : float
         |F|, the 2-norm of ``residuals``.
     jacobian : tuple of tuple of float, shape (n, n)
-        dF/dx by the block's unknowns; angles in radians.
+        dF/dx with respect to the block's unknowns; angles in radians.
     step : float, optional
-        Largest weighted change that led to the next iterate (radians, or of the longest link);
+        Largest weighted change to the next iterate (radians, or relative to the longest link);
         ``None`` at the last one.
     points : Mapping[str, (x, y)]
-        The picture at this iterate: blocks before are solved, blocks behind stand at their guess.
+        Positions at this iterate: earlier blocks are solved, later blocks are at their guess.
     apart : tuple of LinkEnd
-        Ends of links that do not meet their joint in it.
+        Ends of links that do not meet their joint there.
     """
 
     equations: tuple[str, ...]

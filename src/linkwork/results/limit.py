@@ -98,7 +98,7 @@ class Limit:
         }
 
     def told(self, name: str, unit: str) -> str:
-        """Where it lies, which loops lock there with which links in line, how the motion went on.
+        """The limit as text: its place, the loops that lock, the links in line, the way past it.
 
         ``name`` and ``unit`` are the leading input's.
         """
@@ -155,7 +155,7 @@ class OutputLimit:
     located: bool
 
     def named(self, value: float) -> OutputLimit:
-        """The same at another name of its input value, whole turns away."""
+        """The same limit, with its input value changed by whole turns."""
         low, high = self.bracket
         shift = value - self.input
         return replace(self, input=value, bracket=(low + shift, high + shift))

@@ -18,10 +18,10 @@ __all__ = ["LinkMotion", "link_motion", "link_motions"]
 
 @dataclass(frozen=True, kw_only=True)
 class LinkMotion:
-    """The frame of a link over N positions, with its rates by the input.
+    """The frame of a link over N positions, with its derivatives with respect to the input.
 
-    The frame stands at the link's first point and turns with the link: a point ``m`` of the link is
-    at ``origin + turn · m`` and moves at ``shift + i · spin · (place)``.
+    The frame's origin is the link's first point, and it turns with the link: a point ``m`` of the
+    link is at ``origin + turn · m`` and moves at ``shift + i · spin · (place)``.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def link_motion(of: Position | Motion, link: str) -> LinkMotion:
     UnknownNameError
         If there is no such link with points.
     InputError
-        If its turning is told neither by an angle nor by two points.
+        If neither an angle nor two points determine its direction.
     """
     links = _links(of)
     if link not in links:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 # long: more than half are the descriptions and examples of public methods.
-
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

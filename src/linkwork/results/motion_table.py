@@ -15,13 +15,13 @@ __all__ = ["table_of"]
 def table_of(motion: Motion, *names: str) -> Table:
     """Columns of a motion: inputs, unknowns, points, outputs, derivatives, rates, evidence.
 
-    ``<name>.d1`` and ``.d2`` are derivatives by the (first) input with angles in radians;
+    ``<name>.d1`` and ``.d2`` are derivatives with respect to the leading input, angles in radians;
     ``.velocity`` and ``.acceleration`` appear when the input has a speed.
 
     Parameters
     ----------
     names : str
-        Only these quantities and rates, behind the inputs and before the status.
+        Only these quantities and rates, between the inputs and the status.
 
     Raises
     ------

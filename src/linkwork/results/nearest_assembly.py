@@ -14,14 +14,14 @@ __all__ = ["LinkEnd", "NearestAssembly"]
 
 @dataclass(frozen=True, kw_only=True)
 class LinkEnd:
-    """An end of a link that does not reach the joint it belongs to.
+    """An end of a link that does not reach its joint.
 
     Parameters
     ----------
     link, point : str
         The link, and the joint.
     joint, end : (x, y)
-        Where the joint lies, and where the link's own end does [length].
+        The positions of the joint and of the link's end [length].
     """
 
     link: str
@@ -32,7 +32,7 @@ class LinkEnd:
 
 @dataclass(frozen=True, kw_only=True)
 class NearestAssembly:
-    """The least-squares position: the loops left open by as little as was found near the guess.
+    """The least-squares position: the smallest closure error found near the guess.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class NearestAssembly:
     points : Mapping[str, (x, y)]
         Coordinates of every point, each reached from ground by one way around its loop.
     gaps : Mapping[str, (x, y)]
-        For every loop the vector by which it stays open [length]; zero where it closes.
+        The closure error of every loop as a vector [length]; zero where it closes.
     gap : float
         Root of the sum of their squares [length].
     apart : tuple of LinkEnd

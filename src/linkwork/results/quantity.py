@@ -36,7 +36,7 @@ class Units:
         return self.angle.value if kind is Kind.ANGLE else self._of_length(kind)
 
     def of_rate(self, kind: Kind) -> str:
-        """Unit in which a derivative counts the quantity: radians, lengths."""
+        """The unit of the quantity in derivatives: radians or lengths."""
         return {Kind.ANGLE: "rad", Kind.NUMBER: "1"}.get(kind) or self._of_length(kind)
 
     def _of_length(self, kind: Kind) -> str:
@@ -58,10 +58,10 @@ class Quantity:
 
 
 class Rate(Enum):
-    """How a rate is asked for: ``B.x.d1`` and ``.d2`` are the derivatives of ``B.x`` by the leading
-    input, ``.velocity`` and ``.acceleration`` those by time.
+    """A rate of a quantity: ``B.x.d1`` and ``B.x.d2`` are derivatives with respect to the leading
+    input, ``B.x.velocity`` and ``B.x.acceleration`` those with respect to time.
 
-    Angles count in radians.
+    Angles are in radians.
     """
 
     FIRST = "d1"
@@ -71,14 +71,14 @@ class Rate(Enum):
 
     @classmethod
     def split(cls, name: str) -> tuple[str, Rate | None]:
-        """What is named, and which of its rates; ``None`` for a quantity itself."""
+        """The quantity's name and the rate that a name contains; ``None`` if it has no rate."""
         own, _, last = as_name(name).rpartition(".")
         rate = next((rate for rate in cls if own and rate.value == last), None)
         return (name, None) if rate is None else (own, rate)
 
     @property
     def order(self) -> int:
-        """1 or 2: how often the quantity is differentiated."""
+        """The order of the derivative, 1 or 2."""
         return 1 if self in (Rate.FIRST, Rate.VELOCITY) else 2
 
     @property
@@ -88,17 +88,17 @@ class Rate(Enum):
 
     @property
     def measure(self) -> str:
-        """What it measures, in a word."""
+        """The rate as a word for labels."""
         ordinal = "first" if self.order == 1 else "second"
         return self.value if self.by_time else f"{ordinal} derivative"
 
     def check(self, name: str, speed: Array | float | None) -> None:
-        """Refuse a rate by time of a quantity if the input has no speed.
+        """Raise an error for a time derivative if the input has no speed.
 
         Raises
         ------
         UnknownNameError
-            With the name of the rate by the input.
+            With the name of the derivative with respect to the input.
         """
         if self.by_time and speed is None:
             by_input = Rate.FIRST if self.order == 1 else Rate.SECOND
@@ -108,7 +108,7 @@ class Rate(Enum):
             )
 
     def of(self, first: Array, second: Array, speed: Array | float | None) -> Array:
-        """The rate, given both derivatives by the input and the input's speed."""
+        """The rate, from both derivatives with respect to the input and the input's speed."""
         derivative = first if self.order == 1 else second
         if not self.by_time:
             return derivative
@@ -117,6 +117,6 @@ class Rate(Enum):
         return found
 
     def unit(self, kind: Kind, units: Units, by: str) -> str:
-        """Its unit; ``by`` is that of the input in derivatives."""
+        """The unit of the rate; ``by`` is the unit of the input in derivatives."""
         power = "" if self.order == 1 else "^2"
         return f"{units.of_rate(kind)}/{'s' if self.by_time else by}{power}"

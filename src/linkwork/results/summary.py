@@ -10,7 +10,7 @@ __all__ = ["Summary", "driven_text"]
 
 @dataclass(frozen=True)
 class Summary:
-    """A line that says what it is, and rows of a name and a text; as text, aligned."""
+    """A title line and rows of a name and a text; as text, in aligned columns."""
 
     head: str
     rows: tuple[tuple[str, str], ...]

@@ -1,4 +1,4 @@
-"""Former functions for transmission angles, which are quantities of a motion now."""
+"""Former public functions for transmission angles, kept at their former path until version 0.4."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def transmission_angles(motion: Motion) -> Mapping[Dyad, Array]:
 def dyad_angle(motion: Motion, dyad: Dyad) -> Array:
     """The transmission angle of one dyad, (N,) [rad]."""
     name = f"{dyad.pin}.transmission"
-    told = f'this is now motion["{name}"]; the former function is removed in version 0.4'
-    warn(told, DeprecationWarning, stacklevel=2)
+    message = f'this is now motion["{name}"]; the former function is removed in version 0.4'
+    warn(message, DeprecationWarning, stacklevel=2)
     found: Array = motion[name] * motion.units.angle.radians
     return found

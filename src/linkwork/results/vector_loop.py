@@ -16,11 +16,11 @@ class LoopVector:
     Parameters
     ----------
     name : str
-        What the equation calls it, in polar form: ``a2∠θ12``.
+        Its name in the equation, in polar form: ``a2∠θ12``.
     value : complex
-        What the term adds to its side: x + iy, in the mechanism's length unit.
+        The value of the term: x + iy, in the mechanism's length unit.
     backwards : bool
-        Whether the equation takes the named vector off: the arrow then points against ``value``.
+        Whether the equation subtracts the named vector: the arrow then points against ``value``.
     """
 
     name: str

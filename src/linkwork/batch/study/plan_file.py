@@ -28,7 +28,7 @@ from linkwork.foundation.errors import (
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.description import Description, Problems
-from linkwork.mechanism.quantities import quantity_named
+from linkwork.mechanism.varied_number import number_named
 from linkwork.motion import Model, as_described
 from linkwork.results.quantities.registry import Call
 from linkwork.textfile.library import example_text, examples
@@ -202,7 +202,7 @@ class _Reader:
         known = True
         for name in (*plan, *constants):
             try:
-                quantity_named(model.description, name)
+                number_named(model.description, name)
             except UnknownNameError as error:
                 self.problems.add(self._key_of_number(name), str(error))
                 known = False

@@ -14,7 +14,7 @@ from linkwork.batch.study.choosing import values_between
 from linkwork.batch.study.job import Job, passes_name
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
-from linkwork.mechanism.quantities import quantity_named
+from linkwork.mechanism.varied_number import number_named
 from linkwork.motion import Model
 
 __all__ = ["DESIGN", "Study", "Variable", "usual_chunk"]
@@ -180,7 +180,7 @@ class Study:
         )
 
     def _unit_of_number(self, name: str) -> str:
-        table = quantity_named(self.job.description, name).table
+        table = number_named(self.job.description, name).table
         if table in ("lengths", "points", "sliders"):
             return self.job.description.length
         return self.job.description.angle.value if table == "angles" else ""

@@ -9,7 +9,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive
 from linkwork.mechanism.figures import Disc, Figure, Mesh
-from linkwork.mechanism.part.index import room_of
+from linkwork.mechanism.part.index import part_module
 
 __all__ = ["part_symbols"]
 
@@ -18,6 +18,6 @@ def part_symbols(figures: Iterable[Figure], pose: Pose, measures: Measures) -> I
     """The symbols of figures; wheels are drawn together, so that their teeth mesh."""
     for figure in figures:
         if not isinstance(figure, Disc | Mesh):
-            module = import_module(f"linkwork.drawing.part.{room_of(type(figure))}")
+            module = import_module(f"linkwork.drawing.part.{part_module(type(figure))}")
             draw: Callable[[Figure, Pose, Measures], Iterator[Primitive]] = module.symbols
             yield from draw(figure, pose, measures)

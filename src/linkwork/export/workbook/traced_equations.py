@@ -18,7 +18,7 @@ from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.quantities import Quantity, quantities, with_numbers
+from linkwork.mechanism.varied_number import VariedNumber, varied_numbers, with_numbers
 
 __all__ = ["Dimension", "TracedEquations", "forms_of", "traced"]
 
@@ -102,10 +102,10 @@ def _without_tables(description: Description) -> Description:
     return replace(description, inputs=inputs)
 
 
-def _dimensions(description: Description) -> Iterator[Quantity]:
+def _dimensions(description: Description) -> Iterator[VariedNumber]:
     """All numbers with cells; ground lengths follow from its points."""
     ground = set(description.links[GROUND]) if isinstance(description, Linkage) else set()
-    for quantity in quantities(description):
+    for quantity in varied_numbers(description):
         if quantity.table == "guess":
             continue
         if quantity.table in ("lengths", "angles"):
@@ -116,18 +116,18 @@ def _dimensions(description: Description) -> Iterator[Quantity]:
         yield quantity
 
 
-def _key(quantity: Quantity) -> str:
+def _key(quantity: VariedNumber) -> str:
     if quantity.table == "dimensions":
         return canonical(quantity.name)
     return f"{quantity.table} {quantity.name}"
 
 
-def _formula(description: Description, quantity: Quantity) -> Node | None:
+def _formula(description: Description, quantity: VariedNumber) -> Node | None:
     written = quantity.written(description)
     return parse(written) if isinstance(written, str) else None
 
 
-def _dimension(description: Description, quantity: Quantity, live: bool) -> Dimension:
+def _dimension(description: Description, quantity: VariedNumber, live: bool) -> Dimension:
     formula = _formula(description, quantity)
     return Dimension(
         key=_key(quantity),
@@ -140,7 +140,7 @@ def _dimension(description: Description, quantity: Quantity, live: bool) -> Dime
 
 
 def _built(
-    description: Description, asked: Sequence[Quantity]
+    description: Description, asked: Sequence[VariedNumber]
 ) -> tuple[LoopEquations, Trace] | None:
     """The equations with these numbers traced; ``None`` if the builder has no formulas."""
     trace = Trace()

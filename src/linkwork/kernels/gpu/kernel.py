@@ -34,7 +34,7 @@ class DeviceKernel(SweepKernel):
     _kernels: _Kernels | None = None
     _chunks: tuple[Chunk, ...] = ()  # of the latest run: page-locked memory is slow to get
 
-    def shift(self, execution: Execution) -> None:
+    def choose_execution(self, execution: Execution) -> None:
         """Write the kernels out; a graphics card compiles each of them at its first launch.
 
         Raises
@@ -103,7 +103,7 @@ class DeviceKernel(SweepKernel):
 
     def chunk(self, rows: int, designs: int) -> Chunk:
         """Room on the device for some designs over some rows."""
-        self.shift(Execution())
+        self.choose_execution(Execution())
         assert self._kernels is not None
         shape = _Shape(
             unknowns=self.table.unknowns,
@@ -120,7 +120,7 @@ class DeviceKernel(SweepKernel):
 
     def _room(self, rows: int, count: int) -> tuple[Chunk, ...]:
         """One chunk for all designs, or two equal ones that are used in turn."""
-        self.shift(Execution())
+        self.choose_execution(Execution())
         each = 8 * (rows * (self.table.unknowns + 2) + len(self._state.coefficients))
         each += 8 * (6 * self.nodes.shape[1] + 4)
         free = self._card.current_context().get_memory_info().free

@@ -1,7 +1,8 @@
-"""Many mechanisms along one path of inputs on a graphics card: each thread follows one, one way.
+"""March many mechanisms on a graphics card: each thread follows one, in one direction.
 
-The same march as :mod:`linkwork.kernels.march.independent`, for one mechanism. A thread's state is
-a small array that is addressed by constants only, so that the compiler can keep it in registers:
+Each thread marches as :mod:`linkwork.kernels.march.independent` does, along one path of inputs. A
+thread's state is a small array that is addressed by constants only, so that the compiler can keep
+it in registers:
 
 =======================  =====================================================================
 ``r S … r S + S - 1``    the position in role r, unknowns first and t last (:class:`Shape`)
@@ -9,8 +10,8 @@ from ``5 S``             weights a1, b1, …, b4; good; radius; live of each blo
 then                     coefficients, options, and further results of the trial
 =======================  =====================================================================
 
-There is one loop, and one turn of it is one trial: a thread that has to repeat a step keeps no
-other thread waiting, it only needs more turns. Only code written by
+The loop does one trial at a time, so a thread that repeats a step takes more rounds and delays no
+other thread. Only code written by
 :mod:`linkwork.kernels.gpu.printing` imports this module, because it loads numba.cuda.
 """
 

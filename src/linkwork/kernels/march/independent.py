@@ -3,8 +3,8 @@
 A lane tries steps of its own size from row to row of the table; when it is done, or cannot go on,
 it takes the next task. So no lane waits for another, whatever their trouble.
 
-Places of nodes change roles all at once (:mod:`trial`). A lane whose step is not taken has its
-nodes moved instead.
+Places of nodes change roles all at once (:mod:`linkwork.kernels.march.step_trial`). A lane whose
+step is not taken has its nodes moved instead.
 """
 
 from __future__ import annotations

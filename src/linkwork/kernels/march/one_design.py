@@ -12,21 +12,21 @@ from linkwork.kernels.march.rowwise import DONE, NOT_NEAR, by_rows
 from linkwork.kernels.march.step_trial import Topology
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult
 
-__all__ = ["Ready", "RowsOfOne", "SingleDesign"]
+__all__ = ["LoadedFamily", "RowsOfOne", "SingleDesign"]
 
 
 @dataclass(frozen=True, eq=False)
-class Ready:
+class LoadedFamily:
     """A topology and the coefficients (C, D) of designs."""
 
     topology: Topology
     design: Array
 
-    def part(self, which: slice) -> Ready:
+    def part(self, which: slice) -> LoadedFamily:
         """Some of the designs."""
-        return Ready(self.topology, np.ascontiguousarray(self.design[:, which]))
+        return LoadedFamily(self.topology, np.ascontiguousarray(self.design[:, which]))
 
-    def one(self, k: int) -> Ready:
+    def one(self, k: int) -> LoadedFamily:
         """One of the designs."""
         return self.part(slice(k, k + 1))
 
@@ -41,7 +41,9 @@ class Scout(Protocol):
     def guess_nodes(self, guess: Array, start: Array) -> Array:
         """Guesses (n, D) at ``start`` (D,) as nodes, (S, D)."""
 
-    def start_nodes(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+    def start_nodes(
+        self, family: LoadedFamily, space: Array, given: Array
+    ) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
 
 
@@ -53,8 +55,8 @@ class SingleDesign:
     """
 
     scout: Scout
-    ready: Ready
-    ahead: Ready
+    family: LoadedFamily
+    ahead: LoadedFamily
     space: Array
     own: Array
     table: InputTable
@@ -62,11 +64,11 @@ class SingleDesign:
 
     def with_design(self, k: int) -> LoadedDesign:
         """With a design in place, until another one is."""
-        self.ready.load(self.space, k)
+        self.family.load(self.space, k)
         if self.own is not self.space:
             self.ahead.load(self.own, k)
         return LoadedDesign(
-            self, k, (self.ready.topology, self.ahead.topology, self.space, self.own)
+            self, k, (self.family.topology, self.ahead.topology, self.space, self.own)
         )
 
 

@@ -19,7 +19,7 @@ from linkwork.kernels.march.dead_points import LastNodes
 from linkwork.kernels.march.independent import march
 from linkwork.kernels.march.lockstep import in_step
 from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
-from linkwork.kernels.march.one_design import Ready, RowsOfOne, SingleDesign
+from linkwork.kernels.march.one_design import LoadedFamily, RowsOfOne, SingleDesign
 from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
 from linkwork.kernels.march.thread_shares import share_of_threads
@@ -32,7 +32,9 @@ from linkwork.kernels.program.program import ROLES, registers_read
 
 __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 
-_FEW = 16  # designs, at most, of which each is solved with its rows side by side
+# Up to so many designs are solved one at a time with their rows side by side. Side by side
+# themselves they would leave three quarters of the 64 lanes idle.
+_FEW = LANES // 4
 _ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
 
 
@@ -105,10 +107,10 @@ class SweepKernel:
     @property
     def trial(self) -> int:
         """Address of the trial written out, 0 where the interpreter does it."""
-        written_out = self._trial  # read once: another thread may shift
+        written_out = self._trial  # read once: another thread may choose
         return 0 if written_out is None else int(written_out.address)
 
-    def shift(self, execution: Execution) -> None:
+    def choose_execution(self, execution: Execution) -> None:
         """Write the trial out, if that is asked for or saves time.
 
         Raises
@@ -168,15 +170,15 @@ class SweepKernel:
             Designs whose start was found.
         """
         count, given = len(start), self.guess_nodes(guess, start)
-        ready, table = self._ready(coefficients, count), self._table(rows, steps)
+        family, table = self._load_family(coefficients, count), self._table(rows, steps)
         # few designs cannot fill the lanes; their rows can
         if count <= _FEW and len(rows) >= LANES:
-            return self._few(ready, coefficients, given, table, steps, found)
+            return self._few(family, coefficients, given, table, steps, found)
         begun = np.zeros(count, dtype=bool)
 
         def one(part: slice) -> None:
             own = found._replace(first=part.start)
-            begun[part] = self._part(ready.part(part), given[:, part], table, steps, own)
+            begun[part] = self._part(family.part(part), given[:, part], table, steps, own)
 
         parts = share_of_threads(count, threads)
         share_out(one, parts, min(threads, len(parts)))
@@ -214,9 +216,9 @@ class SweepKernel:
         values = np.array([coefficients[name] for name in used]).reshape(len(used), count)
         return np.array([named[name] for name in used], dtype=np.intp), values
 
-    def _ready(self, coefficients: Mapping[str, Array], count: int) -> Ready:
+    def _load_family(self, coefficients: Mapping[str, Array], count: int) -> LoadedFamily:
         places, design = self._coefficient_registers(coefficients, count)
-        return Ready(self._topology(places), design)
+        return LoadedFamily(self._topology(places), design)
 
     def _space(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
@@ -232,16 +234,18 @@ class SweepKernel:
         own[:] = blank[1]
         return own
 
-    def start_nodes(self, ready: Ready, space: Array, given: Array) -> tuple[Array, BoolArray]:
+    def start_nodes(
+        self, family: LoadedFamily, space: Array, given: Array
+    ) -> tuple[Array, BoolArray]:
         """Nodes (S, D) where designs start, and whether they do, (D,)."""
         node, begun = np.empty_like(given), np.zeros(given.shape[1], dtype=bool)
         given = np.ascontiguousarray(given)
-        begin(ready.topology, space, ready.design, given, node, begun)
+        begin(family.topology, space, family.design, given, node, begun)
         return node, begun
 
     def _part(
         self,
-        ready: Ready,
+        family: LoadedFamily,
         given: Array,
         table: InputTable,
         steps: Steps,
@@ -249,8 +253,8 @@ class SweepKernel:
     ) -> BoolArray:
         """Designs side by side."""
         space = self._space(steps)
-        node, begun = self.start_nodes(ready, space, given)
-        _march_part(ready, space, node, begun, table, found)
+        node, begun = self.start_nodes(family, space, given)
+        _march_part(family, space, node, begun, table, found)
         return begun
 
     def _table(self, rows: Array, steps: Steps) -> InputTable:
@@ -259,7 +263,7 @@ class SweepKernel:
 
     def _few(
         self,
-        ready: Ready,
+        family: LoadedFamily,
         coefficients: Mapping[str, Array],
         given: Array,
         table: InputTable,
@@ -267,7 +271,7 @@ class SweepKernel:
         found: MarchResult,
     ) -> BoolArray:
         """One design after the other, its rows side by side; then those that this is not for."""
-        alone, n = self._prepare_single(ready, coefficients, table, steps), self.table.unknowns
+        alone, n = self._prepare_single(family, coefficients, table, steps), self.table.unknowns
         counts = np.zeros(len(table.rows), dtype=np.int64)
         done = np.zeros(given.shape[1], dtype=bool)
         for k in range(given.shape[1]):
@@ -276,8 +280,8 @@ class SweepKernel:
         if done.all():
             return done
         space = self._space(steps)
-        node, begun = self.start_nodes(ready, space, given)
-        _march_part(ready, space, node, begun & ~done, table, found)
+        node, begun = self.start_nodes(family, space, given)
+        _march_part(family, space, node, begun & ~done, table, found)
         return done | begun
 
     def prepare_single(
@@ -297,9 +301,9 @@ class SweepKernel:
         guess : (n,)
             Of the unknowns at ``start``.
         """
-        ready = self._ready(coefficients, 1)
+        family = self._load_family(coefficients, 1)
         table = self._table(rows, steps)
-        loaded = self._prepare_single(ready, coefficients, table, steps).with_design(0)
+        loaded = self._prepare_single(family, coefficients, table, steps).with_design(0)
         size = 2 * self.nodes.shape[1]
         room = (np.zeros((len(rows), 1), dtype=bool), np.empty((2, 1)), np.empty((2, size, 1)))
         return RowsOfOne(
@@ -311,20 +315,24 @@ class SweepKernel:
         )
 
     def _prepare_single(
-        self, ready: Ready, coefficients: Mapping[str, Array], table: InputTable, steps: Steps
+        self,
+        family: LoadedFamily,
+        coefficients: Mapping[str, Array],
+        table: InputTable,
+        steps: Steps,
     ) -> SingleDesign:
-        count = ready.design.shape[1]
-        ahead, scout = ready, self.scout or self
+        count = family.design.shape[1]
+        ahead, scout = family, self.scout or self
         if self.scout is not None:
             if self.trial:
-                self.scout.shift(Execution(specialised=True))
-            ahead = self.scout._ready(coefficients, count)
+                self.scout.choose_execution(Execution(specialised=True))
+            ahead = self.scout._load_family(coefficients, count)
         space = self._space(steps)
         ones = np.ones(count)
         scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
         return SingleDesign(
             scout=scout,
-            ready=ready,
+            family=family,
             ahead=ahead,
             space=space,
             own=space if scout is self else scout._space(replace(steps, tolerance=_ROUGHLY)),
@@ -347,8 +355,13 @@ class SweepKernel:
 
 
 def _march_part(
-    ready: Ready, space: Array, node: Array, begun: BoolArray, table: InputTable, kept: MarchResult
+    family: LoadedFamily,
+    space: Array,
+    node: Array,
+    begun: BoolArray,
+    table: InputTable,
+    kept: MarchResult,
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
-    many = in_step(ready.topology, space, ready.design, node, begun, table, tasks, kept)
-    march(ready.topology, space, ready.design, table, tasks, many, kept)
+    many = in_step(family.topology, space, family.design, node, begun, table, tasks, kept)
+    march(family.topology, space, family.design, table, tasks, many, kept)

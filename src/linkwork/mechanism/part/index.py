@@ -23,7 +23,7 @@ from linkwork.mechanism.part.slot import Slot
 from linkwork.mechanism.part.spring import Spring
 from linkwork.mechanism.part.weld import Weld
 
-__all__ = ["PARTS", "JoinedBodies", "room_of"]
+__all__ = ["PARTS", "JoinedBodies", "part_module"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,7 @@ PARTS: Mapping[str, type[Part]] = {
 }
 
 
-def room_of(kind: type) -> str:
+def part_module(kind: type) -> str:
     """The module name of a part, the same in the packages of its figures and equations."""
     return kind.__module__.rpartition(".")[2]
 

@@ -93,7 +93,7 @@ def kernel_rows(
         own = {"origin": origin, "rate": rate, "spread": spread[j]}
         coefficients |= {f"u{j}.{name}": np.array([value]) for name, value in own.items()}
     kernel = kernel_of(model, zeros, certify)
-    kernel.shift(Execution(positions=len(rows)))
+    kernel.choose_execution(Execution(positions=len(rows)))
     nearest, begin = _nearest(track, rows)
     steps = Steps().times(path.size)
     march = kernel.prepare_single(coefficients, begin.v[:n], begin.t, rows, steps)

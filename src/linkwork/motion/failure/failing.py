@@ -12,8 +12,12 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
 from linkwork.motion.failure.dyads import dyad_of
-from linkwork.motion.failure.elsewhere import ElsewhereAt, block_positions, positions_elsewhere
 from linkwork.motion.failure.newton_reasons import Miss, miss_of, root_beside_guess, trouble_of
+from linkwork.motion.failure.other_positions import (
+    ElsewhereAt,
+    block_positions,
+    positions_elsewhere,
+)
 from linkwork.motion.failure.reach import (
     MOST_UNKNOWNS,
     ReachableRange,
@@ -21,7 +25,7 @@ from linkwork.motion.failure.reach import (
     reach_towards,
 )
 from linkwork.motion.failure.remedies import remedies_of
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.numerics.block_solver import Block
@@ -260,7 +264,7 @@ def _cannot_close(model: Model, block: Block, number: int, here: Array, miss: Mi
     reach, reachable = None, True
     # a circuit of a large mechanism would take longer than anybody waits for an explanation
     if len(inputs) and solver.unknowns <= MOST_UNKNOWNS:
-        lead, rate = lock_step(model.rows)
+        lead, rate = leading_input(model.rows)
         path = InputPath(origin=inputs - rate * inputs[lead], rate=rate)
         assembled = assembled_near(model, path, lead, here)
         reachable = assembled is not None

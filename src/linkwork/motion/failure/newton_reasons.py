@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.foundation.status import Status
-from linkwork.motion.failure.elsewhere import block_positions, distance
+from linkwork.motion.failure.other_positions import block_positions, distance
 from linkwork.numerics.block_solver import Block
 from linkwork.numerics.least_squares import nearest_miss
 from linkwork.numerics.newton import NewtonOptions, newton

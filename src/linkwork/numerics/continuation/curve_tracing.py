@@ -61,17 +61,17 @@ class Leg:
 
     @property
     def v(self) -> Array:
-        """(K, N) in the whole's order."""
+        """Positions (K, N), all variables in their order."""
         return self.led.whole(np.stack([node.v for node in self.nodes]))
 
     @property
     def first(self) -> Array:
-        """Derivatives by the leader, (K, N), in the whole's order."""
+        """First derivatives with respect to the leader, (K, N), all variables in their order."""
         return self.led.whole(np.stack([node.first for node in self.nodes]))
 
     @property
     def second(self) -> Array:
-        """Second derivatives by the leader, (K, N)."""
+        """Second derivatives with respect to the leader, (K, N)."""
         return self.led.whole(np.stack([node.second for node in self.nodes]))
 
 

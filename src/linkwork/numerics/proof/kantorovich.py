@@ -31,8 +31,13 @@ from linkwork.numerics.system import System
 
 __all__ = ["Bounds", "Expansion", "Majorant", "Radii", "expansion", "radii", "weighted_radii"]
 
-_FITTINGS = 4  # rounds in which weights are fitted
-_BENDING, _SHIFTING = 2.5, 3.0  # c and d of fitted weights: 2 ω Y < (1 - Z)² with some room
+# Rounds in which weights are fitted; empirical, any number near it serves. The bounds are computed
+# for the weights found, so that too few rounds can lose a proof, but never give a wrong one.
+_FITTINGS = 4
+# c and d of fitted weights. In them Y ≤ 1, and every row has c ω + d Z ≤ 1. If one row has both
+# largest values, (1 - Z)² - 2 ω Y is at least (1 - 2/c) + 2 (d/c - 1) Z + Z²: positive for c > 2
+# and d ≥ c. With these it is 0.2 or more, room for rounds that have not converged.
+_BENDING, _SHIFTING = 2.5, 3.0
 _LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
 _MOST = 1e3  # of the usual weight: where the proof fails weights grow without end
 _TINY = 1e-200

@@ -1,4 +1,4 @@
-"""Quantities that are asked for by name: their unit, their kind and their values."""
+"""Requested quantities: their unit, kind and values."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Group(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Asked:
-    """A quantity of every row that was asked for by name.
+    """A quantity of every row, requested by name.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Asked:
 
     @property
     def unit(self) -> str:
-        """Of its values, "" for none."""
+        """The unit of its values; "" for none."""
         units = self.names.units
         if self.rate is None:
             return units.of(self.own.kind)
@@ -75,24 +75,24 @@ class Asked:
 
     @property
     def measure(self) -> str:
-        """What it measures, in a word; "" for a number."""
+        """The measured dimension as a word; "" for a plain number."""
         if self.own.kind is Kind.NUMBER:
             return ""
         return self.own.kind.value if self.rate is None else self.rate.measure
 
     @property
     def needs(self) -> int:
-        """How many derivatives of the positions its values take."""
+        """The number of derivatives of the positions that its values need."""
         own = self.row.needs if self.row else self.names.output_needs.get(self.own.name, 0)
         return own + (self.rate.order if self.rate else 0)
 
     def check_rate(self, speed: Array | float | None) -> None:
-        """Refuse a rate that is not known: of a derived quantity, or by time without a speed.
+        """Raise an error for an unknown rate, or for a time derivative without a speed.
 
         Raises
         ------
         UnknownNameError
-            With the name of the rate by the input.
+            With the name of the derivative with respect to the input.
         """
         if self.rate is None:
             return
@@ -115,7 +115,7 @@ class Asked:
         return Jet(jet.v / self.names.units.scale(self.own.kind), *rates)
 
     def values(self, solved: Solved, speed: Array | float | None) -> Array:
-        """What was asked for, the rate included."""
+        """The values of the quantity, or of its rate if one was requested."""
         if self.group is Group.POINT:
             assert self.rate is not None
             place = solved.place(self.own.name)
@@ -128,7 +128,7 @@ class Asked:
 
 @dataclass(frozen=True, kw_only=True)
 class AskedOfMotion:
-    """A number of a whole motion that was asked for by name: ``dwell(s16, 0.5)``."""
+    """A number of a whole motion, requested by name: ``dwell(s16, 0.5)``."""
 
     names: MechanismNames
     quantity: MotionQuantity
@@ -137,7 +137,7 @@ class AskedOfMotion:
 
     @property
     def unit(self) -> str:
-        """Of the number, "" for none."""
+        """The unit of the number; "" for none."""
         match self.quantity.measures:
             case "input":
                 return self.names.units.of(self.names.inputs[self.names.lead])
@@ -148,16 +148,16 @@ class AskedOfMotion:
 
     @property
     def needs(self) -> int:
-        """How many derivatives of the positions it takes."""
+        """The number of derivatives of the positions that it needs."""
         return self.of.needs + self.quantity.needs
 
     @property
     def follows(self) -> bool:
-        """Whether it follows the course between rows, or the path of a point: not values alone."""
+        """Whether it needs derivatives or the path of a point, not only values."""
         return self.quantity.of_point or self.quantity.needs > 0
 
     def columns(self, solved: Solved) -> tuple[Array, Array, Array]:
-        """What it follows, with both derivatives by the leading input, in the file's units."""
+        """The quantity and both derivatives with respect to the leading input, in file units."""
         if self.quantity.of_point:
             place = solved.place(self.of.name)
             return place.v, place.d1, place.d2

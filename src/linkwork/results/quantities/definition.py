@@ -1,4 +1,4 @@
-"""A quantity: what it is asked by, what it measures, and how it follows from solved positions."""
+"""A quantity: its name, its kind, and its computation from solved positions."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ class MechanismNames:
     units : Units
     skeleton : Skeleton
     inputs, unknowns, outputs : Mapping[str, Kind]
-        With what they measure.
+        By name, with the kind of quantity.
     output_needs : Mapping[str, int]
-        Of outputs, how many derivatives of the positions their values take.
+        The number of derivatives of the positions that the value of each output needs.
     links, sliders, points : tuple of str
     by : str
-        What derivatives are taken by: ``rad``, or the length unit; "" without an input.
+        The unit of the input in derivatives: ``rad`` or the length unit; "" without an input.
     lead : str
         The leading input, the first one that changes from row to row; "" without an input.
     """
@@ -72,11 +72,11 @@ class MechanismNames:
 class Solved(Protocol):
     """Solved positions as arrays of one shape S: one position, the rows of a motion, of a family.
 
-    Derivatives are by the leading input; angles count in radians there.
+    Derivatives are with respect to the leading input, with angles in radians.
     """
 
     def own(self, name: str) -> Jet:
-        """A quantity of the mechanism's own by its exact name; values in the file's units."""
+        """A variable or output of the mechanism by its exact name; values in file units."""
 
     def place(self, point: str) -> Jet:
         """A point by its exact name, as x + iy."""
@@ -124,7 +124,7 @@ class MotionRows:
     value : array (…, R)
         In the file's units, a path as x + iy; NaN where there is no position.
     first, second : array (…, R)
-        Its derivatives by the leading input, in the same units; NaN if not asked for.
+        Its derivatives with respect to the leading input, in the same units; NaN if not requested.
     unit : float
         [rad] or [length] per unit of the input in files.
     turn : float
@@ -139,7 +139,7 @@ class MotionRows:
     turn: float
 
     def ascending(self) -> MotionRows | None:
-        """The rows by growing input; ``None`` if the input turns back between them."""
+        """The rows in order of increasing input; ``None`` if the input reverses between them."""
         steps = np.diff(self.input)
         if (steps >= 0.0).all():
             return self
@@ -150,7 +150,7 @@ class MotionRows:
 
     @property
     def cycle(self) -> BoolArray:
-        """Which motions come back after one turn of the input, at the last row, (…,)."""
+        """Which motions return after one turn of the input, at the last row, (…,)."""
         span = self.input[-1] - self.input[0]
         # a turn in radians is no float, and rows come from degrees
         around = self.turn > 0.0 and abs(abs(span) - self.turn) <= EQUAL_ROWS * self.turn
@@ -168,7 +168,7 @@ class MotionRows:
 
 
 def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Array]) -> Array:
-    """Hermite's cubic at s from 0 to 1, from values and slopes by s at both ends."""
+    """Hermite's cubic at s from 0 to 1; ``slopes`` are derivatives with respect to s."""
     r = 1.0 - s
     value: Array = r**2 * ((1.0 + 2.0 * s) * ends[0] + s * slopes[0]) + s**2 * (
         (1.0 + 2.0 * r) * ends[1] - r * slopes[1]
@@ -177,7 +177,7 @@ def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Arra
 
 
 def folded(angle: Jet, period: float) -> Jet:
-    """The size of an angle that is the same after a period: from 0 to half of it [rad]."""
+    """The size of an angle modulo a period, from 0 to half the period [rad]."""
     rest = angle.v - period * np.round(angle.v / period)
     # where the angle is zero its size has a corner, and no derivative
     side = np.sign(rest)
@@ -191,7 +191,7 @@ class MotionQuantity:
     Parameters
     ----------
     word : str
-        What stands before the parenthesis.
+        The word before the parenthesis.
     about : str
         A line for lists.
     evaluate : callable

@@ -1,9 +1,9 @@
 """Dwells: ranges of the input over which a quantity stays within a band.
 
-A band of a given height is laid anywhere; the longest range of the input over which the quantity
-stays in it is the dwell. Between rows the quantity is followed on the cubic through rows and
-slopes, at an eighth of a row's distance, and linearly between these. A motion of one whole turn
-goes on at its end.
+The dwell is the longest range of the input over which the quantity stays within a band of the
+given height, wherever this band lies. Between rows the quantity is the cubic through values and
+derivatives at the rows, evaluated at eighths of their distance and linear between these. A motion
+of one whole turn continues from its end at its start.
 """
 
 from __future__ import annotations

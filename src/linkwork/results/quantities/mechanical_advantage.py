@@ -1,8 +1,8 @@
 """Mechanical advantage: the force or moment at a part for one at the input, without friction.
 
-Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part stands still
-while the input moves, as in a toggle press that is stretched, it is infinite; where the input
-itself stands still, at its dead points, there is no rate and it is not given.
+Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part does not
+move while the input does, as in a stretched toggle press, it is infinite; at dead points of the
+input, where no derivative with respect to the input exists, it is NaN.
 
 References
 ----------

@@ -2,8 +2,8 @@
 
 κ = (x' y'' - y' x'') / |F'|³, positive where the path bends to the left of its direction for a
 growing input; the centre lies at F + n/κ. Where the path is straight to rounding, κ is 0 and the
-centre lies at infinity: it is not given. Where the point stands still (a cusp, a dwell) the path
-has no direction, and none of them is given.
+centre lies at infinity and is NaN. Where the point does not move (a cusp, a dwell) the path has
+no direction, and all of them are NaN.
 
 References
 ----------
@@ -24,7 +24,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["PATH_CURVATURE"]
 
 _STRAIGHT = 1e-12  # relative: a normal acceleration below this part of the whole is rounding
-_STILL = 1e-11  # relative: as near to a standstill as a position is known at one
+_STILL = 1e-11  # relative: slower motion is rest, to the accuracy of positions
 
 
 def _moving(names: MechanismNames) -> dict[str, Kind]:

@@ -1,8 +1,8 @@
 """The length of the path of a point over the rows of a motion.
 
 L = ∫ |F'| du, by Gauss' rule with four points between neighbouring rows, where F' is the cubic
-through its values and slopes there. Where a derivative is missing, as at a dead point, the chord
-counts; where a row is missing nothing does.
+through its values and slopes there. Where a derivative is missing, as at a dead point, the
+chord is used; a missing row adds nothing.
 """
 
 from __future__ import annotations

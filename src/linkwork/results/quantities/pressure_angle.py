@@ -1,8 +1,8 @@
 """Pressure angles: between the force on a guided part and the direction in which it can move.
 
 On a follower with a knife edge or a roller the cam acts along the normal of the path that the
-follower's point has on the cam: normal to its velocity against the cam. On a block the link that
-moves it acts along itself. Where the point does not move on the cam the angle is not given.
+follower's point has on the cam: normal to its velocity relative to the cam. A link that moves a
+block acts along its own line. Where the point does not move on the cam the angle is NaN.
 
 References
 ----------
@@ -70,7 +70,7 @@ def _line(names: MechanismNames, solved: Solved, guide: str) -> Jet:
 
 
 def _sliding(names: MechanismNames, solved: Solved, follower: Follower) -> Jet:
-    """The velocity of the follower's point against the cam, by the input."""
+    """The follower point's velocity relative to the cam, per unit of the input."""
     outlines = names.skeleton.of(CamOutline)
     cam = next(outline for outline in outlines if outline.name == follower.name)
     turning = solved.own(cam.link)

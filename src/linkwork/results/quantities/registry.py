@@ -1,4 +1,4 @@
-"""The registry of quantities: what can be asked of a mechanism, found by name."""
+"""The registry of quantities: all quantities of a mechanism, found by name."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ EVIDENCE = {
 
 _CALL = re.compile(r"\s*(\w+)\s*\(\s*([^()<>=]*[^()<>=\s])\s*\)\s*")
 _RATES = {
-    Rate.FIRST: "first derivative by the input",
-    Rate.SECOND: "second derivative by the input",
-    Rate.VELOCITY: "rate by time; the input needs a speed",
-    Rate.ACCELERATION: "second rate by time; the input needs a speed",
+    Rate.FIRST: "first derivative with respect to the input",
+    Rate.SECOND: "second derivative with respect to the input",
+    Rate.VELOCITY: "first derivative with respect to time; the input needs a speed",
+    Rate.ACCELERATION: "second derivative with respect to time; the input needs a speed",
 }
 
 
@@ -67,7 +67,7 @@ class Listed:
 
 @dataclass(frozen=True)
 class Quantities:
-    """Everything that can be asked of one mechanism."""
+    """All quantities of one mechanism."""
 
     names: MechanismNames
 
@@ -116,7 +116,7 @@ class Quantities:
 
     @cached_property
     def _known(self) -> dict[str, Asked]:
-        """What has been asked for, by the name as it was written."""
+        """Requested quantities by the name as written."""
         return {}
 
     def find(self, name: str) -> Asked:
@@ -159,7 +159,7 @@ class Quantities:
         Raises
         ------
         InputError
-            If it is none, or lacks a number.
+            If it is not one, or a number is missing.
         UnknownNameError
             With the nearest names, and the command that lists all.
         """
@@ -183,12 +183,12 @@ class Quantities:
         return found
 
     def unknown(self, name: str) -> UnknownNameError:
-        """What to say of a name that does not exist: the three nearest names."""
+        """The error for a name that does not exist, with the three nearest names."""
         known = [*self.own, *self.derived, *self.evidence]
         return UnknownNameError(f'there is no "{name}" {nearest(name, known)}')
 
     def listed(self, *, timed: bool) -> Iterator[Listed]:
-        """Everything that can be asked, a line each; rates and numbers of motions last."""
+        """All quantities, one line each; rates and numbers of motions last."""
         for asked in (*self.own.values(), *self.derived.values()):
             about = asked.row.about if asked.row else _ABOUT[asked.group]
             kind, unit = asked.own.kind.value, asked.unit
@@ -206,7 +206,7 @@ class Quantities:
 
 @dataclass(frozen=True)
 class Call:
-    """A number of a motion as a text asks for it: which, of what, with which further numbers."""
+    """A requested number of a motion, read from text: word, quantity, further numbers."""
 
     word: str
     of: str
@@ -227,7 +227,7 @@ class Call:
         Raises
         ------
         InputError
-            If it is none.
+            If it is not one.
         """
         call = _CALL.fullmatch(as_name(text))
         known = nearest(text if call is None else call[1], _of_motions())

@@ -1,8 +1,8 @@
 """The time ratio of a quick return: how much longer the slow stroke takes than the quick one.
 
-The input turns steadily once around; between its extremes the quantity is followed by its
-derivative, whose zero is found on the cubic through rows and slopes. A motion that is not one
-whole turn, or does not come back, has none; nor has a quantity that does not change.
+The input makes one turn at constant speed. The extremes of the quantity are zeros of its
+derivative, found on the cubic through values and derivatives at the rows. The ratio is NaN for a
+motion that is not one whole turn or does not return, and for a constant quantity.
 
 References
 ----------
@@ -36,7 +36,7 @@ def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
 
 
 def _turning(rows: MotionRows, row: Array, side: float) -> Array:
-    """The input at the extreme beside a row (…,): where the derivative is zero."""
+    """The input at the extreme next to a row (…,), where the derivative is zero."""
     last = len(rows.input) - 1  # the same position as row 0
 
     def at(values: Array, index: Array) -> Array:

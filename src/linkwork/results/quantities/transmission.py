@@ -1,8 +1,8 @@
-"""Transmission angles: how well a force is passed on at the pin of a dyad.
+"""Transmission angles, a measure of the transmission of force at the pin of a dyad.
 
-Between two pinned links it is the angle of their arms at the common pin; of a link that moves a
-block, that between the link and the normal of the block's line: a right angle passes on all of the
-force, none of it is passed on at 0 and at π.
+Between two pinned links it is the angle of their arms at the common pin; between a link and a
+block, the angle between the link and the normal of the block's line. All of the force is
+transmitted at a right angle, none at 0 and at π.
 
 References
 ----------

@@ -36,7 +36,7 @@ def closing_input(mechanism: Solvable) -> Mapping[str, float]:
 
 
 def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, ...]:
-    """The edits that move the points of a sketch to their positions at input values.
+    """Edits that move the points of a sketch to their assembled positions at given input values.
 
     Raises
     ------
@@ -46,9 +46,9 @@ def sketch_at(mechanism: Solvable, at: Mapping[str, float]) -> tuple[MovePoint, 
     description = mechanism.description
     if not isinstance(description, Linkage):
         raise InputError("only the points of a sketch can be moved")
-    still = description.links[GROUND]
+    fixed = description.links[GROUND]
     return tuple(
         MovePoint(point=name, x=x, y=y)
         for name, (x, y) in mechanism.nearest_assembly(at).points.items()
-        if name in description.points and name not in still
+        if name in description.points and name not in fixed
     )

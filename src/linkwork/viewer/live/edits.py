@@ -12,7 +12,7 @@ from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.index import PARTS
-from linkwork.mechanism.quantities import Quantity, quantity_named
+from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
@@ -64,7 +64,7 @@ def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
 def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
     description = before.description
     try:
-        quantity = quantity_named(description, edit.name)
+        quantity = number_named(description, edit.name)
     except UnknownNameError:
         if (measured := _measured(description, edit.name)) is None:
             raise
@@ -83,7 +83,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
     return Followed()
 
 
-def _path(quantity: Quantity, text: TextEdits) -> tuple[str | int, ...]:
+def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
     """The key path of a number in the text."""
     if quantity.table == "points":
         return ("points", quantity.key, quantity.axis)
@@ -105,7 +105,7 @@ def _measured(description: Description, name: str) -> str | None:
 
 
 def _move_pivot(
-    quantity: Quantity, length: float | str, text: TextEdits, description: Description
+    quantity: VariedNumber, length: float | str, text: TextEdits, description: Description
 ) -> bool:
     """Set a distance on ground by moving its second point along the line between the two."""
     assert isinstance(description, Linkage)

@@ -12,7 +12,7 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.quantities import Quantity, quantities
+from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from linkwork.results.configurations import Configurations
 from linkwork.results.iterates import Iterate, Iterates
 from linkwork.results.motion import Motion
@@ -171,7 +171,7 @@ def _changeable_numbers(
 
     ``kinds``: angle, length or number for every variable of the equations.
     """
-    for quantity in quantities(description):
+    for quantity in varied_numbers(description):
         written = quantity.written(description)
         yield tell.ChangeableNumber(
             name=quantity.name,
@@ -190,7 +190,7 @@ def _changeable_numbers(
             )
 
 
-def _unit(description: Description, quantity: Quantity, kinds: Mapping[str, str]) -> str:
+def _unit(description: Description, quantity: VariedNumber, kinds: Mapping[str, str]) -> str:
     """The unit of a number; unknown for a named dimension."""
     if quantity.table in ("lengths", "points", "sliders"):
         return description.length

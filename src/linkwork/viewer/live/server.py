@@ -71,7 +71,7 @@ class LiveServer:
         Parameters
         ----------
         tell : callable
-            Called with the address; from then on Ctrl-C ends the server.
+            Called before the server starts; from then on Ctrl-C ends it.
 
         Raises
         ------
@@ -90,14 +90,14 @@ class LiveServer:
             self._socket.close()
 
     def stop(self) -> None:
-        """End :meth:`run` from another thread."""
+        """Stop the server; any thread may call this."""
         self._ended = True
         if self._server is not None:
             self._server.should_exit = True
 
     @contextmanager
     def _ended_by_signals(self) -> Iterator[None]:
-        """Handle Ctrl-C, SIGTERM and a closed terminal at any moment, without loss of data.
+        """Stop the server at Ctrl-C, SIGTERM or a closed terminal, without loss of data.
 
         While uvicorn runs, its own handlers are active; it raises a received signal again at its
         end.

@@ -11,15 +11,15 @@ from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["rails_of"]
 
-_MOST_LOOPS = 4  # that are combined: more are looked at one by one
-_LEAST = 1e-12  # of the largest: rounding of terms that cancel
+_MOST_LOOPS = 4  # up to so many loops are combined; of more, each is tried by itself
+_LEAST = 1e-12  # relative to the largest term: smaller ones are the rounding of a difference
 
 #: A sum of vectors: length variable and phase -> value.
 _Sum = dict[tuple[object, ...], complex]
 
 
 def rails_of(equations: LoopEquations, links: Mapping[str, tuple[str, ...]]) -> Iterator[Rail]:
-    """Rails by the variable that measures how far a point is along them.
+    """The rails of a mechanism, each with the variable that measures a point's distance along it.
 
     A point runs along a rail if its place is a constant and a length times a constant vector; along
     a link, if it is a length away from one of its points in the link's direction: as formulas have
@@ -55,7 +55,7 @@ def _on_links(
     lengths: Mapping[str, str],
     loops: list[_Sum],
 ) -> Iterator[Rail]:
-    """Links that a point runs along."""
+    """Rails on links along which a point moves."""
     for link, points in links.items():
         if link == GROUND or name in points or len(points) < 2:
             continue
@@ -79,7 +79,7 @@ def _sum(terms: Iterable[Term]) -> _Sum:
 
 
 def _add(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
-    """A sum of sums, without terms that cancel."""
+    """Add sums of vectors, each with its sign, and drop the terms that cancel."""
     total: _Sum = {}
     largest = 0.0
     for sign, part in parts:

@@ -23,12 +23,12 @@ from linkwork.kernels.march.work_arrays import MarchResult
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels import are_served, kernel_of
 from linkwork.motion.drive import Drive
-from linkwork.motion.lock_step import lock_step
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import LimitKind
 
-__all__ = ["March", "Path", "design_rows"]
+__all__ = ["FamilyMarch", "TablePath", "design_rows"]
 
 _ON_PATH = 1e-12
 _FINEST = 1e-8  # relative step for rows directly before a dead point
@@ -45,25 +45,25 @@ def design_rows(
     """
     model = designs.base
     left = designs.problem == 0
-    march = Path.of(model)
+    path = TablePath.of(model)
     found = DesignRows.blank(
         model.compiled.solver.unknowns,
         len(model.rows),
         len(designs),
         certify,
-        falling=march is not None and march.falling,
+        falling=path is not None and path.falling,
     )
-    if march is None:
+    if path is None:
         found.clear(np.ones(found.status.shape, dtype=bool), certify)
     else:
-        left &= ~march.fill(designs, found, certify, threads, execution or Execution())
+        left &= ~path.fill(designs, found, certify, threads, execution or Execution())
     for k in np.flatnonzero(left):
         sweep_single(designs, int(k), found, certify)
     return found.freeze()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Path:
+class TablePath:
     """The straight line through the table's inputs: u = origin + rate t; ``size``: step."""
 
     model: Model
@@ -73,11 +73,11 @@ class Path:
     size: float
 
     @classmethod
-    def of(cls, model: Model) -> Path | None:
+    def of(cls, model: Model) -> TablePath | None:
         """``None`` if the compiled march cannot be used."""
         if not are_served(model):
             return None
-        lead, rate = lock_step(model.rows)
+        lead, rate = leading_input(model.rows)
         drive = Drive.through(model, model.rows[0], rate, lead)
         path = drive.path
         return cls(model=model, lead=lead, origin=path.origin, rate=path.rate, size=path.size)
@@ -113,13 +113,15 @@ class Path:
         march.note_limits(found, whole)
         return whole
 
-    def march(self, designs: Designs, certify: bool, threads: int, execution: Execution) -> March:
+    def march(
+        self, designs: Designs, certify: bool, threads: int, execution: Execution
+    ) -> FamilyMarch:
         """The march of designs that start on the path or can be moved to it."""
         inputs = designs.start[:, self.model.compiled.solver.unknowns :]
         start = inputs[:, self.lead]
         away = np.abs(inputs - (self.origin + self.rate * start[:, None]))
         served: BoolArray = np.all(away <= _ON_PATH * np.maximum(1.0, np.abs(inputs)), axis=1)
-        return March(self, designs, served, certify, threads, execution)
+        return FamilyMarch(self, designs, served, certify, threads, execution)
 
     def _note(self, found: DesignRows, reached: BoolArray, whole: BoolArray, certify: bool) -> None:
         """Set the status of reached rows, and of the other rows of finished designs."""
@@ -134,12 +136,12 @@ class Path:
         np.copyto(found.certification, proof.code, where=reached)
 
 
-class March:
+class FamilyMarch:
     """The compiled march of a family, with the treatment of dead points."""
 
     def __init__(
         self,
-        path: Path,
+        path: TablePath,
         designs: Designs,
         served: BoolArray,
         certify: bool,
@@ -153,7 +155,7 @@ class March:
         self.coefficients = _coefficients(path, designs)
         self.zeros = zero_coefficients(designs, self.coefficients)
         self.kernel = kernel_of(model, frozenset(self.zeros), certify, execution.device)
-        self.kernel.shift(execution)
+        self.kernel.choose_execution(execution)
         # NaN: the march leaves such designs out
         self.guess = np.where(served & fine, designs.start[:, :n].T, np.nan)  # otherwise not found
         self.start = designs.start[:, n + path.lead].copy()
@@ -311,7 +313,7 @@ class March:
         return settled
 
 
-def _coefficients(path: Path, designs: Designs) -> dict[str, Array]:
+def _coefficients(path: TablePath, designs: Designs) -> dict[str, Array]:
     """The coefficients of a family by register, (D,) each."""
     found = loop_coefficients(designs)
     input_radius = path.input_radius(

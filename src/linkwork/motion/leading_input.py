@@ -1,4 +1,4 @@
-"""Several inputs that move in lock-step along one parameter, the first of them that moves."""
+"""The first input of a table that moves, and the rates of the other inputs with respect to it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 
-__all__ = ["lock_step"]
+__all__ = ["leading_input"]
 
 
-def lock_step(rows: Array) -> tuple[int, Array]:
-    """The leading input, and the rate of every input by it.
+def leading_input(rows: Array) -> tuple[int, Array]:
+    """The leading input, and the rate of every input with respect to it.
 
     Parameters
     ----------

@@ -13,11 +13,11 @@ from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 
-__all__ = ["Quantity", "quantities", "quantity_named", "with_numbers"]
+__all__ = ["VariedNumber", "number_named", "varied_numbers", "with_numbers"]
 
 
 @dataclass(frozen=True)
-class Quantity:
+class VariedNumber:
     """A number of a description: its table, its key in it, and its name.
 
     ``axis`` is 0 for x and 1 for y of a point.
@@ -43,25 +43,25 @@ class Quantity:
         return number
 
 
-def quantities(description: Description) -> Iterator[Quantity]:
+def varied_numbers(description: Description) -> Iterator[VariedNumber]:
     """All numbers that can vary."""
     for name in description.dimensions:
-        yield Quantity(name, "dimensions", name)
+        yield VariedNumber(name, "dimensions", name)
     if isinstance(description, Loops | PlainEquations):
         for name in description.guess:
-            yield Quantity(name, "guess", name)
+            yield VariedNumber(name, "guess", name)
     if isinstance(description, Linkage):
         for table in ("lengths", "angles"):
             for key in getattr(description, table):
-                yield Quantity(key, table, key)
+                yield VariedNumber(key, table, key)
         for point in description.points:
             for axis, letter in enumerate("xy"):
-                yield Quantity(f"{point}.{letter}", "points", point, axis)
+                yield VariedNumber(f"{point}.{letter}", "points", point, axis)
         for slider in description.sliders:
-            yield Quantity(f"{slider.name}.offset", "sliders", slider.name)
+            yield VariedNumber(f"{slider.name}.offset", "sliders", slider.name)
 
 
-def quantity_named(description: Description, name: str) -> Quantity:
+def number_named(description: Description, name: str) -> VariedNumber:
     """The number with a given name: ``a2``, ``O2 A``, ``B A P``, ``O4.x`` or ``s16.offset``.
 
     The two points of a length may be given in either order.
@@ -71,7 +71,7 @@ def quantity_named(description: Description, name: str) -> Quantity:
     UnknownNameError
         Lists the existing numbers, those with similar names first.
     """
-    found = {_folded(quantity.name): quantity for quantity in quantities(description)}
+    found = {_folded(quantity.name): quantity for quantity in varied_numbers(description)}
     words = _folded(name).split()
     wanted = " ".join(words)
     if wanted not in found and len(words) == 2:
@@ -89,7 +89,7 @@ def _folded(name: str) -> str:
     return " ".join(canonical(name).split())
 
 
-def with_numbers(description: Description, numbers: Mapping[Quantity, Number]) -> Description:
+def with_numbers(description: Description, numbers: Mapping[VariedNumber, Number]) -> Description:
     """A copy with some numbers replaced.
 
     Raises
