@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
@@ -93,6 +94,15 @@ class SweepTable:
         """Give those of some rows that have no position a status."""
         there = self.rows.status[where] == Status.CONVERGED.code
         self.rows = self.rows.set(where[~there], status=status.code)
+
+    def drop(self, where: IndexArray, status: Status) -> None:
+        """Remove the positions of some rows, which were reached the other way around."""
+        known = self.rows.certification[where]
+        blank = SolvedRows.blank(self.rows.inputs[where], self.rows.v.shape[1], status)
+        unasked = known == Certification.NOT_ASKED.code
+        blank = blank.set(unasked, certification=Certification.NOT_ASKED.code)
+        self.rows = self.rows.put(where, blank)
+        self._placed[where] = np.nan
 
     def places_of(self, t: float) -> list[float]:
         """Where a value belongs in the table's range, whole turns apart too."""

@@ -32,6 +32,7 @@ from linkwork.numerics.continuation.local_parametrization import coincide, whole
 from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.rows import SolvedRows
+from linkwork.results.limit import LimitKind
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
 __all__ = ["sweep", "sweep_rows"]
@@ -223,10 +224,16 @@ class _Sweep:
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
             beyond = table.not_straight(end)
-            if policy is ChangePointPolicy.STOP or not (end.crossings and len(beyond)):
+            if policy is ChangePointPolicy.STOP or not len(beyond):
+                break
+            if end.limit.kind is LimitKind.UNKNOWN:  # it may be a change point to be crossed
+                table.drop(beyond, end.limit.status)
+            if not end.crossings:
                 break
             passage = beyond_change_point(self.drive, end, policy)
             if passage is None:
+                if policy is ChangePointPolicy.STRAIGHT:
+                    table.drop(beyond, Status.LOST)
                 break
             if misfit(self.model.equations, passage.node.v[None, :])[0] > FITS:
                 table.leave_out(beyond, Status.DOES_NOT_FIT)

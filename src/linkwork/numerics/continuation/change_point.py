@@ -90,12 +90,24 @@ def locate_change_point(
         found = _locate(system, known, last.v[mine], last.t, last.first[mine])
         if found is None or (found.t - last.t) * side < -1e-3 * near:
             continue
-        if abs(found.t - last.t) > near:
+        if abs(found.t - last.t) > near / _drive(solver, path, block, last):
             continue
         v = last.v + (found.t - last.t) * last.first
         v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
         return _place_point(solver, path.rate, block, mine, v, found)
     return None
+
+
+def _drive(solver: BlockSolver, path: InputPath, block: int, here: Node) -> float:
+    """How fast the known variables of a block move, relative to the inputs; 0.01 to 1.
+
+    A block that slow links drive is as near to its crossing a long way of the input before it.
+    """
+    scale, unknowns = solver.variable_scale, solver.unknowns
+    own = solver.blocks[block]
+    known = own.variables[len(own.unknowns) :]
+    inputs = float(np.abs(path.rate / scale[unknowns:]).max())
+    return float(np.clip(np.abs(here.first[known] / scale[known]).max() / inputs, 0.01, 1.0))
 
 
 def locate_crossing(

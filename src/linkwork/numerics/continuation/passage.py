@@ -31,9 +31,13 @@ from linkwork.numerics.newton import newton
 
 __all__ = ["Passage", "pass_change_points"]
 
-_HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6)  # of the path's size, to both sides, in this order
+# of the path's size, to both sides, in this order; the last ones for blocks that are driven slowly
+_HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 3e-2, 1e-1)
 _STEPS = 4  # in which a block that does not cross is followed
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
+# condition times that distance: next to a crossing both branches lie within 1 / condition of each
+# other, and Newton-Raphson may reach either of them (Newton-Kantorovich: at most 1/2)
+_CERTAIN = 0.02
 _REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
 _BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
 _DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
@@ -278,9 +282,12 @@ class _Walk:
             h = t - here.t
             guess = here.x + h * here.first + 0.5 * h * h * here.second  # eq. (17)
             x_new = self._solve(block, t, guess, begin)
-            if x_new is None or not np.abs((x_new - guess) / weights).max() <= _OFF:
+            if x_new is None:
                 return None
+            off = float(np.abs((x_new - guess) / weights).max())
             here, its_sign, condition = self._step(block, t, x_new, begin)
+            if not (off <= _OFF and condition * off <= _CERTAIN):
+                return None
             if not (condition < _REGULAR and its_sign == sign):
                 return None
             steps.append(here)
