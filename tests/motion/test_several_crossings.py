@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import linkwork as lw
-from tests.oracles.trains import Loop, apart, parallelogram, train, turned
+from linkwork.motion import limits
+from tests.oracles.trains import Loop, apart, parallelogram, straight_motion, train, turned
 from tests.thinned import thinned
 
 
@@ -103,3 +105,77 @@ def test_rows_next_to_a_crossing_are_found(gap: float) -> None:
     assert motion.found.all()
     for name in ("t1", "t2"):
         np.testing.assert_allclose(motion[name], motion["t0"], rtol=0, atol=1e-11)
+
+
+SLOW = [  # links of nearly equal length: the last loops turn a hundredth of the input's way at 180°
+    Loop(3.098114815273539, 3.1195610030108463, 3.1105847561466504, 3.1070910621377354, 0.0, 1.0),
+    Loop(
+        2.9323094000834407, 2.5997449443054172, 2.8811049775970012, 2.650949366791856, -1e-10, 1.0
+    ),
+    Loop(
+        3.322226682430337, 1.1218475939235018, 3.322226682430337, 1.1218475939235018, -1.4e-8, 1.0
+    ),
+    Loop(
+        2.763681799369027, 2.7260435495059703, 2.763681799369027, 2.7260435495059703, -2.6e-8, 1.0
+    ),
+]
+NEXT = [  # the last loop crosses 1e-6 beyond the others
+    Loop(1.4108076226674036, 2.664370641825652, 1.4108076226674036, 2.664370641825652, -1e-6),
+    Loop(
+        1.8015677981589873, 2.479673384836006, 2.1472236383319214, 2.1340175446630716,
+        3.0817482876699387e-07,
+    ),
+    Loop(3.1799492789717894, 3.46996419626586, 3.1799492789717894, 3.46996419626586),
+    Loop(1.8599696432184027, 3.409026030890698, 1.8599696432184027, 3.409026030890698),
+    Loop(
+        1.487090169410922, 1.4796773845104254, 1.487090169410922, 1.4796773845104254,
+        -1.0210734243388799e-06,
+    ),
+]  # fmt: skip
+FAST = [  # the last loop crosses where the one before it turns quickly
+    Loop(2.9589913431629205, 1.3985459087275207, 2.9589913431629205, 1.3985459087275207, 0.0, 1.0),
+    Loop(3.8004784453320886, 3.8902531541434584, 3.810506231543254, 3.880225367932293, 1e-9, 1.0),
+    Loop(
+        1.792725439802501, 3.953629413427379, 1.792725439802501, 3.953629413427379,
+        -5.05836261766035e-10, 1.0,
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("certify", [True, False])
+@pytest.mark.parametrize(
+    ("loops", "rows"),
+    [
+        (SLOW, (-45.0, 315.0, 60.0)),
+        ([replace(loop, side=-1.0) for loop in NEXT], (30.0, 390.0, 6.0)),
+        (FAST, (-45.0, -405.0, -1.0)),
+    ],
+    ids=["driven slowly", "next to each other", "driven quickly"],
+)
+def test_trains_whose_crossings_nearly_coincide_go_straight_on(
+    loops: list[Loop], rows: tuple[float, float, float], certify: bool
+) -> None:
+    motion = train(loops, rows).sweep(change_points="straight", certify=certify)
+    assert motion.found.all()
+    for k, exact in enumerate(straight_motion(loops, motion["t0"]), start=1):
+        assert apart(motion[f"t{k}"][motion.asked], exact[motion.asked]) < 1e-8
+    crossed = {name for limit in motion.limits if limit.passed for name in limit.loops}
+    assert crossed == {f"loop {k}" for k in range(1, len(loops) + 1)}
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_rows_beyond_a_crossing_that_cannot_be_passed_have_no_position(
+    certify: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # the crank turns freely, so the rows could be reached the other way around, on another side
+    monkeypatch.setattr(limits, "pass_change_points", lambda *_, **__: None)
+    loop = [Loop(3.0, 1.0, 2.5, 1.5, side=-1.0)]
+    stopped = train(loop, (90, 450, 10)).sweep(change_points="stop", certify=certify)
+    assert stopped.found.all()
+    motion = train(loop, (90, 450, 10)).sweep(change_points="straight", certify=certify)
+    beyond = motion["t0"] > math.pi + 1e-6
+    assert not motion.found[beyond].any()
+    assert motion.found[motion["t0"] < math.pi - 1e-6].all()
+    assert {motion.status[k] for k in np.flatnonzero(beyond)} == {lw.Status.LOST}
+    assert not motion.certified[beyond].any()
+    assert np.isnan(motion["t1"][beyond]).all()

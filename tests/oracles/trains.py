@@ -39,6 +39,23 @@ class Loop:
         towards = np.arctan2(y, x)
         return towards + opening, towards - opening
 
+    def straight_rocker_angle(self, crank_angle: Array) -> Array:
+        """The rocker's angle, continuous through change points; the first one is on ``side``."""
+        g, a, b, c = self.ground, self.crank, self.coupler, self.rocker
+        half = 0.5 * crank_angle
+        # (g + a)² less the square of the diagonal
+        below = 4.0 * g * a * np.cos(half) ** 2
+        diagonal = np.sqrt((g + a) ** 2 - below)
+        over = np.sqrt(g * a * (b + diagonal - c) / (c * diagonal * (b + c + diagonal)))
+        opening = 2.0 * np.arcsin(np.cos(half) * over)
+        # the diagonal's angle, without jumps
+        if a > g:
+            towards = crank_angle + np.arctan2(g * np.sin(crank_angle), a - g * np.cos(crank_angle))
+        else:
+            towards = np.pi - np.arctan2(a * np.sin(crank_angle), g - a * np.cos(crank_angle))
+        found: Array = towards + self.side * np.sign(opening[0]) * opening
+        return found
+
 
 def parallelogram(ground: float, crank: float, offset: float = 0.0) -> Loop:
     """A loop whose rocker stays parallel to its crank at first, for cranks that point upwards."""
@@ -76,23 +93,26 @@ def turned(ground: float, crank: float, angle: Array) -> Array:
     return found
 
 
-def straight_motion(loops: Sequence[Loop], t: Array, fine: int) -> list[Array]:
+def straight_motion(loops: Sequence[Loop], t: Array) -> list[Array]:
     """The angles t1, t2, … at values of t0, every loop going smoothly through change points.
 
-    Between neighbouring values ``fine`` steps are taken; each goes to the angle that lies nearer to
-    where the last steps lead.
+    For parallelograms, and loops with ground + crank = coupler + rocker, which have one change
+    point a turn, where the crank points away from the rocker's pivot. There the opening between
+    rocker and diagonal is proportional to cos(θ/2) and changes its sign: nothing is chosen on the
+    way, and no digits cancel.
     """
-    steps = np.linspace(t[:-1], t[1:], fine, endpoint=False).T.ravel()
-    driving, found = np.append(steps, t[-1]), []
+    driving, found = np.asarray(t, dtype=float), []
     for loop in loops:
-        both = loop.rocker_angles(driving + loop.offset)
-        own = np.empty_like(driving)
-        own[0] = _near(both[0][0] if loop.side > 0 else both[1][0], driving[0])
-        for k in range(1, len(own)):
-            ahead = own[k - 1] if k < 3 else 3.0 * (own[k - 1] - own[k - 2]) + own[k - 3]
-            ways = [float(_near(side[k], ahead)) for side in both]
-            own[k] = min(ways, key=lambda way: abs(way - ahead))
-        found.append(own[::fine])
+        theta = driving + loop.offset
+        start = _near(loop.rocker_angles(theta[:1])[0 if loop.side > 0 else 1], theta[:1])
+        if loop.ground == loop.coupler and loop.crank == loop.rocker:
+            own = theta
+            if abs(_near(own[0], start[0]) - start[0]) > 1e-6:
+                own = turned(loop.ground, loop.crank, theta)
+            assert abs(_near(own[0], start[0]) - start[0]) < 1e-6
+        else:
+            own = loop.straight_rocker_angle(theta)
+        found.append(own)
         driving = own
     return found
 

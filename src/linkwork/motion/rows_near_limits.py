@@ -95,10 +95,22 @@ def _between(
 def _passed_row(
     drive: Drive, passage: Passage, t: float, standing: Certification, certify: bool
 ) -> SolvedRows:
-    """One row on the way across change points, where positions are too ill-conditioned for
-    Newton-Raphson to improve them.
+    """One row on the way across change points.
+
+    Next to a crossing positions are too ill-conditioned for Newton-Raphson to improve them;
+    elsewhere it does, and stays at the only root nearby.
     """
-    row, proof = _row_at(drive, passage.position(t)[0], certify)
+    v = passage.position(t)[0]
+    row, proof = _row_at(drive, v, True)
+    if proof is not None:
+        done = drive.solver.solve(v[None, :])
+        moved = np.abs((done.v[0] - v) / drive.solver.variable_scale).max()
+        if done.status[0] == Status.CONVERGED.code and moved < proof.least_uniqueness_radius[0]:
+            row, proof = _row_at(drive, done.v[0], True)
+    if not certify:
+        return row.set(
+            certification=Certification.NOT_ASKED.code, radius=np.nan, uniqueness_radius=np.nan
+        )
     return _with_proof(row, proof, standing) if proof is not None else row
 
 
