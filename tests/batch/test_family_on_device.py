@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -91,11 +92,15 @@ def test_the_check_finds_another_status_and_positions_too_far_apart() -> None:
     ours, reference = (family.sweep(certify=certify) for _ in range(2))
     assert gpu.compared(ours, reference).agrees
     assert gpu.compared(ours, reference).positions == 52
-    ours.rows.v[1, 3, 2] += 1e-12
+    moved = ours.rows.v.copy()
+    moved[1, 3, 2] += 1e-12
+    ours = replace(ours, rows=replace(ours.rows, v=moved))
     assert gpu.compared(ours, reference).excess > 1.0
     assert not gpu.compared(ours, reference).agrees
     ours = family.sweep(certify=certify)
-    ours.rows.status[3, 2] = Status.OUT_OF_REACH.code
+    status = ours.rows.status.copy()
+    status[3, 2] = Status.OUT_OF_REACH.code
+    ours = replace(ours, rows=replace(ours.rows, status=status))
     assert gpu.compared(ours, reference).differing == 1
 
 
