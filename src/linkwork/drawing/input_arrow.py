@@ -94,7 +94,7 @@ def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:
 
 
 def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) -> Iterator[_Place]:
-    """Positions beside a block or slot: on the side away from its rail, or behind the hatching."""
+    """Positions next to a block or slot: on the side away from its rail, or behind the hatching."""
     side = measures.block[1] if track.block else measures.slot
     behind = side + (measures.hatch if track.fixed else 0.0)
     gap = 1.7 * measures.pin
@@ -108,7 +108,7 @@ def _along_track(part: DrivenPart, track: Track, measures: Measures, turn: int) 
 
 
 def _along_strut(pose: Pose, strut: Strut, measures: Measures, turn: int) -> Iterator[_Place]:
-    """Positions beside a cylinder: left of its barrel, elsewhere along it, or to the right."""
+    """Positions next to a cylinder: left of its barrel, elsewhere along it, or to the right."""
     base, tip = (pose.points[name] for name in strut.between)
     if base == tip:
         return

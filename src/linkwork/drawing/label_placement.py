@@ -97,7 +97,7 @@ def places_beside(
 
 
 def link_names(pose: Pose, measures: Measures) -> list[Choice]:
-    """Positions for the names of all links: inside the plate, otherwise beside the bar."""
+    """Positions for the names of all links: inside the plate, otherwise next to the bar."""
     tone = tones(pose)
     height = 0.85 * measures.text
     spans: dict[str, list[complex]] = {
@@ -130,7 +130,7 @@ def places_along(
     tone: int,
     measures: Measures,
 ) -> Choice:
-    """Positions for a text beside a line."""
+    """Positions for a text next to a line."""
     height = 0.85 * measures.text
     spots = _beside_line(*line, text, height, measures)
     return places_at(role, of, text, tone, height, spots)

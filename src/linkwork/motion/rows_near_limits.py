@@ -42,7 +42,7 @@ def fill_last_rows(
     ``t`` (B,): values asked for. ``placed`` (B,): where on the branch each row lies, NaN for those
     that were not found; it gets the values of the rows that are found here.
     """
-    certify = _asks_for_proofs(rows)
+    certify = rows.asks_for_proofs
     found: dict[int, SolvedRows] = {}
     for end in ends:
         edge = track.last_t if end.side > 0 else track.first_t
@@ -63,15 +63,11 @@ def fill_passed_rows(
 ) -> SolvedRows:
     """Fill the rows between the first change point on a way and its end."""
     begin, end = passage.crossings[0][0].t, passage.node.t
-    certify, why = _asks_for_proofs(rows), Certification.BRANCH_CHOSEN
+    certify, why = rows.asks_for_proofs, Certification.BRANCH_CHOSEN
     found: dict[int, SolvedRows] = {}
     for row, here in _between(t, np.isnan(placed), begin, end, False):
         found[row], placed[row] = _passed_row(drive, passage, here, why, certify), here
     return _put_each(rows, found)
-
-
-def _asks_for_proofs(rows: SolvedRows) -> bool:
-    return not (rows.certification == Certification.NOT_ASKED.code).any()
 
 
 def _put_each(rows: SolvedRows, found: dict[int, SolvedRows]) -> SolvedRows:

@@ -97,11 +97,10 @@ class SweepTable:
 
     def drop(self, where: IndexArray, status: Status) -> None:
         """Remove the positions of some rows, which were reached the other way around."""
-        known = self.rows.certification[where]
-        blank = SolvedRows.blank(self.rows.inputs[where], self.rows.v.shape[1], status)
-        unasked = known == Certification.NOT_ASKED.code
-        blank = blank.set(unasked, certification=Certification.NOT_ASKED.code)
-        self.rows = self.rows.put(where, blank)
+        proved = self.rows.asks_for_proofs
+        why = Certification.NO_POSITION if proved else Certification.NOT_ASKED
+        inputs, variables = self.rows.inputs[where], self.rows.v.shape[1]
+        self.rows = self.rows.put(where, SolvedRows.blank(inputs, variables, status, why))
         self._placed[where] = np.nan
 
     def places_of(self, t: float) -> list[float]:

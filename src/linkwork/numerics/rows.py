@@ -128,6 +128,11 @@ class SolvedRows(_Columns):
         """The columns that have been computed, by name."""
         return dict(vars(self))
 
+    @property
+    def asks_for_proofs(self) -> bool:
+        """Whether the rows of a table are to be proved."""
+        return not (self.certification == Certification.NOT_ASKED.code).any()
+
     def with_columns(self, **columns: AnyArray) -> SolvedRows:
         """The rows with some columns added or replaced."""
         return SolvedRows(**(vars(self) | columns))

@@ -15,7 +15,7 @@ from linkwork.mechanism.part.weld import RigidJoint
 __all__ = ["symbols"]
 
 _RADIUS = 2.0  # size of the filled corner, in pin radii
-_NARROWEST = math.radians(50.0)  # visible part of a corner beside a pin
+_NARROWEST = math.radians(50.0)  # visible part of a corner next to a pin
 _PIECES = 12  # points of its arc
 
 

@@ -90,7 +90,7 @@ def locate_change_point(
         found = _locate(system, known, last.v[mine], last.t, last.first[mine])
         if found is None or (found.t - last.t) * side < -1e-3 * near:
             continue
-        if abs(found.t - last.t) > near / _drive(solver, path, block, last):
+        if not abs(found.t - last.t) <= near / _drive(solver, path, block, last):
             continue
         v = last.v + (found.t - last.t) * last.first
         v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
@@ -101,13 +101,14 @@ def locate_change_point(
 def _drive(solver: BlockSolver, path: InputPath, block: int, here: Node) -> float:
     """How fast the known variables of a block move, relative to the inputs; 0.01 to 1.
 
-    A block that slow links drive is as near to its crossing a long way of the input before it.
+    Where slow links drive a block, it comes near its crossing long before the input does.
     """
     scale, unknowns = solver.variable_scale, solver.unknowns
     own = solver.blocks[block]
     known = own.variables[len(own.unknowns) :]
     inputs = float(np.abs(path.rate / scale[unknowns:]).max())
-    return float(np.clip(np.abs(here.first[known] / scale[known]).max() / inputs, 0.01, 1.0))
+    own_rate = float(np.abs(here.first[known] / scale[known]).max(initial=0.0))
+    return float(np.clip(own_rate / inputs, 0.01, 1.0))
 
 
 def locate_crossing(
