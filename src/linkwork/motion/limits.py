@@ -146,14 +146,14 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
 
 
 def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
-    leg, own = ahead.leg, drive.leads.with_parameter(drive.leads.parameter)
-    begin = leg.led.whole(leg.nodes[0].v)
-    joined = ahead.located and own is not None and same_solution(own, leg.led, begin)
+    first, own = ahead.legs[0], drive.leads.with_parameter(drive.leads.parameter)
+    begin = first.led.whole(first.nodes[0].v)
+    joined = ahead.located and own is not None and same_solution(own, first.led, begin)
     turn = ahead.turn
     if not ahead.located:  # not known to be on this branch, which ended at the last node
         edges = sorted((last.t, *turn.bracket))
         turn = replace(turn, proof=None, bracket=(edges[0], edges[-1]))
-    end = end_at_dead_point(drive, turn, leg.led, certify, joined)
+    end = end_at_dead_point(drive, turn, ahead.legs[-1].led, certify, joined)
     return replace(end, side=side, ahead=ahead)
 
 

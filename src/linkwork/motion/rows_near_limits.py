@@ -18,8 +18,9 @@ from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd
-from linkwork.numerics.continuation.branch_tracking import Track
+from linkwork.numerics.continuation.branch_tracking import Node, Track
 from linkwork.numerics.continuation.curve_proof import same_solution
+from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.continuation.passage import Passage
 from linkwork.numerics.continuation.step_division import sign_change
 from linkwork.numerics.continuation.turning_point import TurnAhead
@@ -142,24 +143,30 @@ def _row_ahead(
     """One row between the track and a dead point, at a value of the path; ``None`` if it was not
     found.
     """
-    v = _position(drive, ahead, t) if ahead.located else None
-    if v is None:
+    found = _position(drive, ahead, t) if ahead.located else None
+    if found is None:
         return None
+    v, led = found
     row, proof = _row_at(drive, v, certify)
     own = drive.leads.with_parameter(drive.leads.parameter)
-    if proof is not None and own is not None and same_solution(ahead.leg.led, own, v):
+    if proof is not None and own is not None and same_solution(led, own, v):
         return _with_proof(row, proof, end.certification)
     return row
 
 
-def _position(drive: Drive, ahead: TurnAhead, t: float) -> Array | None:
-    """The position (N,) on the way to a dead point at which the input has a value."""
-    led, p = ahead.leg.led, drive.leads.parameter
-    place, nodes = led.place(p), ahead.leg.nodes
-    for low, high in itertools.pairwise(nodes):
+def _position(drive: Drive, ahead: TurnAhead, t: float) -> tuple[Array, Parametrization] | None:
+    """The position (N,) on the way to a dead point with a value of the path, and its leader."""
+    p = drive.leads.parameter
+    steps = ((leg.led, *ends) for leg in ahead.legs for ends in itertools.pairwise(leg.nodes))
+    for led, low, high in steps:
+        place = led.place(p)
         if (low.v[place] - t) * (high.v[place] - t) > 0.0:
             continue
-        node = sign_change(led, low, high, lambda here: float(here.v[place]) - t, sharp=True)
+
+        def beyond(here: Node, place: int = place) -> float:
+            return float(here.v[place]) - t
+
+        node = sign_change(led, low, high, beyond, sharp=True)
         v = led.whole(node.v)
         side = drive.solver.rates(v[None, :], drive.path.rate).orientation
         v[drive.solver.unknowns :] = drive.path.at(t)
@@ -168,6 +175,6 @@ def _position(drive: Drive, ahead: TurnAhead, t: float) -> Array | None:
         if found.status[0] == Status.CONVERGED.code and moved < LARGEST_POLISH:
             after = drive.solver.rates(found.v, drive.path.rate).orientation
             if np.array_equal(side, after):
-                return np.asarray(found.v[0])
-        return v
+                return found.v[0], led
+        return v, led
     return None

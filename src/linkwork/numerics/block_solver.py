@@ -110,6 +110,23 @@ class BlockSolver:
         """Jacobian, its inverse and the sign of its determinant for every block at v (B, N)."""
         return [linearise_block(block, v) for block in self.blocks]
 
+    def sharpen(self, v: Array) -> Array:
+        """Positions (B, N) after one step of Newton-Raphson with residuals that are rounded once.
+
+        Where branches nearly cross, a residual within the tolerance still moves a dead point. The
+        correction of a block enters those of later blocks before anything is rounded. A position
+        with a singular block stays.
+        """
+        change = np.zeros_like(v)
+        for block, part in zip(self.blocks, self.linearise(v), strict=True):
+            n, own = len(block.unknowns), block.variables
+            residual = np.stack([block.system.exact_residual(row)[0] for row in v[:, own]])
+            # the corrections of earlier blocks move the known variables
+            residual += matrix_vector(part.jacobian[:, :, n:], change[:, own[n:]])
+            change[:, block.unknowns] = -matrix_vector(part.inverse, residual)
+        finite = np.isfinite(change).all(axis=1, keepdims=True)
+        return np.where(finite, v + change, v)
+
     def rates(
         self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
     ) -> SolvedRows:

@@ -24,6 +24,10 @@ __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow"
 
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
+_OTHER_RATES = (
+    30.0  # times the correction: an error of the predicted rate that shows another branch
+)
+_LEVEL_RATES = 1e-3  # and that is no rounding
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
 
 
@@ -258,6 +262,10 @@ class _Trial:
         drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale  # eq. (23)
         turn = float(np.abs(drift * h).max())
         if not turn <= opt.rate_error:
+            return Attempt(None)
+        # eq. (23): by Taylor's theorem about three times the correction; on another branch nearby,
+        # whose positions may be close to the prediction, rates are others
+        if turn > max(_OTHER_RATES * correction, _LEVEL_RATES):
             return Attempt(None)
         factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
         return Attempt(_node(t, found.v[0], rates, int(found.iterations[0])), factor)

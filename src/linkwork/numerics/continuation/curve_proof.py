@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.rounding import REGULAR_CONDITION, UNIT_ROUNDOFF
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -16,7 +16,7 @@ from linkwork.numerics.continuation.local_parametrization import (
     whole_turns,
 )
 from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
-from linkwork.numerics.proof.position_proof import prove, reach
+from linkwork.numerics.proof.position_proof import expansions, prove, reach
 from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
@@ -85,6 +85,17 @@ def leg_is_proved(leg: Leg) -> bool:
 
 
 def _proof_of(leg: Leg, most: int) -> ProvenPath:
+    """Every position and step of a leg, from its first node; with exact residuals where branches
+    nearly cross.
+    """
+    proof = _proof(leg, most, exact=False)
+    nearly = any(node.nearness > REGULAR_CONDITION for node in leg.nodes)
+    if nearly and not proof.connected_to(0).all():
+        return _proof(leg, most, exact=True)
+    return proof
+
+
+def _proof(leg: Leg, most: int, exact: bool) -> ProvenPath:
     nodes = leg.nodes
     # a leg may be traced downwards; proofs take rising values, so t and odd derivatives change sign
     sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
@@ -97,22 +108,30 @@ def _proof_of(leg: Leg, most: int) -> ProvenPath:
     )
     path = leg.led.path
     backwards = type(path)(origin=path.origin, rate=sign * path.rate)
-    return prove_path(leg.led.solver, backwards, points, anchor=0, most=most)
+    return prove_path(leg.led.solver, backwards, points, anchor=0, most=most, exact=exact)
 
 
 def same_solution(one: Parametrization, other: Parametrization, v: Array) -> bool:
     """Whether two leaders prove the same position near v (N,).
 
     The first position may differ from v in the other's leader by at most its proved error; the
-    second is proved for all those values, and is the only one in its box.
+    second is proved for all those values, and is the only one in its box. Where residuals as
+    computed do not suffice, those that are rounded once may.
     """
     if one.lead == other.lead:
         return True
-    first = prove(one.solver, v[one.order][None, :], np.zeros((1, 1)))
+    return any(_same_solution(one, other, v, exact) for exact in (False, True))
+
+
+def _same_solution(one: Parametrization, other: Parametrization, v: Array, exact: bool) -> bool:
+    mine, theirs = v[one.order][None, :], v[other.order][None, :]
+    place = expansions(one.solver, mine, exact=exact)
+    first = prove(one.solver, mine, np.zeros((1, 1)), place)
     if not first.holds[0]:
         return False
     off = one.whole(first.error_bound[0])[other.order]
-    second = reach(other.solver, v[other.order][None, :], off[None, -1:])
+    place = expansions(other.solver, theirs, exact=exact)
+    second = reach(other.solver, theirs, off[None, -1:], place)
     return bool(second.holds[0] and (off[:-1] < second.isolation_radius[0]).all())
 
 

@@ -18,7 +18,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
 from linkwork.foundation.status import CONVERGED
-from linkwork.numerics.continuation.branch_tracking import BOLD, Node, TrackOptions, follow
+from linkwork.numerics.continuation.branch_tracking import BOLD, End, Node, TrackOptions, follow
 from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -26,11 +26,14 @@ from linkwork.numerics.continuation.local_parametrization import (
     fastest_leader,
     same_position,
 )
+from linkwork.numerics.continuation.proved_tracking import follow_with_proof
 from linkwork.numerics.continuation.step_division import node_between, one_way, share_at
 
 __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
+_APART = 0.3  # of the largest condition of ordinary steps: where these go on behind proved ones
+_MOST_PROVED = 12  # legs of proved steps past one place
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
 
@@ -173,7 +176,7 @@ class _Tracer:
                 # another leader may pass where this one could not; if it cannot, J is singular
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
-                if stuck > 1:
+                if stuck > 1 and not self._passes_with_proof():
                     return self._end_trace(CircuitEnd.SINGULAR)
                 continue
             stuck, avoid = 0, None
@@ -181,6 +184,21 @@ class _Tracer:
             if ending is not None:
                 return self._end_trace(ending)
         return self._end_trace(CircuitEnd.NEVER_CLOSES)
+
+    def _passes_with_proof(self) -> bool:
+        """Whether legs of proved steps lead on to where branches are apart again."""
+        for _ in range(_MOST_PROVED):
+            leader = self._leader(None)
+            if leader is None or not leader[0].provable:
+                return False
+            leg, _ = self._leg(*leader, prove=True)
+            if len(leg.nodes) < 2:
+                return False
+            self.legs.append(leg)
+            self._arrive(leg)
+            if leg.nodes[-1].nearness < self.options.track.largest_condition:
+                return True
+        return False
 
     def _end_trace(self, end: CircuitEnd) -> Curve:
         return Curve(
@@ -200,9 +218,15 @@ class _Tracer:
         first = parameter if speed[parameter] * self.options.slow >= speed.max() else None
         return fastest_leader(self.leads, self.here, speed, avoid, first)
 
-    def _leg(self, led: Parametrization, node: Node) -> tuple[Leg, object]:
-        """One leg: up to a change of leader, a pass of the starting value, or an end."""
+    def _leg(
+        self, led: Parametrization, node: Node, *, prove: bool = False
+    ) -> tuple[Leg, End | None]:
+        """One leg: up to a change of leader, a pass of the starting value, or an end.
+
+        ``prove``: with every step proved, until branches are apart.
+        """
         opt = self.options
+        regular = _APART * opt.track.largest_condition
         parameter, scale = self.leads.parameter, self.leads.scale
         place = led.place(parameter)
         sign = math.copysign(1.0, self.heading[led.lead])
@@ -211,6 +235,8 @@ class _Tracer:
         passed: list[_Pass] = []
 
         def done(before: Node, after: Node) -> bool:
+            if prove and after.nearness < min(regular, before.nearness):
+                return True
             speed = np.abs(after.first) / weights
             if not own:
                 leaving = self.leaving if before is node else None
@@ -229,7 +255,11 @@ class _Tracer:
         if own:
             goal = self._next_plane(node.t, sign, self.leaving)
         path = replace(led.path, size=size)
-        nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
+        end: End | None = None
+        if prove:
+            nodes = follow_with_proof(led.solver, path, node, goal, done)
+        else:
+            nodes, end = follow(led.solver, path, node, goal, opt.track, watch=done)
         chain = [node, *nodes]
         if nodes:
             self.leaving = None

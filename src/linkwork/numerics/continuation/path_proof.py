@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.status import CONVERGED
-from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.block_solver import BlockSolver, Linearised
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
@@ -73,6 +73,7 @@ def prove_path(
     *,
     anchor: int | None = None,
     most: int | None = None,
+    exact: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> ProvenPath:
     """Prove every position and every step between neighbours.
@@ -87,6 +88,8 @@ def prove_path(
     most : int, optional
         How many positions in between may be solved for the proof of the whole path; by default a
         number that grows with the path's own.
+    exact : bool
+        Take residuals that are rounded once: slower, for places where branches nearly cross.
     progress : callable, optional
         Called with the finished fraction.
 
@@ -96,6 +99,7 @@ def prove_path(
     position solved in between. Many open steps are worked on together.
     """
     count = len(points.t)
+    prover = _Prover(solver, path, exact)
     allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
@@ -105,7 +109,7 @@ def prove_path(
     for k, begin in enumerate(begins, start=1):
         part = points.take(slice(begin, begin + _PIECE + 1))
         inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
-        found[begin] = _piece(solver, path, part, inside, allowance)
+        found[begin] = _piece(prover, part, inside, allowance)
         if progress is not None:
             progress(k / len(begins))
     pieces = [found[begin] for begin in sorted(begins)]
@@ -148,14 +152,28 @@ def _behind_first(p: Proof) -> Proof:
     )
 
 
+@dataclass(frozen=True)
+class _Prover:
+    """The equations of a path; ``exact``: with residuals that are rounded once."""
+
+    solver: BlockSolver
+    path: InputPath
+    exact: bool
+
+    def expansions(
+        self, v: Array, linear: Sequence[Linearised] | None = None
+    ) -> list[Expansion | None]:
+        """What proofs need of positions (B, N)."""
+        return expansions(self.solver, v, linear, exact=self.exact)
+
+
 def _piece(
-    solver: BlockSolver,
-    path: InputPath,
+    prover: _Prover,
     points: SolvedRows,
     anchor: int | None,
     allowance: _Allowance,
 ) -> ProvenPath:
-    places = expansions(solver, points.v)
+    solver, places = prover.solver, prover.expansions(points.v)
     position = prove(solver, points.v, points.input_radius, places)
     steps = len(points.t) - 1
     nothing = np.zeros(steps, dtype=bool)
@@ -174,7 +192,7 @@ def _piece(
         open_ = open_[~connected[open_]]
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
-    work = _Halving(solver, path, steps, anchor, position.holds)
+    work = _Halving(prover, steps, anchor, position.holds)
     work.run(
         _Open(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_),
         allowance,
@@ -243,10 +261,8 @@ class _Halving:
     solved in between.
     """
 
-    def __init__(
-        self, solver: BlockSolver, path: InputPath, steps: int, anchor: int | None, holds: BoolArray
-    ) -> None:
-        self.solver, self.path, self.anchor = solver, path, anchor
+    def __init__(self, prover: _Prover, steps: int, anchor: int | None, holds: BoolArray) -> None:
+        self.prover, self.anchor = prover, anchor
         self.proved = np.ones(steps, dtype=bool)
         self.given_up = np.zeros(steps, dtype=bool)
         self.pieces = np.zeros(steps, dtype=np.int64)
@@ -284,9 +300,9 @@ class _Halving:
 
     def _halve(self, lanes: _Open) -> _Open:
         """Halve some steps once more; return the halves that are not proved."""
-        solver = self.solver
+        solver = self.prover.solver
         np.add.at(self.pieces, lanes.owner, 1)
-        middle, found, places = _between(solver, self.path, lanes.left, lanes.right)
+        middle, found, places = _between(self.prover, lanes.left, lanes.right)
         proof = prove(solver, middle.v, middle.input_radius, places)
         good = found & proof.holds
         # no number is left between the ends
@@ -314,21 +330,21 @@ class _Halving:
 
 
 def _between(
-    solver: BlockSolver, path: InputPath, left: SolvedRows, right: SolvedRows
+    prover: _Prover, left: SolvedRows, right: SolvedRows
 ) -> tuple[SolvedRows, BoolArray, list[Expansion | None]]:
     """Positions halfway in t, started from the quintic through both ends; which were found; their
     expansions for proofs.
     """
+    solver, path = prover.solver, prover.path
     h = (right.t - left.t)[:, None]
     guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)  # eq. (21)
     guess += h * h / 64.0 * (left.second + right.second)
     t = 0.5 * (left.t + right.t)
     guess[:, solver.unknowns :] = path.at(t)
     done = solver.solve(guess)
-    linear = solver.linearise(done.v)
-    rates = solver.rates(done.v, path.rate, linear)
-    input_radius = rounding_of_inputs(done.v, solver.unknowns)
-    points = SolvedRows(
-        t=t, v=done.v, first=rates.first, second=rates.second, input_radius=input_radius
-    )
-    return points, done.status == CONVERGED, expansions(solver, done.v, linear)
+    v = solver.sharpen(done.v) if prover.exact else done.v
+    linear = solver.linearise(v)
+    rates = solver.rates(v, path.rate, linear)
+    input_radius = rounding_of_inputs(v, solver.unknowns)
+    points = SolvedRows(t=t, v=v, first=rates.first, second=rates.second, input_radius=input_radius)
+    return points, done.status == CONVERGED, prover.expansions(v, linear)

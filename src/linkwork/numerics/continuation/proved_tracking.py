@@ -12,8 +12,10 @@ from linkwork.foundation.status import CONVERGED
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
+from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
     Proof,
+    expansions,
     prove,
     reach,
     rounding_of_inputs,
@@ -39,14 +41,15 @@ def follow_with_proof(
 
 
 class _ProvedTrial:
-    """A step that is taken only if it is proved."""
+    """A step that is taken only if it is proved, with residuals that are rounded once."""
 
     def __init__(self, solver: BlockSolver, path: InputPath, start: Node) -> None:
         self.solver, self.path = solver, path
-        self.here = self._proof(start.v[None, :])
+        self.here, self.places = self._proof(start.v[None, :])
 
-    def _proof(self, v: Array) -> Proof:
-        return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns))
+    def _proof(self, v: Array) -> tuple[Proof, list[Expansion | None]]:
+        places = expansions(self.solver, v, exact=True)
+        return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns), places), places
 
     def room(self, here: Node, sign: float) -> float:
         """The proof bounds the step, nothing else."""
@@ -60,14 +63,15 @@ class _ProvedTrial:
         found = solver.solve(guess[None, :])
         if found.status[0] != CONVERGED:
             return Attempt(None)
-        known = rounding_of_inputs(found.v, solver.unknowns)
-        proof = self._proof(found.v)
-        input_radius = np.abs(found.v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
-        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known)
+        v = solver.sharpen(found.v)
+        known = rounding_of_inputs(v, solver.unknowns)
+        proof, places = self._proof(v)
+        input_radius = np.abs(v - here.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+        reached = reach(solver, here.v[None, :], input_radius + 2.0 * known, self.places)
         # the position at either end may be off by its error
         both = np.maximum(proof.error_bound, self.here.error_bound)
         # eq. (33)
-        if not (proof.holds[0] and steps_connected(here.v[None, :], found.v, reached, both)[0]):
+        if not (proof.holds[0] and steps_connected(here.v[None, :], v, reached, both)[0]):
             return Attempt(None)
-        self.here = proof
-        return Attempt(node_at(solver, self.path, t, found.v[0]), _GROWTH)
+        self.here, self.places = proof, places
+        return Attempt(node_at(solver, self.path, t, v[0]), _GROWTH)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.block_solver import BlockSolver
@@ -25,9 +26,10 @@ from linkwork.numerics.continuation.branch_tracking import (
     Watch,
     follow,
     node_at,
+    predict,
 )
-from linkwork.numerics.continuation.curve_proof import leg_is_proved
-from linkwork.numerics.continuation.curve_tracing import Curve, Leg
+from linkwork.numerics.continuation.curve_proof import leg_is_proved, prove_curve
+from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
 from linkwork.numerics.continuation.dead_point_proof import FoldProof, prove_dead_point
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -35,11 +37,14 @@ from linkwork.numerics.continuation.local_parametrization import (
     fastest_leader,
 )
 from linkwork.numerics.continuation.proved_tracking import follow_with_proof
-from linkwork.numerics.continuation.step_division import divide_step
+from linkwork.numerics.continuation.step_division import divide_step, node_between
 
 __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
 
+_MOST_LEGS = 24  # to a dead point ahead, each with another leader
 _MOST_STEPS = 400  # to a dead point ahead: it is near, unless it is none
+_SHARPENINGS = 4  # Newton steps on the rate with sharpened positions,
+_SHORT = 1e-6  # each at most that long
 _RESTING = 1e-7  # weighted rate below which the parameter may not move at all,
 _LEVEL = 100.0  # nor does it if the derivative of that rate is at most this many times that
 
@@ -100,12 +105,25 @@ def _within(
 ) -> TurningPoint:
     """The dead point between two nodes; where it is not proved at once, by proved steps to it."""
     turn = _refine_turn(leads, led, low, high, where)
-    if turn.located or not led.provable:
+    if not led.provable or (turn.located and _is_between(led, low, turn.node, high)):
         return turn
     ahead = _first_turn(leads, led, low, math.copysign(1.0, high.t - low.t), follow_with_proof)
-    if ahead is None or not ahead.turn.located:
-        return turn
+    if ahead is None or not ahead.located:
+        place = led.place(leads.parameter)
+        edges = sorted((float(low.v[place]), float(high.v[place]), turn.t))
+        return replace(turn, proof=None, bracket=(edges[0], edges[-1]))
     return replace(ahead.turn, leg=where[0], after=where[1])
+
+
+def _is_between(led: Parametrization, low: Node, here: Node, high: Node) -> bool:
+    """Whether a node is proved to lie on the branch that leads from one node to another."""
+    return leg_is_proved(Leg(led=led, nodes=_distinct(low, here, high)))
+
+
+def _distinct(*nodes: Node) -> tuple[Node, ...]:
+    """Nodes without those at which the leader has the value of the node before."""
+    first = nodes[:1]
+    return (*first, *(b for a, b in itertools.pairwise(nodes) if a.t != b.t))
 
 
 def _rises(node: Node, place: int) -> bool:
@@ -115,11 +133,11 @@ def _rises(node: Node, place: int) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TurnAhead:
-    """A dead point and the way to it: ``leg`` from a position, with the dead point as its last
-    node; ``proved``: whether every step of it is.
+    """A dead point and the way to it: ``legs`` from a position, with the dead point as their last
+    node; ``proved``: whether every step of them is.
     """
 
-    leg: Leg
+    legs: tuple[Leg, ...]
     turn: TurningPoint
     proved: bool
 
@@ -142,13 +160,14 @@ def turn_beyond(leads: Parametrizations, v: Array, rates: Array, side: float) ->
     Returns
     -------
     TurnAhead or None
-        The way from the position to the dead point, led by the fastest variable; ``None`` if the
-        parameter does not turn back there.
+        The way from the position to the dead point; ``None`` if the parameter does not turn back
+        there.
 
     Notes
     -----
     The way is followed boldly first. Where that cannot be proved, a step may have come onto another
-    branch: it is followed again with care, and then with every step proved before the next.
+    branch: it is followed again with care, and then with every step proved before the next. The
+    fastest variable leads; where it turns back itself, other ones lead in turn.
     """
     leader = fastest_leader(leads, v, np.abs(rates / leads.scale), avoid=leads.parameter)
     if leader is None:
@@ -162,8 +181,22 @@ def turn_beyond(leads: Parametrizations, v: Array, rates: Array, side: float) ->
         if found is not None and (best is None or found.located):
             best = found
         if best is not None and best.located:
-            break
-    return best
+            return best
+    traced = _turn_on_curve(leads, v, side) if led.provable else None
+    return traced if traced is not None and (best is None or traced.located) else best
+
+
+def _turn_on_curve(leads: Parametrizations, v: Array, side: float) -> TurnAhead | None:
+    """The first dead point ahead on the curve through a position, whatever variables lead to it."""
+    curve = trace(leads, v, side, CurveOptions(track=TrackOptions(), most_legs=_MOST_LEGS))
+    turn = next(turning_points(leads, curve), None)
+    if turn is None:
+        return None
+    last = curve.legs[turn.leg]
+    nodes = _distinct(*last.nodes[: turn.after + 1], turn.node)
+    legs = (*curve.legs[: turn.leg], replace(last, nodes=nodes))
+    way = replace(curve, legs=legs, end=CircuitEnd.SINGULAR)
+    return TurnAhead(legs=legs, turn=turn, proved=prove_curve(leads, way).whole)
 
 
 #: Follows the branch of a node towards a goal until a watch has seen enough.
@@ -197,10 +230,8 @@ def _first_turn(
     if not turned:
         return None
     turn = _refine_turn(leads, led, *turned[0], (0, len(nodes) - 1))
-    before = [node, *nodes[:-1]]
-    chain = (*before, turn.node) if turn.node.t != before[-1].t else tuple(before)
-    leg = Leg(led=led, nodes=chain)
-    return TurnAhead(leg=leg, turn=turn, proved=led.provable and leg_is_proved(leg))
+    leg = Leg(led=led, nodes=_distinct(node, *nodes[:-1], turn.node))
+    return TurnAhead(legs=(leg,), turn=turn, proved=led.provable and leg_is_proved(leg))
 
 
 def _refine_turn(
@@ -234,26 +265,30 @@ def _refine_turn(
 def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     """The node between two at which a variable's rate is nearest to zero.
 
-    Newton-Raphson on the rate, kept inside the sign change.
+    Newton-Raphson on the rate, kept inside the sign change and on the side of the branch on which
+    det J has the sign of both nodes; halving where a step comes onto another branch.
     """
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
     sharp = replace(led.solver.options, equation_tolerance=EPSILON)
     for _ in range(60):
-        step = -here.first[place] / here.second[place] if here.second[place] else np.inf  # eq. (36)
+        step = _to_level(here, place)
         if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
             break
-        s = here.t + step
         edges = sorted((low.t, high.t))
-        if not edges[0] < s < edges[1]:
-            # Newton has left the sign change: halve it
-            s = 0.5 * (low.t + high.t)
-            step = s - here.t
-        guess = here.v + step * here.first + 0.5 * step * step * here.second  # eq. (17)
-        guess[-1] = s
-        found = led.solver.solve(guess[None, :], sharp)
-        if found.status[0] != CONVERGED:
-            break
-        here = node_at(led.solver, led.path, s, found.v[0])
+        found = None
+        if edges[0] < here.t + step < edges[1]:
+            guess = predict(here, here.t + step)  # eq. (17)
+            guess[-1] = here.t + step
+            done = led.solver.solve(guess[None, :], sharp)
+            if done.status[0] == CONVERGED:
+                found = node_at(led.solver, led.path, float(guess[-1]), done.v[0])
+        if found is None or not np.array_equal(found.orientation, low.orientation):
+            # Newton has left the sign change or the branch: halve the interval
+            found = node_between(led, low, high, 0.5, sharp=True)
+            if found is None or not np.array_equal(found.orientation, low.orientation):
+                break
+            step = found.t - here.t
+        here = found
         if here.first[place] * low.first[place] > 0.0:
             low = here
         else:
@@ -262,23 +297,27 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
             best = here
         elif abs(step) < 1e-9:
             break  # to rounding
-    return _polish_node(led, best)
+    return _sharpen(led, place, best)
 
 
-def _polish_node(led: Parametrization, here: Node) -> Node:
-    """The same node after one step of Newton-Raphson with residuals that are rounded once.
+def _to_level(here: Node, place: int) -> float:
+    """The step of Newton-Raphson to where a variable's rate is zero."""
+    # eq. (36)
+    return float(-here.first[place] / here.second[place]) if here.second[place] else math.inf
 
-    Where branches nearly cross, a residual within the tolerance still moves the dead point. The
-    correction of a block enters those of later blocks before anything is rounded.
-    """
-    solver = led.solver
-    change = np.zeros_like(here.v)
-    for block, part in zip(solver.blocks, solver.linearise(here.v[None, :]), strict=True):
-        n, own = len(block.unknowns), block.variables
-        residual = block.system.exact_residual(here.v[own])[0]
-        # the corrections of earlier blocks move the known variables
-        residual = residual + part.jacobian[0, :, n:] @ change[own[n:]]
-        change[block.unknowns] = -part.inverse[0] @ residual
-    if not np.isfinite(change).all():
-        return here
-    return node_at(solver, led.path, here.t, here.v + change)
+
+def _sharpen(led: Parametrization, place: int, here: Node) -> Node:
+    """A level place once more, from positions whose residuals are rounded once."""
+    best = node_at(led.solver, led.path, here.t, led.solver.sharpen(here.v[None, :])[0])
+    for _ in range(_SHARPENINGS):
+        step = _to_level(best, place)
+        if not 4.0 * EPSILON * max(1.0, abs(best.t)) < abs(step) < _SHORT:
+            break
+        guess = predict(best, best.t + step)
+        guess[-1] = best.t + step
+        after = led.solver.sharpen(led.solver.sharpen(guess[None, :]))[0]
+        found = node_at(led.solver, led.path, float(guess[-1]), after)
+        if not abs(found.first[place]) < abs(best.first[place]):
+            break
+        best = found
+    return best
