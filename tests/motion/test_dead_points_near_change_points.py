@@ -35,6 +35,48 @@ def test_a_hairpin_is_not_cut_short(certify: bool) -> None:
     assert motion.found[before].all()
 
 
+#: Margins of 1e-12: branches a few millionths of a radian apart; their dead points from 60 digits.
+NEAREST = {
+    "the other circuit is next to the fold": (NearChangePoint(
+        g=2.1597103362376124, a=1.4582999907943637, b=2.4161326821088487, c=1.7147223366522775,
+        margin=1.3e-11, start=1.3108889920555715, side=-1.0,
+    ), 2.43597041967401e-06, 6.283182871209167),
+    "the other circuit lies straight ahead": (NearChangePoint(
+        g=3.1074845156470308, a=1.6105873123795276, b=0.8406661614991207, c=2.3375633647683793,
+        margin=1.8e-12, start=-0.8038459703244681, side=1.0,
+    ), -1.35438965778794, -1.0247380928554838e-06),
+    "every leader turns back": (NearChangePoint(
+        g=0.8544240640503823, a=2.9044803242695525, b=4.483877403577447, c=2.4338211433570685,
+        margin=1.2e-12, start=-1.3169695993574124, side=1.0,
+    ), -6.283183894425889, -1.4127536975993568e-06),
+    "the fastest variable turns back first": (NearChangePoint(
+        g=1.6822701263741764, a=3.560405099007593, b=4.768833472060839, c=2.8906984994256306,
+        margin=1.8e-12, start=-0.4830868007722132, side=-1.0,
+    ), -6.283184247101873, -1.0600777134525057e-06),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("bar", "low", "high"), NEAREST.values(), ids=NEAREST)
+@pytest.mark.parametrize("certify", [True, False])
+def test_branches_that_nearly_cross_are_told_apart(
+    bar: NearChangePoint, low: float, high: float, certify: bool
+) -> None:
+    for ahead in (high + 1e-6, low - 1e-6):
+        motion = lw.loads(bar.text(ahead, 48)).sweep(certify=certify)
+        reached = motion.found[motion.asked]
+        assert reached[:-1].all()
+        assert not reached[-1]
+        assert motion.counts[lw.Status.OUT_OF_REACH] == 1
+        assert all(limit.located for limit in motion.limits)
+        found = [limit.input for limit in motion.limits if abs(limit.input - ahead) < 1e-3]
+        assert found == pytest.approx([high if ahead > high else low], abs=1e-15, rel=0)
+    (circuit,) = (
+        c for c in lw.loads(bar.text(ahead, 48)).circuits().circuits if c.branches[0].configuration
+    )
+    assert circuit.certified
+    assert circuit.input_range == pytest.approx((low, high), abs=1e-9)
+
+
 @pytest.mark.parametrize("part", thinned(range(2)))
 def test_dead_points_of_random_four_bars_are_exact(part: int) -> None:
     counts, false = dead_point_campaign(part, 3)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, StatusArray
+from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
@@ -268,7 +269,11 @@ class _Trial:
         if turn > max(_OTHER_RATES * correction, _LEVEL_RATES):
             return Attempt(None)
         factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
-        return Attempt(_node(t, found.v[0], rates, int(found.iterations[0])), factor)
+        v = found.v
+        if rates.nearness[0] > REGULAR_CONDITION:  # so that rounding leaves it on the branch
+            v = solver.sharpen(v)
+            rates = solver.rates(v, path.rate)
+        return Attempt(_node(t, v[0], rates, int(found.iterations[0])), factor)
 
 
 def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:
