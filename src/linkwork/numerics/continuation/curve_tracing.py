@@ -33,7 +33,8 @@ __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _APART = 0.3  # of the largest condition of ordinary steps: where these go on behind proved ones
-_MOST_PROVED = 12  # legs of proved steps past one place
+_MOST_PROVED = 4  # legs of proved steps past one place
+_MOST_NODES = 120  # of such a leg: more do not lead past
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
 
@@ -192,7 +193,7 @@ class _Tracer:
             if leader is None or not leader[0].provable:
                 return False
             leg, _ = self._leg(*leader, prove=True)
-            if len(leg.nodes) < 2:
+            if not 2 <= len(leg.nodes) <= _MOST_NODES:
                 return False
             self.legs.append(leg)
             self._arrive(leg)

@@ -24,6 +24,9 @@ from linkwork.numerics.proof.position_proof import (
 
 __all__ = ["follow_with_proof"]
 
+_MOST_ATTEMPTS = (
+    300  # about a second: past a place where branches nearly cross it takes half of that
+)
 _GROWTH = 1.5  # of steps that are proved one by one
 
 
@@ -35,7 +38,9 @@ def follow_with_proof(
     The proof determines the step size: many short steps near a crossing of branches, and none
     that could come onto the other one. Ends where ``watch`` has seen enough or nothing is proved.
     """
-    bounds = StepBounds(size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=2000)
+    bounds = StepBounds(
+        size=path.size, first=0.01, largest=math.inf, smallest=1e-13, attempts=_MOST_ATTEMPTS
+    )
     nodes, _ = march(_ProvedTrial(solver, path, start), start, goal, bounds, watch)
     return nodes
 
