@@ -25,10 +25,8 @@ __all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow"
 
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
-_OTHER_RATES = (
-    30.0  # times the correction: an error of the predicted rate that shows another branch
-)
-_LEVEL_RATES = 1e-3  # and that is no rounding
+_OTHER_RATES = 30.0  # times the correction: rates so far from those predicted are another branch's,
+_LEVEL_RATES = 1e-3  # unless they differ by no more than this over the step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
 
 

@@ -33,7 +33,8 @@ __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _APART = 0.3  # of the largest condition of ordinary steps: where these go on behind proved ones
-_MOST_PROVED = 4  # legs of proved steps past one place
+_MOST_PROVED = 4  # legs of proved steps past one place,
+_MOST_PROVED_LEGS = 32  # and on one curve, each within a second
 _MOST_NODES = 120  # of such a leg: more do not lead past
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
@@ -142,6 +143,7 @@ class _Tracer:
         self.crossing: ChangePoint | None = None
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
+        self.proved_legs = 0
         # the starting value, on which the curve is now: it does not count as passed again at once
         self.leaving: float | None = float(start[leads.parameter])
         own = self._own()
@@ -177,9 +179,10 @@ class _Tracer:
                 # another leader may pass where this one could not; if it cannot, J is singular
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
-                if stuck > 1 and not self._passes_with_proof():
+                if stuck <= 1:
+                    continue
+                if not self._passes_with_proof():
                     return self._end_trace(CircuitEnd.SINGULAR)
-                continue
             stuck, avoid = 0, None
             ending = self._ending()
             if ending is not None:
@@ -187,19 +190,31 @@ class _Tracer:
         return self._end_trace(CircuitEnd.NEVER_CLOSES)
 
     def _passes_with_proof(self) -> bool:
-        """Whether legs of proved steps lead on to where branches are apart again."""
+        """Whether legs of proved steps lead on, to where branches are apart again or the parameter
+        has its starting value.
+        """
         for _ in range(_MOST_PROVED):
             leader = self._leader(None)
-            if leader is None or not leader[0].provable:
+            if leader is None or not leader[0].provable or self.proved_legs == _MOST_PROVED_LEGS:
                 return False
+            self.proved_legs += 1
             leg, _ = self._leg(*leader, prove=True)
-            if not 2 <= len(leg.nodes) <= _MOST_NODES:
+            if len(leg.nodes) < 2:
                 return False
             self.legs.append(leg)
             self._arrive(leg)
+            if len(leg.nodes) > _MOST_NODES:
+                return False
+            if self._has_passed:
+                return True
             if leg.nodes[-1].nearness < self.options.track.largest_condition:
                 return True
         return False
+
+    @property
+    def _has_passed(self) -> bool:
+        """Whether the last leg has brought the parameter to its starting value."""
+        return bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1
 
     def _end_trace(self, end: CircuitEnd) -> Curve:
         return Curve(
@@ -355,8 +370,7 @@ class _Tracer:
         if np.abs(v / scale)[lengths].max(initial=0.0) > self.options.far:
             return CircuitEnd.RUNS_TO_INFINITY
         # only where the parameter has its starting value can the curve close
-        passed = bool(self.passes) and self.passes[-1][0] == len(self.legs) - 1
-        if passed and same_position(self.leads, v, self.start):
+        if self._has_passed and same_position(self.leads, v, self.start):
             return CircuitEnd.CLOSED
         if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
             return CircuitEnd.NEVER_CLOSES

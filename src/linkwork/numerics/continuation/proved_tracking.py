@@ -24,9 +24,7 @@ from linkwork.numerics.proof.position_proof import (
 
 __all__ = ["follow_with_proof"]
 
-_MOST_ATTEMPTS = (
-    300  # about a second: past a place where branches nearly cross it takes half of that
-)
+_MOST_ATTEMPTS = 300  # about a second; half as many lead past a place where branches nearly cross
 _GROWTH = 1.5  # of steps that are proved one by one
 
 
