@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,6 +76,16 @@ def test_branches_that_nearly_cross_are_told_apart(
     )
     assert circuit.certified
     assert circuit.input_range == pytest.approx((low, high), abs=1e-9)
+
+
+@pytest.mark.parametrize("gap", [3e-6, 3e-7])
+def test_a_circuit_that_begins_next_to_its_dead_point_closes(gap: float) -> None:
+    bar, low, high = NEAREST["the other circuit is next to the fold"]
+    start = replace(bar, start=low + gap)
+    (circuit,) = lw.loads(start.text(start.start + 0.1, 10)).circuits().circuits
+    assert circuit.end is lw.CircuitEnd.CLOSED
+    found = sorted(limit.input for limit in circuit.dead_points)
+    assert found == pytest.approx([low, high], abs=1e-15, rel=0)
 
 
 @pytest.mark.parametrize("part", thinned(range(2)))

@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, node_at
-from linkwork.numerics.proof.position_proof import prove, reach
+from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
 __all__ = [
     "Parametrization",
@@ -136,13 +136,14 @@ def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
     # both at exactly one value of the parameter, so that only one branch is compared with the other
     near[:, p] = a[p]
     sharp = replace(own.solver.options, equation_tolerance=EPSILON)
-    found = own.solver.solve(near[:, own.order], sharp).v
+    found = own.solver.sharpen(own.solver.solve(near[:, own.order], sharp).v)
     off = np.abs(found[1] - found[0])
     if own.provable:
         input_radius = np.full((1, 1), rounding)
+        places = [expansions(own.solver, v, exact=True) for v in (found[:1], found[1:])]
         first, second = (
-            reach(own.solver, found[:1], input_radius),
-            prove(own.solver, found[1:], input_radius),
+            reach(own.solver, found[:1], input_radius, places[0]),
+            prove(own.solver, found[1:], input_radius, places[1]),
         )
         if first.holds[0] and second.holds[0]:
             return bool((off[:-1] + second.error_bound[0, :-1] < first.isolation_radius[0]).all())

@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import CONVERGED
-from linkwork.numerics.continuation.branch_tracking import Node, node_at
+from linkwork.numerics.continuation.branch_tracking import Node, follow, node_at
 from linkwork.numerics.continuation.local_parametrization import Parametrization
 
 __all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
@@ -27,18 +27,24 @@ _SHARES = np.linspace(0.0, 1.0, 65)
 def node_between(
     led: Parametrization, low: Node, high: Node, s: float, sharp: bool = False
 ) -> Node | None:
-    """The node at the fraction s of a step; ``None`` if Newton-Raphson does not find it.
+    """The node at the fraction s of a step; ``None`` if it is not found.
 
-    ``sharp``: iterate down to rounding.
+    Newton-Raphson from the cubic through both ends; where that fails, or comes onto another branch,
+    by steps from the nearer end. ``sharp``: iterate down to rounding.
     """
     h = high.t - low.t
     guess = _hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
     options = replace(led.solver.options, equation_tolerance=EPSILON) if sharp else None
     found = led.solver.solve(guess[None, :], options)
-    if found.status[0] != CONVERGED:
-        return None
-    return node_at(led.solver, led.path, float(guess[-1]), found.v[0])
+    if found.status[0] == CONVERGED:
+        here = node_at(led.solver, led.path, float(guess[-1]), found.v[0])
+        sides = (here.orientation, low.orientation, high.orientation)
+        if np.array_equal(sides[0], sides[1]) or not np.array_equal(sides[1], sides[2]):
+            return here
+    nearer = low if s < 0.5 else high
+    nodes, end = follow(led.solver, led.path, nearer, float(guess[-1]))
+    return nodes[-1] if nodes and end is None else None
 
 
 def share_at(place: int, low: Node, high: Node, value: float) -> float:
