@@ -33,7 +33,7 @@ __all__ = ["Passage", "pass_change_points"]
 
 # of the path's size, to both sides, in this order; the last ones for blocks that are driven slowly
 _HALVES = (1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 3e-2, 1e-1)
-_STEPS = 4  # in which a block that does not cross is followed
+_STEPS = (4, 16)  # in which a block that does not cross is followed; more where it turns quickly
 _OFF = 1e-3  # weighted: how far such a step may end from its prediction
 # condition times that distance: next to a crossing both branches lie within 1 / condition of each
 # other, and Newton-Raphson may reach either of them (Newton-Kantorovich: at most 1/2)
@@ -273,12 +273,18 @@ class _Walk:
 
     def _follow(self, block: Block, begin: float, end: float, x: Array) -> list[_Step] | None:
         """The block led from one value of t to another; ``None`` if it comes near a crossing."""
+        tries = (self._follow_in(count, block, begin, end, x) for count in _STEPS)
+        return next((steps for steps in tries if steps is not None), None)
+
+    def _follow_in(
+        self, count: int, block: Block, begin: float, end: float, x: Array
+    ) -> list[_Step] | None:
         weights = block.system.variable_scale[: len(x)]
         here, sign, condition = self._step(block, begin, x, end)
         if not (condition < _REGULAR and sign):
             return None
         steps = [here]
-        for t in np.linspace(begin, end, _STEPS + 1)[1:].tolist():
+        for t in np.linspace(begin, end, count + 1)[1:].tolist():
             h = t - here.t
             guess = here.x + h * here.first + 0.5 * h * h * here.second  # eq. (17)
             x_new = self._solve(block, t, guess, begin)
