@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic
 
@@ -94,7 +94,7 @@ def run_study(
     The stored data depend on the plan only, not on the workers or their order. The store can be
     read at any moment; missing chunks read as missing values. Only this process writes to it: a
     chunk's files, each renamed when it is complete, then the ledger entry with their checksums.
-    After a killed run, unfinished chunks are computed again.
+    After a killed run, unfinished chunks are computed again, and so are damaged ones.
     """
     check_packages()
     if workers is not None:
@@ -113,7 +113,8 @@ def run_study(
                 for k, part in parts:
                     target.write(k, part)
                     tell()
-    return summary_of(store)
+        repaired = (*target.repaired, *target.damaged)
+    return replace(summary_of(store), repaired=repaired)
 
 
 def _crew(

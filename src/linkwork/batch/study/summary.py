@@ -69,6 +69,10 @@ class Summary:
     problems : Mapping[str, int]
         Number of designs that could not be built, by reason.
     outputs : tuple of OutputSummary
+    damaged : tuple of int
+        Chunks whose files have changed since they were stored; they count as not computed.
+    repaired : tuple of int or str
+        Damaged chunks that the run has computed again, and metadata that it has written again.
     """
 
     name: str
@@ -83,6 +87,8 @@ class Summary:
     certified: int
     problems: Mapping[str, int]
     outputs: tuple[OutputSummary, ...]
+    damaged: tuple[int, ...] = ()
+    repaired: tuple[int | str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The summary in JSON types."""
@@ -101,7 +107,8 @@ def summary_of(store: Path | str) -> Summary:
     known = attributes_of(path)
     check_packages()
     identity = known["linkwork_identity"]
-    entries = [entry for _, entry in sorted(read_entries(path).items())]
+    sound, damaged = read_entries(path)
+    entries = [entry for _, entry in sorted(sound.items())]
     arrays = open_arrays(path)
     rows: Counter[str] = Counter()
     problems: Counter[str] = Counter()
@@ -130,6 +137,7 @@ def summary_of(store: Path | str) -> Summary:
         outputs=tuple(
             _output(name, arrays, entries) for name in (*identity["reductions"], *identity["keep"])
         ),
+        damaged=tuple(sorted(damaged)),
     )
 
 
