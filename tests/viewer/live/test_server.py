@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
@@ -246,6 +246,53 @@ def raw_head(served: Served, lines: list[str]) -> bytes:
     with socket.create_connection(("127.0.0.1", served.server.port), timeout=10) as link:
         link.sendall("\r\n".join([*lines, "", ""]).encode())
         return link.recv(65536).split(b"\r\n")[0]
+
+
+@contextmanager
+def strangers(served: Served, count: int, head: bytes = b"") -> Iterator[list[socket.socket]]:
+    """Connections that send the beginning of a request, or nothing, and wait."""
+    with ExitStack() as stack:
+        links = []
+        for _ in range(count):
+            link = socket.create_connection(("127.0.0.1", served.server.port), timeout=10)
+            links.append(stack.enter_context(link))
+            link.sendall(head)
+        yield links
+
+
+@pytest.mark.parametrize("head", [b"", b"GET / HTTP/1.1\r\nHost: 127"])
+def test_strangers_that_hold_connections_do_not_keep_the_owner_out(
+    served: Served, head: bytes
+) -> None:
+    with served.connect() as page:
+        told(page, "motion_found")
+        with strangers(served, 100, head):
+            response, _ = answer(served)
+            assert response.status == 200
+            ask(page, "undo", id=1)  # the page is not disturbed
+            assert told(page, "refused")["answers"] == 1
+    with strangers(served, 100, head), reconnected(served) as page:
+        assert told(page, "motion_found")["certified"] == 361
+
+
+def test_a_connection_without_a_page_ends_by_itself(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("linkwork.viewer.live.short_connections.PATIENCE", 0.3)
+    with served.connect() as page:
+        told(page, "motion_found")
+        with strangers(served, 2, b"GET /") as links:
+            began = time.monotonic()
+            while time.monotonic() - began < 5.0:
+                try:
+                    links[0].sendall(b"x")  # one byte at a time
+                except OSError:
+                    break
+                time.sleep(0.05)
+            assert time.monotonic() - began < 3.0
+            assert links[1].recv(100) == b""
+        ask(page, "undo", id=1)
+        assert told(page, "refused")["answers"] == 1
 
 
 def test_a_second_page_is_told_why_it_must_wait(served: Served) -> None:
