@@ -1,4 +1,4 @@
-"""A large study, its memory, and what becomes of it when it is killed twenty times and bytes flip."""
+"""A large study, its memory, and what becomes of it when it is killed and bytes flip."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def verification_lines(found: Verification, store: str) -> list[str]:
         return [f"All {found.sound:,} chunks of {store} are as they were written."]
     damaged = {"metadata": found.metadata} if found.metadata else {}
     damaged |= {f"chunk {chunk}": files for chunk, files in found.chunks.items()}
-    names = {name: bad for name in damaged}
+    names = dict.fromkeys(damaged, bad)
     pairs = ((name, _chunks(files)) for name, files in damaged.items())
     return [
         *title_lines(f"{store} is damaged"),

@@ -24,8 +24,10 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.field_types import check_field_types
 from linkwork.mechanism.speed import speed_per_second
 
 __all__ = ["Description", "Key", "Problems", "declared"]
@@ -94,10 +96,11 @@ class Description:
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        if isinstance(self.angle, str):
+        if not isinstance(self.angle, AngleUnit):
             set_(self, "angle", _angle_unit(self.angle, self.name))
         if isinstance(self.inputs, Input):
             set_(self, "inputs", (self.inputs,))
+        check_field_types(self)
         if not all(isinstance(which, Input) for which in self.inputs):
             raise InputError(
                 'inputs must be Input objects: lw.Input(link="crank"), or a list of them'
@@ -229,12 +232,12 @@ def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:
     return (((table, name), name) for name in names)
 
 
-def _angle_unit(text: str, name: str) -> AngleUnit:
+def _angle_unit(given: object, name: str) -> AngleUnit:
     try:
-        return AngleUnit(text)
+        return AngleUnit(given)
     except ValueError:
         known = " or ".join(f'"{unit.value}"' for unit in AngleUnit)
-        problem = Problem(key=("angle",), message=f'must be {known}, got "{text}"')
+        problem = Problem(key=("angle",), message=f"must be {known}, got {as_told(given)}")
         raise MechanismError([problem], f'mechanism "{name}"') from None
 
 

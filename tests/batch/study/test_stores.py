@@ -557,7 +557,13 @@ def test_a_store_damaged_beyond_knowing_its_study_can_be_started_over(
 def test_fresh_refuses_to_delete_what_no_study_wrote(whole: Path, tmp_path: Path) -> None:
     store = tmp_path / "out.zarr"
     shutil.copytree(whole, store)
-    for name in ("notes.txt", "rocker/notes.txt", "rocker/c/notes.txt", "mine/c/0", "ledger/a/b.json"):
+    for name in (
+        "notes.txt",
+        "rocker/notes.txt",
+        "rocker/c/notes.txt",
+        "mine/c/0",
+        "ledger/a/b.json",
+    ):
         mine = store / name
         mine.parent.mkdir(parents=True, exist_ok=True)
         mine.write_text("mine", encoding="utf-8")

@@ -16,6 +16,7 @@ from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.workers import Task, local_crew, one_after_the_other
 from linkwork.batch.study.zarr_files import check_packages
+from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
 from linkwork.kernels.gpu.compiling import graphics_card
@@ -102,7 +103,7 @@ def run_study(
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # raises an error before a store is created
-    with open_store(study, Path(store), fresh=fresh) as target:
+    with open_store(study, as_path(store), fresh=fresh) as target:
         tell = _teller(study, target.done, progress)
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]

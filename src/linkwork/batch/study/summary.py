@@ -15,6 +15,7 @@ from linkwork.batch.study.job import passes_name
 from linkwork.batch.study.store import attributes_of
 from linkwork.batch.study.zarr_files import check_packages, open_arrays
 from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.paths import as_path
 
 __all__ = ["OutputSummary", "Summary", "summary_of"]
 
@@ -103,7 +104,7 @@ def summary_of(store: Path | str) -> Summary:
     InputError
         If it is not the store of a study.
     """
-    path = Path(store)
+    path = as_path(store)
     known = attributes_of(path)
     check_packages()
     identity = known["linkwork_identity"]

@@ -9,6 +9,7 @@ from typing import Any
 
 from linkwork.batch.study.chunk_manifest import read_entries
 from linkwork.batch.study.store import check_is_store, damaged_metadata
+from linkwork.foundation.paths import as_path
 
 __all__ = ["Verification", "verify_store"]
 
@@ -49,7 +50,7 @@ def verify_store(store: Path | str) -> Verification:
     InputError
         If it is not the store of a study.
     """
-    path = Path(store)
+    path = as_path(store)
     check_is_store(path)
     sound, damaged = read_entries(path)
     return Verification(sound=len(sound), metadata=damaged_metadata(path), chunks=damaged)

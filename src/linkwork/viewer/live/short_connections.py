@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import asyncio
 from collections import OrderedDict
-from typing import cast
+from typing import ClassVar, cast
 
-from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.http.h11_impl import H11Protocol  # noqa: TID253 - loaded by the server
 
 __all__ = ["PATIENCE", "ShortConnection"]
 
@@ -23,7 +23,7 @@ class ShortConnection(H11Protocol):
     """Requests for pages over one connection, which becomes that of a page or is closed."""
 
     #: Open connections, oldest first.
-    _open: OrderedDict[ShortConnection, asyncio.Transport] = OrderedDict()
+    _open: ClassVar[OrderedDict[ShortConnection, asyncio.Transport]] = OrderedDict()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Close the oldest connections beyond the largest number, and this one after a while."""
