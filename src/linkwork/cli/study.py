@@ -82,9 +82,9 @@ def study(
             raise InputError(
                 "--verify reads a store and nothing else:\n    linkwork study out.zarr --verify"
             )
-        found = verify_store(plan)
-        _print_verification(found, plan, as_json)
-        context.exit(0 if found.intact else 1)
+        compared = verify_store(plan)
+        _print_verification(compared, plan, as_json)
+        context.exit(0 if compared.intact else 1)
     if plan is None or output is None:
         raise InputError(
             "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"

@@ -19,8 +19,6 @@ from linkwork.foundation.errors import (
     InputError,
     MechanismError,
     Problem,
-    UnknownNameError,
-    choices,
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
@@ -96,8 +94,9 @@ class Description:
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        if not isinstance(self.angle, AngleUnit):
-            set_(self, "angle", _angle_unit(self.angle, self.name))
+        given: object = self.angle
+        if not isinstance(given, AngleUnit):
+            set_(self, "angle", _angle_unit(given, self.name))
         if isinstance(self.inputs, Input):
             set_(self, "inputs", (self.inputs,))
         check_field_types(self)
@@ -114,25 +113,6 @@ class Description:
     def numbers(self) -> Numbers:
         """All named dimensions as numbers, with evaluation of further formulas."""
         return Numbers(self.dimensions, self.angle)
-
-    def with_dimensions(self, changes: Mapping[str, Number]) -> Self:
-        """A copy with some dimensions replaced.
-
-        Raises
-        ------
-        UnknownNameError
-            If a name is not among the dimensions.
-        """
-        known = {canonical(name): name for name in self.dimensions}
-        dimensions = dict(self.dimensions)
-        for name, number in changes.items():
-            if canonical(name) not in known:
-                raise UnknownNameError(
-                    f'"{name}" is not a dimension of {self.name} '
-                    f"{choices('dimensions', self.dimensions, name)}"
-                )
-            dimensions[known[canonical(name)]] = number
-        return replace(self, dimensions=dimensions)
 
     def with_range(
         self, start: Number | None = None, stop: Number | None = None, step: Number | None = None
@@ -237,7 +217,8 @@ def _angle_unit(given: object, name: str) -> AngleUnit:
         return AngleUnit(given)
     except ValueError:
         known = " or ".join(f'"{unit.value}"' for unit in AngleUnit)
-        problem = Problem(key=("angle",), message=f"must be {known}, got {as_told(given)}")
+        told = f'"{given}"' if isinstance(given, str) else as_told(given)
+        problem = Problem(key=("angle",), message=f"must be {known}, got {told}")
         raise MechanismError([problem], f'mechanism "{name}"') from None
 
 

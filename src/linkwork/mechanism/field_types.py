@@ -42,7 +42,7 @@ def check_field_types(description: Any) -> None:
             continue
         name, given = field.name, getattr(description, field.name)
         if isinstance(field.default, Mapping):
-            _check_mapping(name, given)
+            _check_mapping(name, str(field.type), given)
         elif isinstance(field.default, tuple):
             if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
                 raise _wrong(name, "a list", given)
@@ -64,22 +64,23 @@ def check_entries(name: str, kind: type, given: Iterable[Any]) -> None:
             raise _wrong(f"{name}[{k}]", f"a lw.{kind.__name__}(…)", entry)
 
 
-def _check_mapping(name: str, given: Any) -> None:
-    wanted = "texts" if name in _TEXTS else _LISTS.get(name, "values")
+def _check_mapping(name: str, kind: str, given: Any) -> None:
+    """``kind``: the type of the field as written: ``Mapping[str, …]``."""
+    lists, texts = kind.startswith("Mapping[str, tuple"), kind == "Mapping[str, str]"
+    wanted = _ENTRIES.get(name, "values") if lists else "texts" if texts else "values"
     if not isinstance(given, Mapping):
         raise _wrong(name, f"a dictionary of names and {wanted}", given)
     for key, entry in given.items():
         if not isinstance(key, str):
             raise InputError(f"the names in {name} must be texts, got {as_told(key)}")
-        if name in _LISTS and (isinstance(entry, str) or not isinstance(entry, Iterable)):
+        if lists and (isinstance(entry, str) or not isinstance(entry, Iterable)):
             raise _wrong(f'{name}["{key}"]', f"a list of {wanted}", entry)
-        if name in _TEXTS and not isinstance(entry, str):
+        if texts and not isinstance(entry, str):
             raise _wrong(f'{name}["{key}"]', "a text", entry)
 
 
-#: Mappings with lists as entries, and with texts.
-_LISTS = {"points": "coordinates", "links": "points"}
-_TEXTS = ("loops", "equations", "outputs")
+#: What the lists in a mapping contain.
+_ENTRIES = {"points": "coordinates", "links": "points"}
 
 
 def _wrong(name: str, wanted: str, given: Any) -> InputError:

@@ -153,9 +153,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
             missing = [name for name in names if name not in linkage.points]
             if missing:
                 problems.add(key, _no_point(linkage, missing[0]))
-            elif misspelt:
-                continue
-            elif not set.intersection(*(links_at.get(name, set()) for name in names)):
+            elif not (misspelt or set.intersection(*(links_at[name] for name in names))):
                 what = "a distance" if count == 2 else "an angle"
                 problems.add(
                     key, f"no link carries {' and '.join(names)}: {what} between links varies"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
@@ -143,12 +143,12 @@ def _rows_on_branch(branch: CurveBranch, asked: Asked, parameter: int, free: boo
     With a freely turning input a row is met once in every turn.
     """
     low, high = branch.range(parameter)
-    row = np.arange(len(asked.t))
-    turns = np.zeros(len(row))
+    row: IndexArray = np.arange(len(asked.t))
+    turns: Array = np.zeros(len(row))
     if free:
         first = np.ceil((low - asked.t) / FULL_TURN)
         most = int(np.max(np.floor((high - asked.t) / FULL_TURN) - first)) + 1
-        turns = (first[:, None] + np.arange(max(most, 1))).ravel()
+        turns = (first[:, None] + np.arange(float(max(most, 1)))).ravel()
         row = np.repeat(row, max(most, 1))
     t = asked.t[row] + turns * FULL_TURN
     inside = np.flatnonzero((t >= low) & (t <= high))

@@ -455,10 +455,11 @@ def test_every_server_has_its_own_token_and_port(served: Served, bench: Workbenc
 # The command
 
 
-def begun(path: Path, *options: str) -> tuple[subprocess.Popen[str], str]:
+def begun(path: Path | str, cwd: Path | None = None) -> tuple[subprocess.Popen[str], str]:
     """The command as a process, and the address that it prints."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "linkwork", "view", str(path), "--no-browser", *options],
+        [sys.executable, "-m", "linkwork", "view", str(path), "--no-browser"],
+        cwd=cwd,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -529,3 +530,29 @@ def test_without_its_packages_the_command_says_what_to_install(path: Path) -> No
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 2
     assert 'pip install "linkwork[view]"' in " ".join(done.stderr.split())
+
+
+def test_a_mechanism_of_the_library_is_opened_and_saved_under_its_name(tmp_path: Path) -> None:
+    process, address = begun("four-bar", cwd=tmp_path)
+    server: Any = _AsPrinted(address)
+    workbench: Any = None
+    with Served(server, workbench, tmp_path / "four-bar.toml").connect() as page:
+        assert told(page, "motion_found")["certified"] == 361
+        assert list(tmp_path.iterdir()) == []
+        ask(page, "reload")
+        ask(page, "set_number", name="O2 A", value=42)
+        told(page, "motion_found")
+        ask(page, "save")
+        state = told(page, "file_state")
+        while state["unsaved"]:
+            state = told(page, "file_state")
+        os.kill(process.pid, signal.SIGINT)
+        process.communicate(timeout=60)
+    assert [file.name for file in tmp_path.iterdir()] == ["four-bar.toml"]
+    assert '"O2 A"  = 42' in (tmp_path / "four-bar.toml").read_text(encoding="utf-8")
+    words = [sys.executable, "-m", "linkwork", "view", "--no-browser", "four-bar"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert 'there is a file "four-bar.toml" already: to open it, linkwork view four-bar.toml' in (
+        done.stderr.replace("\n  ", " ")
+    )

@@ -114,7 +114,7 @@ def run_study(
                 for k, part in parts:
                     target.write(k, part)
                     tell()
-        repaired = (*target.repaired, *target.damaged)
+        repaired: tuple[int | str, ...] = (*target.repaired, *target.damaged)
     return replace(summary_of(store), repaired=repaired)
 
 

@@ -250,14 +250,16 @@ def _is_own(parts: Sequence[str], arrays: Container[str]) -> bool:
 def _check_same(study: Study, path: Path) -> None:
     """Reject the store of another study."""
     here = _as_stored(study.identity)
-    known = Metadata.read(path)
-    attributes = None if known is not None else _read_attributes(path)
-    if known is None and attributes is None:
+    known, attributes = Metadata.read(path), _read_attributes(path)
+    if known is not None:
+        there = known.identity
+    elif attributes is not None:
+        there = attributes[_IDENTITY]
+    else:
         raise InputError(
             f'"{path}" is damaged beyond knowing its study: start over with --fresh, '
             "which deletes it, or choose another store"
         )
-    there = known.identity if known is not None else attributes[_IDENTITY]
     if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
