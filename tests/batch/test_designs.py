@@ -313,7 +313,7 @@ def test_arrays_of_no_use_are_refused(asked: dict[str, Any], told: str) -> None:
 
 def test_a_design_by_itself_is_an_ordinary_mechanism() -> None:
     designs = designs_of(_four_bar(), {"a": [38.0, -1.0]})
-    assert designs.description(0) == _four_bar().description.with_dimensions({"a": 38.0})
+    assert designs.description(0) == _four_bar().with_dimensions(a=38.0).description
     assert lw.Mechanism(designs.description(0)).solve(at=60).status.ok
     with pytest.raises(MechanismError):
         designs.design(1)

@@ -1,4 +1,4 @@
-"""A large study, its memory, and what becomes of it when it is killed ten times on the way."""
+"""A large study, its memory, and what becomes of it when it is killed and bytes flip."""
 
 from __future__ import annotations
 
@@ -8,19 +8,22 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
+from linkwork.batch.study import verify_store
 from tests.batch.study.plans import contents
 
 __all__ = ["study_campaign"]
 
 _ROOT = Path(__file__).resolve().parents[2]
-_KILLS = 10
+_KILLS = 20
+_FLIPS = 100  # bytes
 _MOST_MEMORY = 1 << 30  # bytes of the process and its workers together
 _SEED = 31
-_CHUNKS = 100  # or more: ten kills leave something to do
+_CHUNKS = 100  # or more: twenty kills leave something to do
 _LARGEST_CHUNK = 8192
 
 _PLAN = """\
@@ -62,6 +65,7 @@ def study_campaign(count: int) -> tuple[Counter[str], list[str]]:
         _killed(folder, begun, seconds, counts, false)
         if contents(folder / "whole.zarr") != contents(folder / "killed.zarr"):
             false.append("the study that was killed is not the one that was not")
+        _flipped(folder, counts, false)
     counts["designs"] = count
     return counts, false
 
@@ -120,6 +124,36 @@ def _killed(
     counts["chunks before the last run"] = _chunks(store)
     if _started(folder, store.name).wait():
         false.append("the study that was killed does not go on")
+
+
+def _flipped(folder: Path, counts: Counter[str], false: list[str]) -> None:
+    """Change random bytes of the whole study and let the command repair it."""
+    rng = np.random.default_rng(_SEED)
+    store, wanted = folder / "whole.zarr", contents(folder / "whole.zarr")
+    files = sorted(path for path, data in wanted.items() if data)
+    changed = set()
+    for _ in range(_FLIPS):
+        path = files[int(rng.integers(len(files)))]
+        data = bytearray((store / path).read_bytes())
+        data[int(rng.integers(len(data)))] ^= int(rng.integers(1, 256))
+        (store / path).write_bytes(data)
+        changed.add(path)
+    found = verify_store(store)
+    named = {*found.metadata, *(name for names in found.chunks.values() for name in names)}
+    # the files of a chunk are not looked at where its entry is damaged itself
+    silent = {path for path in changed - named if not _is_hidden(path, found.chunks)}
+    counts["files with flipped bytes"] = len(changed)
+    counts["damaged chunks"] = len(found.chunks)
+    if silent or not named <= changed:
+        false.append(f"flipped bytes were not found in {sorted(silent)}, or found elsewhere")
+    if _started(folder, store.name).wait() or contents(store) != wanted:
+        false.append("the study with flipped bytes was not repaired")
+
+
+def _is_hidden(path: str, chunks: Mapping[int, tuple[str, ...]]) -> bool:
+    parts = path.split("/")
+    chunk = int(parts[2]) if len(parts) > 2 and parts[1] == "c" else -1
+    return any(name.startswith("ledger/") for name in chunks.get(chunk, ()))
 
 
 def _chunks(store: Path) -> int:

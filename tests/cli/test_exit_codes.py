@@ -62,8 +62,8 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
             "  slider-crank.toml)\n",
         ),
         (
-            ("solve", "rapier-drive"),
-            'Error: there is no file "rapier-drive"; to copy the example of this name:\n'
+            ("solve", "rapier-drive.toml"),
+            'Error: there is no file "rapier-drive.toml"; to copy the example of this name:\n'
             "    linkwork examples rapier-drive -o rapier-drive.toml\n",
         ),
         (
@@ -94,15 +94,17 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("solve", "four-bar.toml", "--set", "b=3"),
-            'Error: "b" is not a dimension of Four-bar (dimensions: a)\n',
+            'Error: "b" is not a number of Four-bar that can vary (numbers: a, O2 A, A B, O4\n'
+            "  B, O2 O4, O2.x, O2.y, A.x, … 7 more)\n",
         ),
         (
             ("solve", "four-bar.toml", "--set", "a"),
-            "Error: --set a: write a dimension and its value, as in --set a2=260\n",
+            "Error: --set a: write the name of a number and its value, as in --set a2=260 or\n"
+            '  --set "O2 A=38"\n',
         ),
         (
             ("solve", "four-bar.toml", "--set", "a=1", "--set", "a=2"),
-            "Error: --set a=2: this dimension has a value already, 1.0\n",
+            "Error: --set a=2: this number has a value already, 1.0\n",
         ),
         (
             ("solve", "four-bar.toml", "--set", "a=-3"),

@@ -206,6 +206,20 @@ def test_every_command_that_reads_a_file_can_set_dimensions(run: Run, command: s
     assert run(command, "four-bar.toml", "--set", "b=41").exit_code == 2
 
 
+def test_set_replaces_every_number_that_a_family_varies(run: Run) -> None:
+    words = ("solve", "four-bar.toml", "--at", "0", "--json")
+    data = _json(run(*words, "--set", "O2 A=50", "--set", "A.x=30+3").stdout)
+    assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
+    assert run("solve", "four-bar.toml", "--set", "O2 A=50", "--set", "A O2=51").stderr == (
+        'Error: "A O2" has a value already: 50.0\n'
+    )
+
+
+def test_a_mechanism_of_the_library_needs_no_file(run: Run) -> None:
+    data = _json(run("solve", "four-bar", "--at", "60", "--json").stdout)
+    assert data["unknowns"]["rocker"] == pytest.approx(64.94348110579881)
+
+
 def test_set_finds_a_dimension_in_any_spelling(run: Run, folder: Path) -> None:
     text = (folder / "four-bar.toml").read_text(encoding="utf-8")
     renamed = text.replace("a = 40", '"ρ" = 40').replace('= "a"', '= "rho"')
@@ -213,7 +227,7 @@ def test_set_finds_a_dimension_in_any_spelling(run: Run, folder: Path) -> None:
     data = _json(run("solve", "rho.toml", "--at", "0", "--json", "--set", "rho=50").stdout)
     assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
     twice = run("solve", "rho.toml", "--set", "rho=50", "--set", "ρ=60")
-    assert twice.stderr == "Error: --set ρ=60: this dimension has a value already, 50.0\n"
+    assert twice.stderr == "Error: --set ρ=60: this number has a value already, 50.0\n"
 
 
 def test_at_takes_one_value_for_each_of_several_inputs(run: Run) -> None:

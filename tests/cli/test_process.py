@@ -140,7 +140,8 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
     start: Start, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
-    slow = ["sweep", "four-bar.toml", "--from", "0", "--to", "180000", "--step", "3"]  # 500 turns
+    # 500 turns of a motion that does not repeat itself
+    slow = ["sweep", "rolling-wheel", "--from", "0", "--to", "180000", "--step", "300"]
     assert b"sweeping  [" in _in_terminal(slow, terminal)
     assert b"sweeping" not in _in_terminal(["sweep", "four-bar.toml"], terminal)
     assert start(*slow).stderr == b""

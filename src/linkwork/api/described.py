@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
 from linkwork import equations as closure, motion, textfile
-from linkwork.foundation.errors import MechanismError
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.varied_number import numbers_named, with_numbers
 
 if TYPE_CHECKING:
     from linkwork.results.check import CheckReport
@@ -62,26 +65,41 @@ class DescribedMechanism:
         """The closure equations as symbols."""
         return self.model.equations
 
-    def with_dimensions(self, **changes: Number) -> Self:
-        """A copy with other values of named dimensions.
+    def with_dimensions(
+        self, changes: Mapping[str, Number] | None = None, /, **more: Number
+    ) -> Self:
+        """A copy with other values of dimensions, lengths and all other numbers of the description.
 
         Parameters
         ----------
-        **changes : number or formula
-            New values by name, in the unit of the file.
+        changes : Mapping[str, number or formula], optional
+            New values by name, in the unit of the file: the names that a family varies, as
+            ``"O2 A"``, ``"O4.x"`` or ``"s16.offset"``.
+        **more : number or formula
+            The same, for names that Python can write.
 
         Raises
         ------
         UnknownNameError
-            If a dimension does not exist.
+            If there is no such number.
+        InputError
+            If a number is given twice.
 
         Examples
         --------
         >>> import linkwork as lw
         >>> lw.example("crank-shaper").with_dimensions(r=50).description.dimensions["r"]
         50
+        >>> lw.example("four-bar").with_dimensions({"O2 A": 38}).description.lengths["O2 A"]
+        38
         """
-        return type(self)(self.description.with_dimensions(changes))
+        if changes is not None and not isinstance(changes, Mapping):
+            raise InputError(
+                'dimensions are given by name, as with_dimensions({"O2 A": 38}) or '
+                f"with_dimensions(r=50), got {as_told(changes)}"
+            )
+        numbers = numbers_named(self.description, [*(changes or {}).items(), *more.items()])
+        return type(self)(with_numbers(self.description, numbers))
 
     def changed(self, **parts: Any) -> Self:
         """A copy with other parts of the description.

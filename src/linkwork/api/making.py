@@ -7,6 +7,10 @@ from typing import Any
 
 from linkwork import textfile
 from linkwork.api.mechanism import Mechanism
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
+from linkwork.foundation.plain_numbers import as_told
+from linkwork.mechanism.field_types import made_of
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.textfile.library import example_text
@@ -40,7 +44,7 @@ def load(path: str | Path) -> Mechanism:
     ...     lw.load(path).name
     'Four-bar linkage, open'
     """
-    read = textfile.read_file(Path(path))
+    read = textfile.read_file(as_path(path))
     return Mechanism(read.description, read)
 
 
@@ -69,6 +73,8 @@ def loads(text: str, name: str = "text") -> Mechanism:
     >>> lw.loads(lw.example_text("four-bar")).name
     'Four-bar linkage, open'
     """
+    if not isinstance(text, str):
+        raise InputError(f"a mechanism file must be given as text, got {as_told(text)}")
     read = textfile.read_text(text, name)
     return Mechanism(read.description, read)
 
@@ -134,7 +140,7 @@ def linkage(**parts: Any) -> Mechanism:
     >>> round(bar.solve(at=60)["rocker"], 3)
     64.943
     """
-    return Mechanism(Linkage(**parts))
+    return Mechanism(made_of(Linkage, parts))
 
 
 def loops(**parts: Any) -> Mechanism:
@@ -167,7 +173,7 @@ def loops(**parts: Any) -> Mechanism:
     >>> round(bar.solve()["θ4"], 3)
     64.943
     """
-    return Mechanism(Loops(**parts))
+    return Mechanism(made_of(Loops, parts))
 
 
 def plain_equations(**parts: Any) -> Mechanism:
@@ -198,4 +204,4 @@ def plain_equations(**parts: Any) -> Mechanism:
     >>> round(position["x"], 9), round(position["y"], 9)
     (3.0, 4.0)
     """
-    return Mechanism(PlainEquations(**parts))
+    return Mechanism(made_of(PlainEquations, parts))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from linkwork import drawing, export, motion, textfile, viewer
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
 from linkwork.results.force import Force
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ class Mechanism(SolvableMechanism):
         scene = self.scene(
             at, configuration=configuration, vectors=vectors, traces=traces, options=options
         )
-        drawing.write(scene, Path(path), theme=colours)
+        drawing.write(scene, as_path(path), theme=colours)
 
     def animate(
         self,
@@ -196,7 +197,7 @@ class Mechanism(SolvableMechanism):
             forces=forces,
             progress=progress,
         )
-        Path(path).write_bytes(content)
+        as_path(path).write_bytes(content)
 
     def widget(
         self,
@@ -276,11 +277,11 @@ class Mechanism(SolvableMechanism):
         MissingPackageError
             If XlsxWriter is not installed.
         """
-        if Path(path).suffix.lower() != ".xlsx":
+        if as_path(path).suffix.lower() != ".xlsx":
             raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
         cycle = self.sweep() if motion is None else motion
         written = export.workbook_of(self.model, cycle)
-        Path(path).write_bytes(written.content)
+        as_path(path).write_bytes(written.content)
         return written.notices
 
     def save(self, path: str | Path) -> None:
@@ -302,4 +303,4 @@ class Mechanism(SolvableMechanism):
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     lw.example("four-bar").save(pathlib.Path(folder) / "bar.toml")
         """
-        textfile.save(self.description, Path(path))
+        textfile.save(self.description, as_path(path))

@@ -5,18 +5,19 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from linkwork.api import Mechanism, examples
+from linkwork.api import Mechanism, example_text, examples
 from linkwork.cli.options import number_or_formula
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.dimensions import Number
-from linkwork.textfile.reader import ReadFile, read_bytes, read_file
+from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
 
 __all__ = ["read_mechanism"]
 
 
 def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
-    """The mechanism of FILE (``-``: standard input) with the dimensions of ``--set``.
+    """The mechanism of FILE (``-``: standard input; a name of the library) with the numbers of
+    ``--set``.
 
     Raises
     ------
@@ -28,7 +29,7 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
         return Mechanism(read.description, read)
     try:
         # without the file, whose lines no longer match these numbers
-        return Mechanism(read.description.with_dimensions(_dimensions(changes)))
+        return Mechanism(read.description).with_dimensions(_dimensions(changes))
     except MechanismError as error:
         located = read.located(error)
         where = f"{located.where} with {', '.join(changes)}"
@@ -41,6 +42,8 @@ def _read(file: str) -> ReadFile:
             raise InputError("there is no standard input to read a mechanism from")
         return read_bytes(sys.stdin.buffer.read())
     path = Path(file)
+    if not path.exists() and file in examples():
+        return read_text(example_text(file), file)
     if not path.exists() and path.parent == Path() and path.stem in examples():
         raise InputError(
             f'there is no file "{file}"; to copy the example of this name:\n'
@@ -53,10 +56,13 @@ def _dimensions(changes: tuple[str, ...]) -> dict[str, Number]:
     found: dict[str, Number] = {}
     for text in changes:
         name, equals, number = text.partition("=")
-        name = canonical(name.strip())
+        name = " ".join(canonical(name).split())
         if not (name and equals and number.strip()):
-            raise InputError(f"--set {text}: write a dimension and its value, as in --set a2=260")
+            raise InputError(
+                f"--set {text}: write the name of a number and its value, as in --set a2=260 or "
+                '--set "O2 A=38"'
+            )
         if name in found:
-            raise InputError(f"--set {text}: this dimension has a value already, {found[name]}")
+            raise InputError(f"--set {text}: this number has a value already, {found[name]}")
         found[name] = number_or_formula(number)
     return found

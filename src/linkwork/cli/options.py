@@ -82,7 +82,7 @@ set_option: Decorator = click.option(
     "changes",
     metavar="NAME=VALUE",
     multiple=True,
-    help="Replace a dimension of the file; may be repeated.",
+    help="Replace a dimension, length or other number; may be repeated.",
 )
 
 at_option: Decorator = click.option(

@@ -10,10 +10,19 @@ from time import monotonic
 
 import click
 
-from linkwork.batch.study import Progress, Study, Summary, read_plan, run_study, summary_of
+from linkwork.batch.study import (
+    Progress,
+    Study,
+    Summary,
+    Verification,
+    read_plan,
+    run_study,
+    summary_of,
+    verify_store,
+)
 from linkwork.batch.study.plan_file import read_plan_bytes
 from linkwork.cli.options import columns_option, debug_option, json_option
-from linkwork.cli.study_page import progress_line, summary_lines
+from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
 from linkwork.cli.terminal import print_json, print_lines, wrapped
 from linkwork.foundation.errors import InputError
 
@@ -32,10 +41,15 @@ _PATIENCE = 1.0  # seconds before the progress line appears
 @click.option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster: tcp://host:8786.")
 @click.option("--fresh", is_flag=True, help="Delete the study in STORE and start over.")
 @click.option("--summary", metavar="STORE", help="Only print the summary of a store.")
+@click.option(
+    "--verify", is_flag=True, help="Only compare the files of a store with their checksums."
+)
 @click.option("--quiet", is_flag=True, help="Do not show the progress line.")
 @json_option
 @debug_option
+@click.pass_context
 def study(
+    context: click.Context,
     plan: str | None,
     output: str | None,
     names: tuple[str, ...],
@@ -43,6 +57,7 @@ def study(
     scheduler: str | None,
     fresh: bool,
     summary: str | None,
+    verify: bool,
     quiet: bool,
     as_json: bool,
 ) -> None:
@@ -55,12 +70,21 @@ def study(
       linkwork study plan.toml -o out.zarr
       linkwork study plan.toml -o out.zarr --scheduler tcp://host:8786
       linkwork study --summary out.zarr
+      linkwork study out.zarr --verify
     """
     if summary is not None:
         if plan is not None or output is not None:
             raise InputError("--summary reads a store: leave out the plan and -o")
         _print(summary_of(summary), summary, as_json)
         return
+    if verify:
+        if plan is None or output is not None:
+            raise InputError(
+                "--verify reads a store and nothing else:\n    linkwork study out.zarr --verify"
+            )
+        compared = verify_store(plan)
+        _print_verification(compared, plan, as_json)
+        context.exit(0 if compared.intact else 1)
     if plan is None or output is None:
         raise InputError(
             "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
@@ -95,6 +119,13 @@ def _print(found: Summary, store: str, as_json: bool) -> None:
         print_json(found.to_dict())
     else:
         print_lines(summary_lines(found, store))
+
+
+def _print_verification(found: Verification, store: str, as_json: bool) -> None:
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        print_lines(verification_lines(found, store))
 
 
 def _how_to_go_on(store: str) -> list[str]:

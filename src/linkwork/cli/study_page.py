@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from linkwork.batch.study import OutputSummary, Progress, Summary
+from linkwork.batch.study import OutputSummary, Progress, Summary, Verification
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import WIDTH, Column, lengths, significant, table_lines
 
-__all__ = ["progress_line", "summary_lines"]
+__all__ = ["progress_line", "summary_lines", "verification_lines"]
 
 _DIGITS = 6
 _MOST_PROBLEMS = 5
@@ -36,7 +36,7 @@ def summary_lines(found: Summary, store: str) -> list[str]:
     """The page of a study."""
     head = f"{found.mechanism}: {found.designs:,} designs × {found.inputs:,} inputs in {store}"
     lines = [*title_lines(found.name), *sentence(str, head)]
-    lines += fields(_counts(found), dict.fromkeys(("not computed", "not built"), bad))
+    lines += fields(_counts(found), dict.fromkeys(("not computed", "not built", "damaged"), bad))
     lines += ["", *_rows(found)]
     outputs = [output for output in found.outputs if output.count]
     if outputs:
@@ -51,6 +51,10 @@ def _counts(found: Summary) -> Iterator[tuple[str, str]]:
     missing = found.designs - found.computed
     if missing:
         yield "not computed", f"{missing:,}: the study is not finished"
+    if found.damaged:
+        yield "damaged", f"{_chunks(found.damaged)}: repeat the command of the study"
+    if found.repaired:
+        yield "repaired", f"{_chunks(found.repaired)}, which had changed since"
     yield "computed", f"{found.computed:,}"
     unbuilt = found.computed - found.built
     if unbuilt:
@@ -60,6 +64,32 @@ def _counts(found: Summary) -> Iterator[tuple[str, str]]:
     for name, (condition, count) in found.filters.items():
         yield name, f"{_of(count, found.computed)}  {condition}"
     yield "passed", _of(found.passed, found.computed)
+
+
+def _chunks(which: tuple[int | str, ...]) -> str:
+    """Names of chunks and files, the first few of them."""
+    named = [x if isinstance(x, str) else f"chunk {x}" for x in which[:_MOST_PROBLEMS]]
+    more = len(which) - len(named)
+    return ", ".join(named) + (f" and {more:,} more" if more else "")
+
+
+def verification_lines(found: Verification, store: str) -> list[str]:
+    """The page of a comparison of a store with its checksums."""
+    if found.intact:
+        return [f"All {found.sound:,} chunks of {store} are as they were written."]
+    damaged = {"metadata": found.metadata} if found.metadata else {}
+    damaged |= {f"chunk {chunk}": files for chunk, files in found.chunks.items()}
+    names = dict.fromkeys(damaged, bad)
+    pairs = ((name, _chunks(files)) for name, files in damaged.items())
+    return [
+        *title_lines(f"{store} is damaged"),
+        *fields(pairs, names),
+        *sentence(
+            str,
+            f"{found.sound:,} chunks are as they were written. To repair the others, repeat the "
+            "command of the study.",
+        ),
+    ]
 
 
 def _of(count: int, total: int) -> str:

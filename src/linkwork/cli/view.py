@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import threading
 import webbrowser
+from pathlib import Path
 
 import click
 
-from linkwork.api import loads
+from linkwork.api import example_text, examples, loads
 from linkwork.cli.options import debug_option, file_argument
 from linkwork.cli.terminal import print_lines, title_lines
 from linkwork.foundation.errors import InputError
@@ -16,6 +17,19 @@ from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["view"]
+
+
+def _opened(file: str) -> MechanismFile:
+    """A file, or a mechanism of the library as a file that is created when it is saved."""
+    if Path(file).exists() or file not in examples():
+        return MechanismFile(file)
+    path = Path(f"{file}.toml")
+    if path.exists():
+        raise InputError(
+            f'there is a file "{path}" already: to open it, linkwork view {path}; to open the '
+            "library's, go to another folder"
+        )
+    return MechanismFile(path, example_text(file))
 
 
 @click.command
@@ -34,6 +48,7 @@ def view(file: str, port: int, no_browser: bool) -> None:
 
     \b
       linkwork view rapier.toml
+      linkwork view four-bar      (of the library: saved as four-bar.toml)
       linkwork view rapier.toml --port 8123 --no-browser
 
     Only programs on this machine that know the printed address can open the
@@ -41,13 +56,14 @@ def view(file: str, port: int, no_browser: bool) -> None:
     """
     if file == "-":
         raise InputError("standard input cannot be edited and saved: give the name of a file")
-    workbench = Workbench(MechanismFile(file), loads)
+    opened = _opened(file)
+    workbench = Workbench(opened, loads)
     server = LiveServer(workbench, port)
 
     def tell() -> None:
         print_lines(
             [
-                *title_lines(f"{file} is open at"),
+                *title_lines(f"{opened.name} is open at"),
                 f"  {server.address}",
                 "Anyone who knows this address can edit the file. Stop with Ctrl-C.",
             ]

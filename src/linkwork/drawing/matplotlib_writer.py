@@ -32,6 +32,7 @@ from linkwork.drawing.scene import (
 from linkwork.drawing.sheet import TALLEST, Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,7 +79,7 @@ def write(
     MissingPackageError
         If Matplotlib is not installed.
     """
-    target = Path(path)
+    target = as_path(path)
     kind = target.suffix.lower().removeprefix(".")
     if kind not in FORMATS:
         known = ", ".join(f".{name}" for name in FORMATS)

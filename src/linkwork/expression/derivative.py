@@ -17,7 +17,7 @@ def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
     ValueError
         For ``min`` and ``max``, which have no derivative in one formula.
     """
-    if not any(used.name == name for used in names_in(node)):
+    if not _contains(node, name):
         return _ZERO
     match node:
         case Name():
@@ -49,9 +49,13 @@ def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
             return _ZERO
 
 
+def _contains(node: Node, name: str) -> bool:
+    return any(used.name == name for used in names_in(node))
+
+
 def _power(node: Binary, name: str, radians: float) -> Node:
     base, exponent = node.left, node.right
-    if derivative(exponent, name, radians) == _ZERO:
+    if not _contains(exponent, name):
         if isinstance(exponent, Number):
             lower: Node = Number(exponent.value - 1.0)
             reduced = base if lower == _ONE else Binary("^", base, lower)

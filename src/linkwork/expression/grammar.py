@@ -42,6 +42,11 @@ _OPERATORS = {
     "/": "/", "^": "^", "(": "(", ")": ")", ",": ",", "=": "=",
 }  # fmt: skip
 _LONGEST = 10_000  # characters
+#: Units that are written behind a number by mistake, and the key that sets them.
+_UNITS = {
+    **dict.fromkeys(("mm", "cm", "dm", "m", "km", "in", "inch", "ft", "µm"), "length"),
+    **dict.fromkeys(("deg", "rad"), "angle"),
+}
 _MOST_TOKENS = 400  # a sum of n terms has depth n: keeps recursion below Python's limit
 _DEEPEST = 60
 
@@ -235,6 +240,12 @@ class _Reader:
         if not math.isfinite(value):
             raise self.error(f"{token.text} is too large", token.column)
         follower = self.token
+        if follower.kind == "name" and follower.text in _UNITS:
+            raise self.error(
+                f"numbers carry no unit here: write {token.text} and set "
+                f'{_UNITS[follower.text]} = "{follower.text}" for the whole file',
+                follower.column,
+            )
         if follower.kind == "name":
             raise self.error(
                 f'write the multiplication sign: "{token.text}*{follower.text}"', follower.column

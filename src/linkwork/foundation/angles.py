@@ -12,6 +12,11 @@ from linkwork.foundation.arrays import Array, BoolArray
 __all__ = ["FULL_TURN", "AngleUnit", "within_half_a_turn"]
 
 FULL_TURN = 2.0 * math.pi
+# 2π in three parts; products of the first two with 26-bit numbers are exact
+_PARTS_OF_A_TURN = tuple(
+    map(float.fromhex, ("0x1.921fb5p+2", "0x1.110b46p-24", "0x1.1a62633145c06p-52"))
+)
+_HALF_A_MANTISSA = 2.0**26
 
 
 def within_half_a_turn(gap: Array, turns: BoolArray) -> Array:
@@ -60,6 +65,18 @@ class AngleUnit(Enum):
     def turn(self) -> float:
         """One full turn in this unit."""
         return 360.0 if self is AngleUnit.DEGREE else FULL_TURN
+
+    def without_turns(self, angles: Array, turns: Array) -> Array:
+        """Angles (B,) less whole numbers of turns (B,), correct to the rounding of the result.
+
+        2π is no float: a million rounded turns would move an angle by 2e-10 rad.
+        """
+        if self is AngleUnit.DEGREE:
+            return angles - self.turn * turns
+        lower = np.fmod(turns, _HALF_A_MANTISSA)
+        for part in _PARTS_OF_A_TURN:
+            angles = (angles - (turns - lower) * part) - lower * part
+        return angles
 
     @property
     def sign(self) -> str:

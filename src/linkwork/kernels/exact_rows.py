@@ -2,13 +2,13 @@
 
 Double precision loses a unit or two of rounding per term, which is enough to move a dead point
 that lies close to a change point: there an error δ of a closure shifts the input by δ / |sin θ|.
-Numbers are taken as the exact fractions that floats are, angles as multiples of 2^-B.
+All numbers are multiples of 2^-B.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from fractions import Fraction
 from functools import cache
 
 import numpy as np
@@ -24,26 +24,41 @@ _ONE = 1 << _BITS
 
 def exact_rows(rows: PhasorRows, v: Array) -> ComplexArray:
     """F of all rows at one position v (N,), each part rounded once, (R,)."""
-    values = [Fraction(x) for x in v.tolist()]
-    phases = [Fraction(0)] * len(rows.row)
-    for t, k, w in zip(rows.phase_term, rows.phase_variable, rows.phase_weight, strict=True):
-        phases[t] += Fraction(float(w)) * values[k]
-    sums = [[Fraction(0), Fraction(0)] for _ in range(rows.rows)]
-    for t, phase in enumerate(phases):
-        c, s = (Fraction(part, _ONE) for part in _cosine_and_sine(round(phase * _ONE)))
-        factor = rows.coefficient[t]
-        re, im = Fraction(float(factor.real)), Fraction(float(factor.imag))
-        length = values[rows.length[t]] if rows.length[t] >= 0 else Fraction(1)
-        row = sums[rows.row[t]]
-        row[0] += length * (re * c - im * s)
-        row[1] += length * (re * s + im * c)
-    return np.array([complex(float(re), float(im)) for re, im in sums], dtype=complex)
+    values = [_whole(x) for x in v.tolist()]
+    phases = [0] * len(rows.row)
+    lists = (x.tolist() for x in (rows.phase_term, rows.phase_variable, rows.phase_weight))
+    for t, k, w in zip(*lists, strict=True):
+        phases[t] += _product(_whole(w), values[k])
+    sums = [[0, 0] for _ in range(rows.rows)]
+    lists = (x.tolist() for x in (rows.row, rows.coefficient, rows.length))
+    for phase, row, factor, length in zip(phases, *lists, strict=True):
+        c, s = _cosine_and_sine(phase)
+        re, im = _whole(factor.real), _whole(factor.imag)
+        along, across = _product(re, c) - _product(im, s), _product(re, s) + _product(im, c)
+        if length >= 0:
+            along, across = _product(values[length], along), _product(values[length], across)
+        sums[row][0] += along
+        sums[row][1] += across
+    return np.array([complex(_rounded(re), _rounded(im)) for re, im in sums], dtype=complex)
 
 
 def exact_line(constant: float, weights: Sequence[float], values: Sequence[float]) -> float:
     """Σ w v + constant, rounded once."""
     pairs = zip(weights, values, strict=True)
-    return float(sum((Fraction(w) * Fraction(x) for w, x in pairs), Fraction(float(constant))))
+    return _rounded(_whole(constant) + sum(_product(_whole(w), _whole(x)) for w, x in pairs if w))
+
+
+def _whole(x: float) -> int:
+    """x · 2^B."""
+    return int(math.ldexp(x, _BITS))
+
+
+def _product(a: int, b: int) -> int:
+    return (a * b) >> _BITS
+
+
+def _rounded(x: int) -> float:
+    return math.ldexp(float(x), -_BITS)
 
 
 @cache
@@ -72,7 +87,7 @@ def _cosine_and_sine(angle: int) -> tuple[int, int]:
     c, s, term, k = _ONE, 0, _ONE, 0
     while term:
         k += 1
-        term = term * rest // (k << _BITS)
+        term = _product(term, rest) // k
         if -1 <= term <= 0:
             break
         sign = -1 if k % 4 in (2, 3) else 1

@@ -19,13 +19,13 @@ from linkwork.foundation.errors import (
     InputError,
     MechanismError,
     Problem,
-    UnknownNameError,
-    choices,
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.field_types import check_field_types
 from linkwork.mechanism.speed import speed_per_second
 
 __all__ = ["Description", "Key", "Problems", "declared"]
@@ -94,10 +94,12 @@ class Description:
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        if isinstance(self.angle, str):
-            set_(self, "angle", _angle_unit(self.angle, self.name))
+        given: object = self.angle
+        if not isinstance(given, AngleUnit):
+            set_(self, "angle", _angle_unit(given, self.name))
         if isinstance(self.inputs, Input):
             set_(self, "inputs", (self.inputs,))
+        check_field_types(self)
         if not all(isinstance(which, Input) for which in self.inputs):
             raise InputError(
                 'inputs must be Input objects: lw.Input(link="crank"), or a list of them'
@@ -111,25 +113,6 @@ class Description:
     def numbers(self) -> Numbers:
         """All named dimensions as numbers, with evaluation of further formulas."""
         return Numbers(self.dimensions, self.angle)
-
-    def with_dimensions(self, changes: Mapping[str, Number]) -> Self:
-        """A copy with some dimensions replaced.
-
-        Raises
-        ------
-        UnknownNameError
-            If a name is not among the dimensions.
-        """
-        known = {canonical(name): name for name in self.dimensions}
-        dimensions = dict(self.dimensions)
-        for name, number in changes.items():
-            if canonical(name) not in known:
-                raise UnknownNameError(
-                    f'"{name}" is not a dimension of {self.name} '
-                    f"{choices('dimensions', self.dimensions, name)}"
-                )
-            dimensions[known[canonical(name)]] = number
-        return replace(self, dimensions=dimensions)
 
     def with_range(
         self, start: Number | None = None, stop: Number | None = None, step: Number | None = None
@@ -229,12 +212,13 @@ def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:
     return (((table, name), name) for name in names)
 
 
-def _angle_unit(text: str, name: str) -> AngleUnit:
+def _angle_unit(given: object, name: str) -> AngleUnit:
     try:
-        return AngleUnit(text)
+        return AngleUnit(given)
     except ValueError:
         known = " or ".join(f'"{unit.value}"' for unit in AngleUnit)
-        problem = Problem(key=("angle",), message=f'must be {known}, got "{text}"')
+        told = f'"{given}"' if isinstance(given, str) else as_told(given)
+        problem = Problem(key=("angle",), message=f"must be {known}, got {told}")
         raise MechanismError([problem], f'mechanism "{name}"') from None
 
 

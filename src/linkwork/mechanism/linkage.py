@@ -10,6 +10,7 @@ from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.bodies import Shapes
 from linkwork.mechanism.description import Problems
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.link_shapes import link_shapes
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.part.index import PARTS, JoinedBodies
@@ -43,6 +44,8 @@ class Linkage(JoinedBodies):
     def __post_init__(self) -> None:
         super().__post_init__()
         set_ = object.__setattr__
+        for table, kind in PARTS.items():
+            check_entries(table, kind, getattr(self, table))
         own = [name for part in self.parts if (name := getattr(part, "name", ""))]
         named = (*self.points, *self.links, *own)
         find_spelling = {canonical(name): name for name in named}

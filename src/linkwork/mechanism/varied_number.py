@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 
-__all__ = ["VariedNumber", "number_named", "varied_numbers", "with_numbers"]
+__all__ = [
+    "VariedNumber",
+    "number_named",
+    "numbers_named",
+    "varied_numbers",
+    "with_numbers",
+]
 
 
 @dataclass(frozen=True)
@@ -83,6 +89,27 @@ def number_named(description: Description, name: str) -> VariedNumber:
             f"{choices('numbers', names, name)}"
         )
     return found[wanted]
+
+
+def numbers_named(
+    description: Description, changes: Iterable[tuple[str, Number]]
+) -> dict[VariedNumber, Number]:
+    """New values by the numbers that their names mean.
+
+    Raises
+    ------
+    UnknownNameError
+        For a name of nothing that can vary.
+    InputError
+        If a number is given twice.
+    """
+    found: dict[VariedNumber, Number] = {}
+    for name, value in changes:
+        number = number_named(description, name)
+        if number in found:
+            raise InputError(f'"{name}" has a value already: {found[number]}')
+        found[number] = value
+    return found
 
 
 def _folded(name: str) -> str:

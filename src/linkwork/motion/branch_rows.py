@@ -17,6 +17,7 @@ from linkwork.motion.limits import BranchEnd, ends_of
 from linkwork.motion.proving import inputs_apart, prove_rows
 from linkwork.motion.rows_near_limits import fill_last_rows, fill_passed_rows
 from linkwork.motion.tracking import track_to
+from linkwork.motion.whole_turns import Lap, lap_of
 from linkwork.numerics.continuation.branch_tracking import (
     BOLD,
     Node,
@@ -52,13 +53,19 @@ class Asked:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BranchRows:
-    """The rows asked for, those that lie on the branch filled; the branch's track and its ends."""
+    """The rows asked for, those that lie on the branch filled; the branch's track and its ends.
+
+    ``placed`` (B,): where on the track each row lies, or laps earlier, NaN if nowhere. ``lap``: if
+    the motion repeats itself and laps were left out; ``lap_proved``: whether a lap leads back.
+    """
 
     rows: SolvedRows
     track: Track
     placed: Array
     ends: tuple[BranchEnd, ...]
     proved_to_ends: bool
+    lap: Lap | None = None
+    lap_proved: bool = False
 
     @property
     def here(self) -> BoolArray:
@@ -108,9 +115,43 @@ def rows_of_branch(
 ) -> BranchRows:
     """Follow the branch of ``anchor`` over the values asked for and solve those that lie on it.
 
-    The track is bold first; where that leaves rows unproved it is followed again with care. With a
-    ``passage`` that led to the anchor the branch is followed onwards only.
+    Many turns of a motion that repeats itself are followed once. With a ``passage`` that led to the
+    anchor the branch is followed onwards only.
     """
+    lap = lap_of(drive, anchor, asked.t) if passage is None else None
+    once = None if lap is None else _rows_of_laps(lap, asked, report, certify)
+    return once or _rows_followed(drive, anchor, asked, report, certify, passage)
+
+
+def _rows_of_laps(lap: Lap, asked: Asked, report: Report, certify: bool) -> BranchRows | None:
+    """The rows solved in the first lap; ``None`` if the branch ends there after all."""
+    drive = lap.drive
+    number = lap.number_of(asked.in_file_units[:, 0])
+    nearer = lap.nearer(asked.in_file_units[:, 0], number)
+    t = np.append(nearer * drive.unit, lap.end.t)  # the last row closes the lap
+    once = Asked(
+        t=t,
+        inputs=np.append(lap.intended(nearer), lap.end.t)[:, None],
+        in_file_units=np.append(nearer, np.nan)[:, None],
+    )
+    found = _rows_followed(drive, lap.begin, once, report, certify, None)
+    if found.ends:
+        return None
+    rows, closing = found.rows.take(slice(-1)), found.rows.take(slice(-1, None))
+    proved = lap.leads_back(closing)
+    rows = lap.after(rows, number, proved).with_columns(inputs=asked.in_file_units.copy())
+    return replace(found, rows=rows, placed=found.placed[:-1], lap=lap, lap_proved=proved)
+
+
+def _rows_followed(
+    drive: Drive,
+    anchor: Node,
+    asked: Asked,
+    report: Report,
+    certify: bool,
+    passage: Passage | None,
+) -> BranchRows:
+    """The track is bold first; where that leaves rows unproved it is followed again with care."""
     provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and provable else (None,)

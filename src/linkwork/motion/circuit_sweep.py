@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
@@ -143,13 +143,14 @@ def _rows_on_branch(branch: CurveBranch, asked: Asked, parameter: int, free: boo
     With a freely turning input a row is met once in every turn.
     """
     low, high = branch.range(parameter)
-    turns = np.zeros(1)
+    row: IndexArray = np.arange(len(asked.t))
+    turns: Array = np.zeros(len(row))
     if free:
-        first = np.ceil((low - asked.t.max()) / FULL_TURN)
-        last = np.floor((high - asked.t.min()) / FULL_TURN)
-        turns = np.arange(first, last + 1.0)
-    t = (asked.t[None, :] + turns[:, None] * FULL_TURN).ravel()
-    row = np.tile(np.arange(len(asked.t)), len(turns))
+        first = np.ceil((low - asked.t) / FULL_TURN)
+        most = int(np.max(np.floor((high - asked.t) / FULL_TURN) - first)) + 1
+        turns = (first[:, None] + np.arange(float(max(most, 1)))).ravel()
+        row = np.repeat(row, max(most, 1))
+    t = asked.t[row] + turns * FULL_TURN
     inside = np.flatnonzero((t >= low) & (t <= high))
     order = inside[np.argsort(branch.side * t[inside], kind="stable")]
     if len(order):  # 0 and 360 degrees are one row here

@@ -16,7 +16,7 @@ from linkwork.numerics.continuation.path_proof import prove_path
 from linkwork.numerics.proof.position_proof import rounding_of_inputs
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["inputs_apart", "prove_rows", "way_is_proved"]
+__all__ = ["inputs_apart", "prove_rows", "unproved", "way_is_proved"]
 
 _FAR_FROM_SINGULAR = 1e5  # condition up to which a track's nodes must be proved
 _TURN = 1e-9  # rad: an input this near to whole turns from the input asked for is the same one
@@ -43,10 +43,10 @@ def prove_rows(
         itself is proved up to both ends.
     """
     if not all(block.system.has_curvature_bound for block in solver.blocks):
-        return _unproved(rows, Certification.NO_BOUND), True
+        return unproved(rows, Certification.NO_BOUND), True
     found = np.flatnonzero(rows.status == Status.CONVERGED.code)
     if not len(found):
-        return _unproved(rows, Certification.NO_POSITION), True
+        return unproved(rows, Certification.NO_POSITION), True
     nodes = _nodes_around(track, rows.t[found])
     points, place = _path_points(solver, [track.nodes[k] for k in nodes], rows, asked, found)
     anchor = int(place[nodes.index(track.start)])
@@ -63,7 +63,7 @@ def prove_rows(
         ],
         default=Certification.MOTION_NOT_PROVED.code,
     )
-    proved = _unproved(rows, Certification.NO_POSITION).set(
+    proved = unproved(rows, Certification.NO_POSITION).set(
         found,
         certification=certification,
         radius=np.where(position, proof.position.radius[mine], np.nan),
@@ -72,7 +72,7 @@ def prove_rows(
     return proved, bool(joined[place[: len(nodes)]].all())
 
 
-def _unproved(rows: SolvedRows, why: Certification) -> SolvedRows:
+def unproved(rows: SolvedRows, why: Certification) -> SolvedRows:
     """The rows without proofs, all for one reason."""
     unknown = np.full(len(rows), np.nan)
     code = np.full(len(rows), why.code, dtype=np.int8)

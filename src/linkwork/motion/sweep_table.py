@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, insort
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -50,8 +51,8 @@ class SweepTable:
     windows : ((float, float), (float, float))
         Smallest and largest value of t that has a place in the table, and those that the sweep was
         asked for.
-    free : bool
-        Whether a row a whole turn away is the same position.
+    period : float
+        How far away rows are the same position, or infinity.
     """
 
     def __init__(
@@ -60,15 +61,18 @@ class SweepTable:
         asked: Asked,
         found: BranchRows,
         windows: tuple[tuple[float, float], tuple[float, float]],
-        free: bool,
+        period: float,
     ) -> None:
         self.drive, self.asked, self.rows = drive, asked, found.rows
         self.window, self.span = windows
-        self.free = free
+        self.period = period
         self._placed = found.placed.copy()
+        self._order = np.argsort(asked.t, kind="stable")
+        self._sorted = asked.t[self._order]
         self._ends: list[NamedEnd] = []
-        self._extra: list[SolvedRows] = []
-        self._extra_t: list[float] = []
+        self._replaced: dict[int, SolvedRows] = {}  # by the row of the table
+        self._between: dict[float, SolvedRows] = {}  # by t
+        self._between_t: list[float] = []  # sorted
 
     def not_straight(self, end: BranchEnd) -> IndexArray:
         """Rows beyond the end of a branch that are not there, or only whole turns around."""
@@ -103,16 +107,33 @@ class SweepTable:
         self.rows = self.rows.put(where, SolvedRows.blank(inputs, variables, status, why))
         self._placed[where] = np.nan
 
-    def places_of(self, t: float) -> list[float]:
-        """Where a value belongs in the table's range, whole turns apart too."""
+    def places_of(self, t: float) -> Array:
+        """Where a value belongs in the table's range, whole periods apart too, (P,).
+
+        Of many places between two rows only those next to the rows count.
+        """
         low, high = self.window
         slack = _slack_at(max(abs(low), abs(high)))
-        turns = np.zeros(1)
-        if self.free:
-            first = np.ceil((low - slack - t) / FULL_TURN)
-            turns = np.arange(first, np.floor((high + slack - t) / FULL_TURN) + 1.0)
-        here = t + turns * FULL_TURN
-        return [float(x) for x in here if low - slack <= x <= high + slack]
+        here = np.array([t])
+        if np.isfinite(self.period):
+            first = np.ceil((low - slack - t) / self.period)
+            last = np.floor((high + slack - t) / self.period)
+            if last - first < 2 * len(self._sorted):
+                number = np.arange(first, last + 1.0)
+            else:
+                below = np.floor((self._sorted - t) / self.period)
+                number = np.unique(np.concatenate([below, below + 1.0]))
+            here = t + number * self.period
+        return here[(here >= low - slack) & (here <= high + slack)]
+
+    def _beside(self, here: Array, apart: float) -> tuple[IndexArray, IndexArray]:
+        """The sorted rows below values of t (P,) and above them, -1 and B where there is none.
+
+        ``apart``: how far away at least, relative; negative for rows that may be there.
+        """
+        slack = apart * np.maximum(1.0, np.abs(here))
+        below = np.searchsorted(self._sorted, here - slack, side="left") - 1
+        return below, np.searchsorted(self._sorted, here + slack, side="right")
 
     def turns_at(self, here: float) -> int:
         """By how many whole turns the names of rows next to a value of t differ from it.
@@ -121,9 +142,11 @@ class SweepTable:
         one put between them does the same, inside the table's range if it can.
         """
         lead, scale = self.drive.lead, self.drive.unit
-        named = self.asked.in_file_units[:, lead] * scale
-        beside = np.argsort(np.abs(self.asked.t - here), kind="stable")[:2]
-        turns = [round(float(named[k] - self.asked.t[k]) / FULL_TURN) for k in beside]
+        at = int(np.searchsorted(self._sorted, here))
+        near = np.arange(max(0, at - 2), min(len(self._sorted), at + 2))
+        beside = self._order[near[np.argsort(np.abs(self._sorted[near] - here), kind="stable")[:2]]]
+        named = self.asked.in_file_units[beside, lead] * scale
+        turns = [round(float(gap) / FULL_TURN) for gap in named - self.asked.t[beside]]
         slack = _slack_at(abs(here))
         low, high = self.span
         inside = [k for k in turns if low - slack <= here + k * FULL_TURN <= high + slack]
@@ -155,11 +178,17 @@ class SweepTable:
         low, high = named.limit.bracket
         if not named.limit.located:
             return named
-        for row in np.flatnonzero(np.abs(self.asked.t - here) <= _slack_at(here)):
+        for row in self._rows_at(here, _slack_at(here)):
             asked = float(self.asked.in_file_units[row, lead])
             if low <= asked <= high:
                 return replace(named, limit=replace(named.limit, input=asked))
         return named
+
+    def _rows_at(self, here: float, slack: float) -> IndexArray:
+        """The rows that were asked for at a value of t."""
+        first = np.searchsorted(self._sorted, here - slack, side="left")
+        last = np.searchsorted(self._sorted, here + slack, side="right")
+        return self._order[first:last]
 
     def _places(self, end: BranchEnd) -> list[_PlaceOfEnd]:
         """Where an end belongs in the table, best first.
@@ -167,18 +196,17 @@ class SweepTable:
         It belongs whole turns away only if rows on the branch's side of it were found as many turns
         away, or no such row was found.
         """
-        found = []
-        for here in self.places_of(end.t):
-            away = abs(here - end.t)
-            beside = np.flatnonzero(end.side * (here - self.asked.t) > _slack_at(abs(here)))
-            if not len(beside):
-                found.append(_PlaceOfEnd(True, away, here))
-                continue
-            nearest = beside[np.abs(self.asked.t[beside] - here).argmin()]
-            gap = self.asked.t[nearest] - self._placed[nearest] - (here - end.t)
-            if not abs(gap) > 1.0:  # NaN is no row
-                found.append(_PlaceOfEnd(bool(np.isnan(gap)), away, here))
-        return sorted(found)
+        here = self.places_of(end.t)
+        below, above = self._beside(here, _SAME_PLACE)
+        nearest = below if end.side > 0 else above
+        none = (nearest < 0) | (nearest == len(self._sorted))
+        row = self._order[np.where(none, 0, nearest)]
+        gap = self.asked.t[row] - self._placed[row] - (here - end.t)
+        guessed = none | np.isnan(gap)
+        keep = np.flatnonzero(guessed | (np.abs(gap) <= 1.0))
+        return sorted(
+            _PlaceOfEnd(bool(guessed[k]), abs(float(here[k]) - end.t), float(here[k])) for k in keep
+        )
 
     def _put_at(self, end: BranchEnd, branch: str, here: float) -> bool:
         if end.v is None or end.first is None:
@@ -210,40 +238,49 @@ class SweepTable:
         limit is already nothing is.
         """
         slack = _slack_at(here) if slack is None else slack
-        if any(abs(t - here) <= slack for t in self._extra_t):
+        place = bisect_left(self._between_t, here - slack)
+        if any(t <= here + slack for t in self._between_t[place : place + 1]):
             return False
-        same = np.flatnonzero(np.abs(self.asked.t - here) <= slack)
-        fresh = [k for k in same if not self.rows.limit[k]]
+        same = self._rows_at(here, slack).tolist()
+        fresh = [k for k in same if k not in self._replaced]
         for k in fresh:
-            row = row.set(inputs=self.rows.inputs[k])
-            self.rows = self.rows.put(np.array([k]), row)
-        if not len(same):
-            self._extra.append(row)
-            self._extra_t.append(here)
-        return bool(fresh) or not len(same)
+            self._replaced[k] = row.set(inputs=self.rows.inputs[k])
+        if not same:
+            insort(self._between_t, here)
+            self._between[here] = row
+        return bool(fresh) or not same
 
     def finish(self) -> tuple[SolvedRows, BoolArray]:
         """All rows in the table's order, and which of them were not asked for."""
         everywhere = [(p, k) for k, (end, _) in enumerate(self._ends) for p in self._places(end)]
         for place, k in sorted(everywhere):  # where nothing else is, whole turns away
             self._put_at(*self._ends[k], place.t)
-        added = np.arange(len(self.rows) + len(self._extra)) >= len(self.rows)
-        if not self._extra:
-            return self.rows, added
-        t = np.concatenate([self.asked.t, self._extra_t])
+        rows = self.rows
+        if self._replaced:
+            others = SolvedRows.concatenate(list(self._replaced.values()))
+            rows = rows.put(np.array(list(self._replaced)), others)
+        added = np.arange(len(rows) + len(self._between)) >= len(rows)
+        if not self._between:
+            return rows, added
+        t = np.concatenate([self.asked.t, list(self._between)])
         backwards = len(self.asked.t) > 1 and self.asked.t[-1] < self.asked.t[0]
         order = np.argsort(-t if backwards else t, kind="stable")
-        return SolvedRows.concatenate([self.rows, *self._extra]).take(order), added[order]
+        rows = SolvedRows.concatenate([rows, *self._between.values()])
+        return rows.take(order), added[order]
 
-    def is_among(self, here: float, own: BoolArray) -> bool:
-        """Whether one of the rows next to a value of t is among some rows (B,)."""
-        order = np.argsort(self.asked.t, kind="stable")
-        t = self.asked.t[order]
-        slack = _slack_at(abs(here))
-        left = int(np.searchsorted(t, here + slack, side="right")) - 1
-        right = int(np.searchsorted(t, here - slack, side="left"))
-        beside = [order[k] for k in (left, right) if 0 <= k < len(t)]
-        return bool(own[beside].any())
+    def shows(self, t: float, here: Array, own: BoolArray) -> BoolArray:
+        """At which places (P,) of a value of t a row beside is among some rows (B,), and there.
+
+        A row that was found whole turns away shows another turn of the branch.
+        """
+        shown = np.zeros(len(here), dtype=bool)
+        below, above = self._beside(here, -_SAME_PLACE)
+        for beside in (below, above):
+            row = self._order[beside.clip(0, len(self._sorted) - 1)]
+            away = self.asked.t[row] - self._placed[row] - (here - t)
+            there = (beside >= 0) & (beside < len(self._sorted))
+            shown |= there & own[row] & (np.abs(away) <= 1.0)
+        return shown
 
     def _inputs(self, end: BranchEnd, here: float) -> Array:
         """The inputs at an end as short numbers, shifted by the whole turns to ``here``, (1, p)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
@@ -177,7 +178,9 @@ class _Sweep:
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)
-        table = SweepTable(self.drive, asked, found, (span, span), self.drive.free)
+        turn = FULL_TURN if self.drive.free else math.inf
+        period = turn if found.lap is None else found.lap.width
+        table = SweepTable(self.drive, asked, found, (span, span), period)
         self.tables.append(table)
         first = self._keep(table, found, self.model.branch, standing, found.here)
         below: list[NamedEnd] = []
@@ -218,8 +221,9 @@ class _Sweep:
     def _cross(self, first: _Branch, end: BranchEnd, policy: ChangePointPolicy) -> list[NamedEnd]:
         """Rows beyond the change points on one side, as far as the policy leads; the ends met.
 
-        A chosen way comes before the way around through a whole turn. A way on which a redundant
-        link does not fit is no way: its rows get that status.
+        A chosen way comes before the way around through a whole turn; behind a change point that is
+        not passed any more there is none. A way on which a redundant link does not fit is no way:
+        its rows get that status.
         """
         table, name, met = first.table, first.name, []
         for _ in range(_MOST_CROSSINGS):
@@ -249,6 +253,8 @@ class _Sweep:
             if not ahead:
                 return met
             end = ahead[0].demote(standing)
+        else:
+            table.drop(table.not_straight(end), Status.LOST)
         return [*met, (end, name)]
 
     def go_around(self, asked: Asked) -> None:
@@ -265,7 +271,7 @@ class _Sweep:
             found, name = branch.found, branch.name
             found = replace(found, rows=found.rows.set(found.converged, branch=name))
             windows = (branch.window, _span(asked.t))
-            table = SweepTable(self.drive, branch.asked, found, windows, False)
+            table = SweepTable(self.drive, branch.asked, found, windows, math.inf)
             self.tables.append(table)
             self._keep(table, found, name, branch.standing, found.here)
             placed += table.put_ends([(end, name) for end in branch.ends])
@@ -309,19 +315,21 @@ class _Sweep:
             table = branch.table
             places: list[float] = []
             for t, extreme in output_limits(self.drive, self._whole_track(branch), name):
+                here = table.places_of(t)
                 mine = [
-                    here
-                    for here in table.places_of(t)
-                    if table.is_among(here, branch.own)
-                    and not any(abs(here - other) < _SAME_EXTREME for other in places)
+                    place
+                    for place in here[table.shows(t, here, branch.own)].tolist()
+                    if not any(abs(place - other) < _SAME_EXTREME for other in places)
                 ]
-                for here in mine:
-                    row = self._branch_row(branch, t, here)
-                    row = row.set(limit=f"{extreme.kind} of {name}")
-                    if here == mine[0]:
-                        self.output_limits.append(extreme.named(float(row.inputs[0, lead])))
-                    places.append(here)
-                    table.put(row, here)
+                if not mine:
+                    continue
+                places += mine
+                word = f"{extreme.kind} of {name}"
+                row = self._branch_row(branch, t).set(limit=word)
+                named = [self._moved(branch, row, t, place) for place in mine]
+                self.output_limits.append(extreme.named(float(named[0].inputs[0, lead])))
+                for place, moved in zip(mine, named, strict=True):
+                    table.put(moved, place)
         at_ends = [output_limit_at(self.drive, end, name) for end in self.ends]
         # a quantity can be extreme at the dead point itself, where both rates vanish
         self.output_limits += dict.fromkeys(extreme for extreme in at_ends if extreme is not None)
@@ -334,17 +342,23 @@ class _Sweep:
         anchor = found.track.nodes[found.track.start]
         return track_to(self.drive.solver, self.drive.path, anchor, table.window)
 
-    def _branch_row(self, branch: _Branch, t: float, here: float) -> SolvedRows:
-        """The row of a branch at a value of t, named by its place in the table."""
-        table, track = branch.table, branch.found.track
-        path, scale = self.drive.path, self.model.input_scale
-        inputs = path.at(np.array([t]))
-        # the row is computed on the track and named by its place in the table
-        turns = round((here - t) / FULL_TURN) + table.turns_at(here)
-        in_file_units = inputs / scale + turns * path.rate * (FULL_TURN / scale)
+    def _branch_row(self, branch: _Branch, t: float) -> SolvedRows:
+        """The row of a branch at a value of t."""
+        track = branch.found.track
+        inputs = self.drive.path.at(np.array([t]))
+        in_file_units = inputs / self.model.input_scale
         asked = Asked(t=np.array([t]), inputs=inputs, in_file_units=in_file_units)
         anchor = track.nodes[track.start]
         return self._branch(anchor, asked, branch.name, branch.standing).rows
+
+    def _moved(self, branch: _Branch, row: SolvedRows, t: float, here: float) -> SolvedRows:
+        """A row of a branch at a value of t, named by its place in the table."""
+        table, lap, path = branch.table, branch.found.lap, self.drive.path
+        turns = round((here - t) / FULL_TURN) + table.turns_at(here)
+        named = row.inputs + turns * path.rate * (FULL_TURN / self.model.input_scale)
+        if lap is not None:
+            row = lap.after(row, np.array([round((here - t) / lap.width)]), branch.found.lap_proved)
+        return row.with_columns(inputs=named)
 
     def motion(self) -> Motion:
         """Everything in one result."""

@@ -88,6 +88,8 @@ class Structure:
     def _value(self, entry: Any, kind: Kind, path: Path) -> Any:
         """The entry converted to its kind; a mismatch is recorded as a problem."""
         match kind:
+            case Text() if isinstance(entry, dict) and self._has_table(f"{path[-1]}s"):
+                self._wrong(path, f"is the unit, a text in quotes: name the table [{path[-1]}s]")
             case Table(keys):
                 return self._sub_table(entry, keys, path)
             case Tables():
@@ -121,6 +123,9 @@ class Structure:
             case Constant(number) if type(entry) is not int or entry != number:
                 self._wrong(path, f"must be {number}, got {_shown(entry)}")
         return entry
+
+    def _has_table(self, name: str) -> bool:
+        return any(key.name == name for key in self.form.keys)
 
     def _several(self, entry: Any, kind: Several, path: Path) -> Any:
         if isinstance(entry, dict):

@@ -166,11 +166,17 @@ def _hint(what: str, row: str, column: int | None) -> str:
         return ": the closing quote is missing"
     if column is None or column > len(row):
         return ""
+    spaced = re.match(r"\s*([^\s=\"'#\[]+(?: +[^\s=\"'#\[]+)+)\s*=", row)
+    if spaced and column <= spaced.end():
+        return f': write a name with spaces in quotes: "{spaced[1]}"'
     if what == "invalid value":
         return ": write text, names and formulas in quotes"
     # a decimal comma, as in 1,5
     if row[column - 1] == "," and re.search(r"=\s*[-+]?\d+,\d+\s*(#.*)?$", row):
         return ": write decimals with a point"
+    if unit := re.search(r"=\s*[-+]?[\d.]+\s*(mm|cm|dm|m|km|in|inch|ft|deg|rad)\s*(#.*)?$", row):
+        key = "angle" if unit[1] in ("deg", "rad") else "length"
+        return f': write numbers without a unit; {key} = "{unit[1]}" sets the unit'
     if row[column - 1] == "°":
         return ': write numbers without a unit; angle = "deg" sets the unit'
     word = next((w.group() for w in _NOT_QUOTED.finditer(row) if w.end() >= column), "")

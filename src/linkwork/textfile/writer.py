@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
@@ -53,7 +54,7 @@ def save(description: Description, path: Path | str) -> None:
 
 def save_text(text: str, path: Path | str) -> None:
     """Write a text to a file as UTF-8, completely or not at all; raises like :func:`save`."""
-    target = Path(path)
+    target = as_path(path)
     try:
         target = target.resolve()
         _replace(target, text.encode("utf-8"))

@@ -14,6 +14,7 @@ from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
@@ -67,7 +68,7 @@ def check_animation(path: str | Path, options: FilmOptions | None = None) -> str
         If the package that writes the format is not installed.
     """
     chosen = options or FilmOptions()
-    kind = Path(path).suffix.lower().removeprefix(".")
+    kind = as_path(path).suffix.lower().removeprefix(".")
     if kind not in ANIMATION_FORMATS:
         known = ", ".join(f".{name}" for name in ANIMATION_FORMATS)
         raise InputError(f'cannot animate "{path}": its suffix must be one of {known}')
@@ -135,7 +136,7 @@ def animate_motion(
     """Write a motion to a file; see :meth:`linkwork.results.motion.Motion.animate`."""
     kind = check_animation(path, options)
     content = animation({"motion": motion}, kind, options=options, progress=progress)
-    Path(path).write_bytes(content)
+    as_path(path).write_bytes(content)
 
 
 def _film(

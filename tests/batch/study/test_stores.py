@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray
+from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
-from linkwork.batch.study import run_study, summary_of, workers
+from linkwork.batch.study import Summary, run_study, summary_of, verify_store, workers
 from linkwork.batch.study.job import Job, compute_part
+from linkwork.cli.main import linkwork
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from tests.batch.study.plans import PLAN, contents, edited, study
@@ -482,3 +487,145 @@ def test_values_that_differ_by_rounding_have_one_part(tmp_path: Path) -> None:
 def test_a_store_that_is_not_there_has_no_summary(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r'^there is no ".*none"$'):
         summary_of(tmp_path / "none")
+
+
+def _flipped(path: Path, place: int) -> None:
+    data = bytearray(path.read_bytes())
+    data[place // 8 % len(data)] ^= 1 << place % 8
+    path.write_bytes(data)
+
+
+def test_any_flipped_bit_is_found_and_repaired(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    shutil.copytree(whole, store)
+    files = sorted(path for path in contents(whole) if contents(whole)[path])
+    assert any("ledger" in path for path in files)
+    random = np.random.default_rng(5)
+    for path in files:
+        _flipped(store / path, int(random.integers(1 << 20)))
+        found = verify_store(store)
+        assert not found.intact
+        named = [*found.metadata, *(name for names in found.chunks.values() for name in names)]
+        assert named == [path]
+        with closing_summary(store, path in found.metadata) as summary:
+            assert summary is None or summary.damaged == tuple(found.chunks)
+        repaired = run_study(study(), store, workers=1).repaired
+        assert repaired == (*found.metadata, *found.chunks)
+        assert contents(store) == contents(whole)
+    assert verify_store(store).intact
+    assert run_study(study(), store, workers=1).repaired == ()
+
+
+@contextmanager
+def closing_summary(store: Path, refused: bool) -> Iterator[Summary | None]:
+    if not refused:
+        yield summary_of(store)
+        return
+    with pytest.raises(InputError, match="is damaged, or of an earlier version: repeat"):
+        summary_of(store)
+    yield None
+
+
+def test_a_store_without_any_metadata_is_known_by_its_ledger(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    shutil.copytree(whole, store)
+    for path in store.rglob("zarr.json"):
+        path.write_bytes(b"\0" * 100)
+    with pytest.raises(InputError, match="holds another study"):
+        run_study(study(("seed = 1", "seed = 2")), store, workers=1)
+    run_study(study(), store, workers=1)
+    assert contents(store) == contents(whole)
+
+
+def test_a_store_damaged_beyond_knowing_its_study_can_be_started_over(
+    whole: Path, tmp_path: Path
+) -> None:
+    store = tmp_path / "out.zarr"
+    shutil.copytree(whole, store)
+    for path in ("zarr.json", "ledger/store.json"):
+        (store / path).write_bytes(b"{}")
+    with pytest.raises(InputError) as caught:
+        run_study(study(), store, workers=1)
+    assert str(caught.value) == (
+        f'"{store}" is damaged beyond knowing its study: start over with --fresh, which deletes '
+        "it, or choose another store"
+    )
+    run_study(study(), store, workers=1, fresh=True)
+    assert contents(store) == contents(whole)
+
+
+def test_fresh_refuses_to_delete_what_no_study_wrote(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    shutil.copytree(whole, store)
+    for name in (
+        "notes.txt",
+        "rocker/notes.txt",
+        "rocker/c/notes.txt",
+        "mine/c/0",
+        "ledger/a/b.json",
+    ):
+        mine = store / name
+        mine.parent.mkdir(parents=True, exist_ok=True)
+        mine.write_text("mine", encoding="utf-8")
+        with pytest.raises(InputError) as caught:
+            run_study(study(), store, workers=1, fresh=True)
+        assert str(caught.value) == (
+            f'"{store}" also contains files that are no part of a study, as "{name}": '
+            "move them elsewhere, or choose another store"
+        )
+        mine.unlink()
+    (store / "rocker/c/3/0.part").write_bytes(b"incomplete")
+    run_study(study(), store, workers=1, fresh=True)
+    assert contents(store) == contents(whole)
+
+
+def test_a_full_disk_names_the_file_and_leaves_a_store_to_go_on_with(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = tmp_path / "out.zarr"
+    write, left = Path.write_bytes, [60]
+
+    def full(path: Path, data: bytes) -> int:
+        left[0] -= 1
+        if left[0] < 0:
+            write(path, data[: len(data) // 2])
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return write(path, data)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "write_bytes", full)
+        with pytest.raises(InputError) as caught:
+            run_study(study(), store, workers=1)
+    assert str(caught.value).startswith(f'cannot write "{store}{os.sep}')
+    assert str(caught.value).endswith(
+        ": No space left on device. The chunks that are stored are complete: make room and repeat "
+        "the command"
+    )
+    assert not list(store.rglob("*.part"))
+    assert 0 < summary_of(store).computed < 300
+    run_study(study(), store, workers=1)
+    assert contents(store) == contents(whole)
+
+
+def test_the_command_verifies_a_store(whole: Path, tmp_path: Path) -> None:
+    store = tmp_path / "out.zarr"
+    shutil.copytree(whole, store)
+    asked = ["study", str(store), "--verify"]
+    sound = CliRunner().invoke(linkwork, asked)
+    assert (sound.exit_code, sound.stdout) == (
+        0,
+        f"All 5 chunks of {store} are as they were written.\n",
+    )
+    _flipped(store / "rocker/c/2/0", 77)
+    damaged = CliRunner().invoke(linkwork, asked)
+    assert damaged.exit_code == 1
+    assert "chunk 2" in damaged.stdout
+    assert "rocker/c/2/0" in damaged.stdout
+    told = json.loads(CliRunner().invoke(linkwork, [*asked, "--json"]).stdout)
+    assert told == {
+        "schema": 1,
+        "intact": False,
+        "sound": 4,
+        "metadata": [],
+        "chunks": {"2": ["rocker/c/2/0"]},
+    }

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
@@ -248,6 +248,53 @@ def raw_head(served: Served, lines: list[str]) -> bytes:
         return link.recv(65536).split(b"\r\n")[0]
 
 
+@contextmanager
+def strangers(served: Served, count: int, head: bytes = b"") -> Iterator[list[socket.socket]]:
+    """Connections that send the beginning of a request, or nothing, and wait."""
+    with ExitStack() as stack:
+        links = []
+        for _ in range(count):
+            link = socket.create_connection(("127.0.0.1", served.server.port), timeout=10)
+            links.append(stack.enter_context(link))
+            link.sendall(head)
+        yield links
+
+
+@pytest.mark.parametrize("head", [b"", b"GET / HTTP/1.1\r\nHost: 127"])
+def test_strangers_that_hold_connections_do_not_keep_the_owner_out(
+    served: Served, head: bytes
+) -> None:
+    with served.connect() as page:
+        told(page, "motion_found")
+        with strangers(served, 100, head):
+            response, _ = answer(served)
+            assert response.status == 200
+            ask(page, "undo", id=1)  # the page is not disturbed
+            assert told(page, "refused")["answers"] == 1
+    with strangers(served, 100, head), reconnected(served) as page:
+        assert told(page, "motion_found")["certified"] == 361
+
+
+def test_a_connection_without_a_page_ends_by_itself(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("linkwork.viewer.live.short_connections.PATIENCE", 0.3)
+    with served.connect() as page:
+        told(page, "motion_found")
+        with strangers(served, 2, b"GET /") as links:
+            began = time.monotonic()
+            while time.monotonic() - began < 5.0:
+                try:
+                    links[0].sendall(b"x")  # one byte at a time
+                except OSError:
+                    break
+                time.sleep(0.05)
+            assert time.monotonic() - began < 3.0
+            assert links[1].recv(100) == b""
+        ask(page, "undo", id=1)
+        assert told(page, "refused")["answers"] == 1
+
+
 def test_a_second_page_is_told_why_it_must_wait(served: Served) -> None:
     with served.connect() as first:
         told(first, "motion_found")
@@ -408,10 +455,11 @@ def test_every_server_has_its_own_token_and_port(served: Served, bench: Workbenc
 # The command
 
 
-def begun(path: Path, *options: str) -> tuple[subprocess.Popen[str], str]:
+def begun(path: Path | str, cwd: Path | None = None) -> tuple[subprocess.Popen[str], str]:
     """The command as a process, and the address that it prints."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "linkwork", "view", str(path), "--no-browser", *options],
+        [sys.executable, "-m", "linkwork", "view", str(path), "--no-browser"],
+        cwd=cwd,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -482,3 +530,29 @@ def test_without_its_packages_the_command_says_what_to_install(path: Path) -> No
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 2
     assert 'pip install "linkwork[view]"' in " ".join(done.stderr.split())
+
+
+def test_a_mechanism_of_the_library_is_opened_and_saved_under_its_name(tmp_path: Path) -> None:
+    process, address = begun("four-bar", cwd=tmp_path)
+    server: Any = _AsPrinted(address)
+    workbench: Any = None
+    with Served(server, workbench, tmp_path / "four-bar.toml").connect() as page:
+        assert told(page, "motion_found")["certified"] == 361
+        assert list(tmp_path.iterdir()) == []
+        ask(page, "reload")
+        ask(page, "set_number", name="O2 A", value=42)
+        told(page, "motion_found")
+        ask(page, "save")
+        state = told(page, "file_state")
+        while state["unsaved"]:
+            state = told(page, "file_state")
+        os.kill(process.pid, signal.SIGINT)
+        process.communicate(timeout=60)
+    assert [file.name for file in tmp_path.iterdir()] == ["four-bar.toml"]
+    assert '"O2 A"  = 42' in (tmp_path / "four-bar.toml").read_text(encoding="utf-8")
+    words = [sys.executable, "-m", "linkwork", "view", "--no-browser", "four-bar"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert 'there is a file "four-bar.toml" already: to open it, linkwork view four-bar.toml' in (
+        done.stderr.replace("\n  ", " ")
+    )

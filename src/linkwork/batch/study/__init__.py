@@ -21,5 +21,9 @@ if TYPE_CHECKING:
         Summary as Summary,
         summary_of as summary_of,
     )
+    from linkwork.batch.study.verifying import (
+        Verification as Verification,
+        verify_store as verify_store,
+    )
 else:
     __getattr__ = loader(__name__)

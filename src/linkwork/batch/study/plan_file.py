@@ -27,6 +27,7 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import find_spelling
+from linkwork.foundation.paths import as_path
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.varied_number import number_named
 from linkwork.motion import Model, as_described
@@ -60,7 +61,7 @@ def read_plan(path: Path | str, *, columns: Sequence[str] = ()) -> Study:
         With every problem found: file, line, key and remedy; also for the mechanism's file.
     """
     name = str(path)
-    text = text_of(bytes_of(Path(path), name), name)
+    text = text_of(bytes_of(as_path(path), name), name)
     return read_plan_text(text, name, Path(path).parent, columns=columns)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic
 
@@ -16,6 +16,7 @@ from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.workers import Task, local_crew, one_after_the_other
 from linkwork.batch.study.zarr_files import check_packages
+from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
 from linkwork.kernels.gpu.compiling import graphics_card
@@ -94,7 +95,7 @@ def run_study(
     The stored data depend on the plan only, not on the workers or their order. The store can be
     read at any moment; missing chunks read as missing values. Only this process writes to it: a
     chunk's files, each renamed when it is complete, then the ledger entry with their checksums.
-    After a killed run, unfinished chunks are computed again.
+    After a killed run, unfinished chunks are computed again, and so are damaged ones.
     """
     check_packages()
     if workers is not None:
@@ -102,7 +103,7 @@ def run_study(
     study = plan if isinstance(plan, Study) else read_plan(plan)
     if study.job.device == "gpu" and scheduler is None:
         graphics_card()  # raises an error before a store is created
-    with open_store(study, Path(store), fresh=fresh) as target:
+    with open_store(study, as_path(store), fresh=fresh) as target:
         tell = _teller(study, target.done, progress)
         tell()
         left = [k for k in range(study.chunks) if k not in target.done]
@@ -113,7 +114,8 @@ def run_study(
                 for k, part in parts:
                     target.write(k, part)
                     tell()
-    return summary_of(store)
+        repaired: tuple[int | str, ...] = (*target.repaired, *target.damaged)
+    return replace(summary_of(store), repaired=repaired)
 
 
 def _crew(

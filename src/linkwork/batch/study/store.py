@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import zip_longest
 from pathlib import Path
@@ -15,6 +15,8 @@ from typing import Any
 from linkwork.batch.study.chunk_manifest import (
     PARTIAL,
     Entry,
+    Metadata,
+    changed_files,
     read_entries,
     write_entry,
     write_whole,
@@ -29,7 +31,7 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-__all__ = ["Store", "attributes_of", "open_store"]
+__all__ = ["Store", "attributes_of", "check_is_store", "damaged_metadata", "open_store"]
 
 _IDENTITY = "linkwork_identity"
 _LOCK = "lock"
@@ -45,14 +47,20 @@ class Store:
     study : Study
     files : ZarrFiles
         Creates the files of the store.
+    repaired : tuple of str
+        Metadata that was damaged and has been written again.
     """
 
-    def __init__(self, path: Path, study: Study, files: ZarrFiles) -> None:
-        self.path, self.study = path, study
+    def __init__(
+        self, path: Path, study: Study, files: ZarrFiles, repaired: tuple[str, ...]
+    ) -> None:
+        self.path, self.study, self.repaired = path, study, repaired
         self._files = files
-        entries = read_entries(path)
+        sound, damaged = read_entries(path)
         #: Finished chunks with files that match their checksums.
-        self.done = {k for k, entry in entries.items() if entry.holds(path)}
+        self.done = set(sound)
+        #: Chunks that were finished, and have changed since.
+        self.damaged = tuple(sorted(damaged))
 
     def write(self, k: int, part: Part) -> None:
         """Store a chunk: first its files, then its ledger entry."""
@@ -85,14 +93,14 @@ def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Sto
     """
     files = _files_of(study)
     if fresh and path.exists():
-        attributes_of(path)  # delete nothing but the store of a study
+        check_is_store(path)  # delete nothing but the store of a study
         _take_away(path)
     if not path.exists():
-        _make(path, files.first)
-    attributes_of(path)  # only stores have a lock
+        _make(path, files.first, study)
+    check_is_store(path)  # only stores have a lock
     with _lock_store(path):
         _check_same(study, path)
-        yield Store(path, study, files)
+        yield Store(path, study, files, _repair(path, files.first, study))
 
 
 def attributes_of(path: Path) -> Mapping[str, Any]:
@@ -101,19 +109,63 @@ def attributes_of(path: Path) -> Mapping[str, Any]:
     Raises
     ------
     InputError
-        If it is not the store of a study.
+        If it is not the store of a study, or its metadata is damaged.
+    """
+    check_is_store(path)
+    if (attributes := _read_attributes(path)) is None or damaged_metadata(path):
+        raise InputError(
+            f'the metadata of "{path}" is damaged, or of an earlier version: repeat the command '
+            "of its study, which repairs the store"
+        )
+    return attributes
+
+
+def damaged_metadata(path: Path) -> tuple[str, ...]:
+    """The files that describe a store and have changed since they were written."""
+    known = Metadata.read(path)
+    if known is None:
+        return (Metadata(files={}, identity={}).sealed()[0],)
+    return changed_files(path, known.files)
+
+
+def _read_attributes(path: Path) -> dict[str, Any] | None:
+    try:
+        found = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
+        return {**found, _IDENTITY: json.loads(found[_IDENTITY])}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def check_is_store(path: Path) -> None:
+    """Check that a folder is the store of a study, damaged or not.
+
+    Raises
+    ------
+    InputError
+        If it is not there, or something else.
     """
     if not path.exists():
         raise InputError(f'there is no "{path}"')
-    try:
-        found = json.loads((path / METADATA).read_text(encoding="utf-8"))["attributes"]
-        found[_IDENTITY] = json.loads(found[_IDENTITY])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(
-            f'"{path}" exists and is not the store of a study: choose another name'
-        ) from None
-    attributes: Mapping[str, Any] = found
-    return attributes
+    known = (path / LEDGER / _LOCK).exists() or _read_attributes(path) is not None
+    if not known and Metadata.read(path) is None:
+        raise InputError(f'"{path}" exists and is not the store of a study: choose another name')
+
+
+def _repair(path: Path, files: Mapping[str, bytes], study: Study) -> tuple[str, ...]:
+    """Write damaged metadata again; its names."""
+    damaged = damaged_metadata(path)
+    if damaged:
+        # a title or a comment may have changed, so all of it belongs together
+        name, record = Metadata.of_files(files, _as_stored(study.identity)).sealed()
+        for each, data in {**files, name: record}.items():
+            write_whole(path / each, data)
+    return damaged
+
+
+def _as_stored(identity: Mapping[str, Any]) -> Mapping[str, Any]:
+    """As read back from JSON: tuples become lists."""
+    found: Mapping[str, Any] = json.loads(json.dumps(identity))
+    return found
 
 
 def _files_of(study: Study) -> ZarrFiles:
@@ -133,22 +185,38 @@ def _files_of(study: Study) -> ZarrFiles:
     return ZarrFiles(study.variables, sizes, study.chunk_size, attributes)
 
 
-def _make(path: Path, files: Mapping[str, bytes]) -> None:
+def _make(path: Path, files: Mapping[str, bytes], study: Study) -> None:
     """Create a store without chunks, in one step."""
     if not path.parent.is_dir():
         raise InputError(f'cannot write "{path}": there is no folder "{path.parent}"')
     # on the same file system, so that renaming is atomic
     part = path.with_name(f".{path.name}.{os.getpid()}{PARTIAL}")
     shutil.rmtree(part, ignore_errors=True)
-    for name, data in files.items():
-        (part / name).parent.mkdir(parents=True, exist_ok=True)
-        (part / name).write_bytes(data)
-    (part / LEDGER / _LOCK).touch()
-    os.rename(part, path)
+    record, content = Metadata.of_files(files, _as_stored(study.identity)).sealed()
+    try:
+        for name, data in {**files, record: content, f"{LEDGER}/{_LOCK}": b""}.items():
+            (part / name).parent.mkdir(parents=True, exist_ok=True)
+            (part / name).write_bytes(data)
+        os.rename(part, path)
+    except OSError as error:
+        raise InputError(f'cannot write "{path}": {error.strerror or error}') from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
 
 
 def _take_away(path: Path) -> None:
-    """Delete a store in one step: remaining parts would be resumed."""
+    """Delete a store in one step: remaining parts would be resumed.
+
+    Raises
+    ------
+    InputError
+        If it contains files that no study has written.
+    """
+    if foreign := _foreign_files(path):
+        raise InputError(
+            f'"{path}" also contains files that are no part of a study, as "{foreign[0]}": '
+            "move them elsewhere, or choose another store"
+        )
     aside = path.with_name(f".{path.name}.{os.getpid()}.old{PARTIAL}")
     with _lock_store(path):
         # renamed before deletion: an interruption leaves no incomplete store of this name
@@ -156,11 +224,42 @@ def _take_away(path: Path) -> None:
     shutil.rmtree(aside)
 
 
+def _foreign_files(path: Path) -> list[str]:
+    """Files in a store that are neither metadata, nor parts of arrays, nor of the ledger."""
+    arrays = {found.parent.name for found in path.glob(f"*/{METADATA}")}
+    return [
+        str(Path(*parts))
+        for parts in (file.relative_to(path).parts for file in sorted(path.rglob("*")))
+        if (path / Path(*parts)).is_file() and not _is_own(parts, arrays)
+    ]
+
+
+def _is_own(parts: Sequence[str], arrays: Container[str]) -> bool:
+    folder, *rest = parts
+    name = parts[-1].removesuffix(PARTIAL)
+    if not rest:
+        return name == METADATA
+    if folder == LEDGER:
+        return len(rest) == 1 and (name in (METADATA, _LOCK) or name.endswith(".json"))
+    if len(rest) == 1:
+        return name == METADATA
+    numbers = (*rest[1:-1], name)
+    return folder in arrays and rest[0] == "c" and all(part.isdecimal() for part in numbers)
+
+
 def _check_same(study: Study, path: Path) -> None:
     """Reject the store of another study."""
-    there = attributes_of(path)[_IDENTITY]
-    # as read back from JSON: tuples become lists
-    here = json.loads(json.dumps(study.identity))
+    here = _as_stored(study.identity)
+    known, attributes = Metadata.read(path), _read_attributes(path)
+    if known is not None:
+        there = known.identity
+    elif attributes is not None:
+        there = attributes[_IDENTITY]
+    else:
+        raise InputError(
+            f'"{path}" is damaged beyond knowing its study: start over with --fresh, '
+            "which deletes it, or choose another store"
+        )
     if told := "\n".join(_differences(there, here)):
         raise InputError(
             f'"{path}" holds another study:\n{told}\n'
@@ -171,7 +270,7 @@ def _check_same(study: Study, path: Path) -> None:
 
 def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[str]:
     """The differences between two studies, one line each."""
-    for key in {**there, **here}:
+    for key in {**here, **there}:
         old: Any = there.get(key)
         new: Any = here.get(key)
         if old == new:
@@ -191,7 +290,7 @@ def _differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[
 def _changed_entries(
     old: Mapping[str, Any], new: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any, Any]]:
-    for name in {**old, **new}:
+    for name in {**new, **old}:
         if old.get(name) != new.get(name):
             yield name, old.get(name), new.get(name)
 
@@ -214,6 +313,7 @@ def _shown(value: Any) -> str:
 def _lock_store(path: Path) -> Iterator[None]:
     """Lock the store against other writers; the lock of a killed process disappears."""
     lock = path / LEDGER / _LOCK
+    lock.parent.mkdir(exist_ok=True)
     with lock.open("ab") as file:
         try:
             if sys.platform == "win32":

@@ -15,6 +15,7 @@ from linkwork.batch.study.job import passes_name
 from linkwork.batch.study.store import attributes_of
 from linkwork.batch.study.zarr_files import check_packages, open_arrays
 from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.paths import as_path
 
 __all__ = ["OutputSummary", "Summary", "summary_of"]
 
@@ -69,6 +70,10 @@ class Summary:
     problems : Mapping[str, int]
         Number of designs that could not be built, by reason.
     outputs : tuple of OutputSummary
+    damaged : tuple of int
+        Chunks whose files have changed since they were stored; they count as not computed.
+    repaired : tuple of int or str
+        Damaged chunks that the run has computed again, and metadata that it has written again.
     """
 
     name: str
@@ -83,6 +88,8 @@ class Summary:
     certified: int
     problems: Mapping[str, int]
     outputs: tuple[OutputSummary, ...]
+    damaged: tuple[int, ...] = ()
+    repaired: tuple[int | str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The summary in JSON types."""
@@ -97,11 +104,12 @@ def summary_of(store: Path | str) -> Summary:
     InputError
         If it is not the store of a study.
     """
-    path = Path(store)
+    path = as_path(store)
     known = attributes_of(path)
     check_packages()
     identity = known["linkwork_identity"]
-    entries = [entry for _, entry in sorted(read_entries(path).items())]
+    sound, damaged = read_entries(path)
+    entries = [entry for _, entry in sorted(sound.items())]
     arrays = open_arrays(path)
     rows: Counter[str] = Counter()
     problems: Counter[str] = Counter()
@@ -130,6 +138,7 @@ def summary_of(store: Path | str) -> Summary:
         outputs=tuple(
             _output(name, arrays, entries) for name in (*identity["reductions"], *identity["keep"])
         ),
+        damaged=tuple(sorted(damaged)),
     )
 
 

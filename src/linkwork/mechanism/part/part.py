@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
@@ -23,6 +25,7 @@ __all__ = [
 
 #: Relative tolerance of redundant numbers.
 AGREE = 1e-9
+_MOST_UNEVEN = 1e6  # distances of neighbouring points of a curve, from the smallest to the largest
 _LARGEST = 1e100  # keeps squares and quotients of lengths finite
 
 POINT, LINK, SLIDER = Text(of="point"), Text(of="link"), Text(of="slider")
@@ -323,6 +326,12 @@ class PartChecks:
             places.append(vector(x, y))
         if closed and places[0] == places[-1]:
             self.add("is closed automatically: leave out the repeated last point", field)
-        for k in range(1, len(places)):
-            if places[k] == places[k - 1]:
+        gaps = (b - a for a, b in itertools.pairwise(places))
+        steps = [math.hypot(gap.real, gap.imag) for gap in gaps]
+        least_step = min((step for step in steps if step > 0.0), default=math.inf)
+        for k, step in enumerate(steps, start=1):
+            if step == 0.0:
                 self.add("is the same point as the one before", field, k)
+            elif not step <= _MOST_UNEVEN * least_step:
+                times = f"{_MOST_UNEVEN:,.0f} times as far from the point before as the nearest two"
+                self.add(f"is more than {times} points are from each other", field, k)

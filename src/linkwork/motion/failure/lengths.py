@@ -13,6 +13,7 @@ from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
+from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model, model_of
 
 __all__ = ["ChangeableLength", "lengths_of", "model_with"]
@@ -63,7 +64,7 @@ def _dimensions(description: Description, used: set[str]) -> Iterator[Changeable
             continue
 
         def changed(value: float, name: str = name) -> Description:
-            return description.with_dimensions({name: value})
+            return with_numbers(description, {VariedNumber(name, "dimensions", name): value})
 
         yield ChangeableLength(name=name, value=float(number), changed=changed, signed=number <= 0)
 

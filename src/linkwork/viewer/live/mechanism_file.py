@@ -34,6 +34,8 @@ class MechanismFile:
     ----------
     path : str or Path
         A symbolic link is resolved once, here.
+    begun : str, optional
+        The text to begin with where there is no such file: it is created when it is saved.
 
     Raises
     ------
@@ -41,8 +43,9 @@ class MechanismFile:
         If the file does not exist or cannot be read.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, begun: str | None = None) -> None:
         self.name = str(path)
+        self._begun = begun
         self._path = Path(path).resolve()
         self._stamp = self._stamp_now()
         self.text = self.read()
@@ -50,12 +53,15 @@ class MechanismFile:
 
     def read(self) -> str:
         """The text on disk; does not change the edited version."""
+        if self._begun is not None and self._stamp_now() is None:
+            return self._begun
         return text_of(bytes_of(self._path, self.name), self.name)
 
     def accept(self, text: str) -> None:
         """Set the edited version to a text of this file."""
         self.text = text
-        self._known = self._reported = _digest(text.encode())
+        unwritten = self._begun is not None and self._stamp_now() is None
+        self._known = self._reported = b"" if unwritten else _digest(text.encode())
 
     def news(self) -> OnDisk | None:
         """The change by another program since the last call; ``None`` without a change.

@@ -28,7 +28,7 @@ Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 _LOOPBACK = "127.0.0.1"
 _MOST_WAITING = 100  # queued requests or events; a faster page has to wait
 _OCCUPIED = 4009  # close code: another page is connected
-_MOST_CONNECTIONS = 32
+_MOST_WAITING_TO_CONNECT = 32
 _LARGEST_HEAD = 16_384  # bytes
 
 
@@ -211,7 +211,7 @@ def _listening(port: int) -> socket.socket:
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         found.bind((_LOOPBACK, port))
-        found.listen(_MOST_CONNECTIONS)
+        found.listen(_MOST_WAITING_TO_CONNECT)
     except (OSError, OverflowError) as error:
         found.close()
         reason = getattr(error, "strerror", None) or str(error)
@@ -226,6 +226,8 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
     try:
         import uvicorn
         import websockets  # noqa: F401 - uvicorn's way to hold the connection
+
+        from linkwork.viewer.live.short_connections import ShortConnection
     except ImportError:
         raise MissingPackageError(
             'the live page needs uvicorn and websockets: pip install "linkwork[view]"'
@@ -233,7 +235,7 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
     config = uvicorn.Config(
         app,
         interface="asgi3",
-        http="h11",
+        http=ShortConnection,
         ws="websockets-sansio",
         lifespan="off",
         log_config=None,
@@ -245,7 +247,6 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
         ws_max_size=LARGEST_MESSAGE,
         # on one machine, compression takes more time than it saves
         ws_per_message_deflate=False,
-        limit_concurrency=_MOST_CONNECTIONS,
         h11_max_incomplete_event_size=_LARGEST_HEAD,
         timeout_graceful_shutdown=1,
     )
