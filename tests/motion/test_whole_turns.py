@@ -76,6 +76,7 @@ def test_a_far_value_in_radians_is_within_its_radius(at: float) -> None:
     angle = float(Decimal(at) % TURN)
     error = abs(position["s"] - 2 * math.cos(angle) - math.sqrt(25 - 4 * math.sin(angle) ** 2))
     assert position.certificate.certified
+    assert position.certificate.radius is not None
     assert error < 5.0 * position.certificate.radius
     assert error < 1e-14
 

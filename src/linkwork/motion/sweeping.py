@@ -178,8 +178,7 @@ class _Sweep:
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
         span = _span(asked.t)
-        turn = FULL_TURN if self.drive.free else math.inf
-        period = turn if found.lap is None else found.lap.width
+        period = found.lap.width if found.lap else FULL_TURN if self.drive.free else math.inf
         table = SweepTable(self.drive, asked, found, (span, span), period)
         self.tables.append(table)
         first = self._keep(table, found, self.model.branch, standing, found.here)

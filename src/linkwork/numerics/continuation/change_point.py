@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,13 +17,17 @@ from linkwork.numerics.system import System
 __all__ = [
     "ChangePoint",
     "Crossing",
+    "at_one_input",
     "crossing_near",
+    "is_at",
+    "less_sharp",
     "locate_change_point",
     "locate_crossing",
     "most_singular",
     "tangents_behind_kink",
 ]
 
+_DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 _SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
@@ -138,6 +142,25 @@ def locate_crossing(
     inputs = block.variables[len(found.x) :] - solver.unknowns
     moving[inputs[inputs >= 0]] = rate[inputs >= 0]
     return _place_point(solver, moving, number, block.unknowns, v, found)
+
+
+def at_one_input(a: ChangePoint, b: ChangePoint) -> bool:
+    """Whether two crossings are at one input, as far as they are located."""
+    return abs(a.t - b.t) <= sum(0.5 * (p.bracket[1] - p.bracket[0]) for p in (a, b))
+
+
+def is_at(point: ChangePoint, t: float) -> bool:
+    """Whether a crossing that other ones drive is at a value of t."""
+    low, high = less_sharp(point).bracket
+    return low <= t <= high
+
+
+def less_sharp(point: ChangePoint) -> ChangePoint:
+    """A crossing of a block whose known variables have been led across other crossings."""
+    low, high = point.bracket
+    # its known variables come from a polynomial through solved positions
+    more = _DRIVEN * max(1.0, abs(point.t))
+    return replace(point, bracket=(low - more, high + more))
 
 
 def tangents_behind_kink(

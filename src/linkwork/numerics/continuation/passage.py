@@ -23,6 +23,9 @@ from linkwork.numerics.block_solver import Block, BlockSolver, linearise_block
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, follow, node_at
 from linkwork.numerics.continuation.change_point import (
     ChangePoint,
+    at_one_input,
+    is_at,
+    less_sharp,
     locate_crossing,
     tangents_behind_kink,
 )
@@ -40,7 +43,6 @@ _OFF = 1e-3  # weighted: how far such a step may end from its prediction
 _CERTAIN = 0.02
 _REGULAR = 3e6  # condition from which on branches are as good as crossing, as in tracks
 _BESIDE = 0.1  # of the way to the next kink: a crossing so near to a kink is taken together with it
-_DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -214,7 +216,7 @@ class _Walk:
         waiting = sorted(self.found, key=lambda point: self.side * point.t)
         while waiting:
             earliest = waiting[0]
-            same = [point for point in waiting if _at_one_input(earliest, point)]
+            same = [point for point in waiting if at_one_input(earliest, point)]
             same.sort(key=lambda point: point.block)  # the first one is known best
             whole = self.motion.jet(same[0].t, self.start.t)[0]
             yield tuple(replace(point, v=whole) for point in same)
@@ -330,7 +332,7 @@ class _Walk:
         self, block: Block, before: _Step, point: ChangePoint, kink: float, end: float
     ) -> list[_Piece] | None:
         """Lead the block across a change point that lies at a kink of its known variables."""
-        if not _is_at(point, kink):
+        if not is_at(point, kink):
             return None  # so near to each other that nothing is resolved in between
         sides = (before.t, end)
         known = [self._known(block, kink, towards) for towards in sides]
@@ -361,7 +363,7 @@ class _Walk:
         return (other, onward) if self.turn else (onward, other)
 
     def _keep(self, point: ChangePoint) -> None:
-        self.found.append(_less_sharp(point) if self.found else point)
+        self.found.append(less_sharp(point) if self.found else point)
         if self.turn:
             self.kinks = sorted({*self.kinks, point.t}, key=lambda t: self.side * t)
 
@@ -384,21 +386,3 @@ class _Walk:
         # the position may have jumped to the branch that was left
         close = bool(float(np.abs((x - guess) / weights).max()) <= CLOSER_TANGENT * gap)
         return after if close and condition < _REGULAR else None
-
-
-def _at_one_input(a: ChangePoint, b: ChangePoint) -> bool:
-    """Whether two crossings are at one input, as far as they are located."""
-    return abs(a.t - b.t) <= sum(0.5 * (p.bracket[1] - p.bracket[0]) for p in (a, b))
-
-
-def _is_at(point: ChangePoint, t: float) -> bool:
-    """Whether a crossing that other ones drive is at a value of t."""
-    low, high = _less_sharp(point).bracket
-    return low <= t <= high
-
-
-def _less_sharp(point: ChangePoint) -> ChangePoint:
-    low, high = point.bracket
-    # its known variables come from a polynomial through solved positions
-    more = _DRIVEN * max(1.0, abs(point.t))
-    return replace(point, bracket=(low - more, high + more))

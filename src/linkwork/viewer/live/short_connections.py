@@ -10,7 +10,7 @@ import asyncio
 from collections import OrderedDict
 from typing import ClassVar, cast
 
-from uvicorn.protocols.http.h11_impl import H11Protocol  # noqa: TID253 - loaded by the server
+from uvicorn.protocols.http.h11_impl import H11Protocol  # noqa: TID253 - loaded by a running server
 
 __all__ = ["PATIENCE", "ShortConnection"]
 
