@@ -140,7 +140,7 @@ COSTLY = frozenset({
 })  # fmt: skip
 
 
-@pytest.mark.parametrize("name", thinned((name for name in NAMES if name not in COSTLY), 6))
+@pytest.mark.parametrize("name", thinned((name for name in NAMES if name not in COSTLY), 12))
 def test_a_complete_list_says_how_its_dead_points_were_found(name: str) -> None:
     mechanism = mechanism_of(name)
     circuits = mechanism.circuits(certify=False)

@@ -17,7 +17,7 @@ from tests.laws.transforms import mirrored, scaled
 from tests.thinned import thinned
 
 seeds = st.integers(0, 10**6)
-every = pytest.mark.parametrize("kind", thinned(KINDS, 2))
+every = pytest.mark.parametrize("kind", thinned(KINDS, 4))
 some = settings(max_examples=3)
 
 

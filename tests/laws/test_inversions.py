@@ -71,7 +71,7 @@ def test_wheels_cams_and_curves_move_alike_whatever_is_ground(kind: str) -> None
             )
 
 
-@pytest.mark.parametrize("name", thinned(LINKED, 4))
+@pytest.mark.parametrize("name", thinned(LINKED, 8))
 def test_an_inversion_has_the_same_relative_motion(name: str) -> None:
     mechanism, motion = mechanism_of(name), motion_of(name)
     links = linkage_of(mechanism).links

@@ -28,7 +28,7 @@ def two_loops(offset: float, rows: tuple[float, float, float]) -> lw.Mechanism:
 ROWS = [(90, 450, 10), (90, -270, -10), (45, 765, 7.2), (77, 437, 60), (-170, 190, 36)]
 
 
-@pytest.mark.parametrize("rows", thinned(ROWS, 2), ids=str)
+@pytest.mark.parametrize("rows", thinned(ROWS, 3), ids=str)
 @pytest.mark.parametrize("count", [1, 2, 3, 6])
 def test_rows_beyond_a_shared_crossing_stay_parallel(
     count: int, rows: tuple[float, float, float]
