@@ -83,7 +83,13 @@ class CurveBranch:
     def range(self, parameter: int) -> tuple[float, float]:
         """Smallest and largest value of the parameter."""
         values = self.v[:, parameter]
-        return float(values.min()), float(values.max())
+        low, high = float(values.min()), float(values.max())
+        # rounding may carry a position next to a dead point beyond it
+        if self.begin is not None and self.begin.located:
+            low, high = (self.begin.t, high) if self.side > 0 else (low, self.begin.t)
+        if self.end is not None and self.end.located:
+            low, high = (low, self.end.t) if self.side > 0 else (self.end.t, high)
+        return low, high
 
     def is_joined(self, leads: Parametrizations) -> bool:
         """Whether the anchor is proved to be the same position when the parameter leads."""

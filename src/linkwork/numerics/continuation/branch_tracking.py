@@ -57,6 +57,7 @@ class TrackOptions:
     ``largest_condition``: nearness to a singular position. Beyond, rounding hides on which
     of two crossing branches a position lies: ‖J⁻¹‖² times the rounding of the equations must stay
     small (Newton-Kantorovich), and 3e6² · 1e-14 is a tenth.
+    ``sharp``: whether residuals of nodes next to singular positions are rounded once.
     ``smallest_step``: relative to the path's natural length, below which the track ends.
     """
 
@@ -69,6 +70,7 @@ class TrackOptions:
     largest_step: float = 0.8
     smallest_step: float = 1e-13
     most_steps: int = 100_000
+    sharp: bool = False
 
     def bounds(self, size: float) -> StepBounds:
         """Of the steps along a path of the natural length ``size``."""
@@ -268,7 +270,8 @@ class _Trial:
             return Attempt(None)
         factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
         v = found.v
-        if rates.nearness[0] > REGULAR_CONDITION:  # so that rounding leaves it on the branch
+        # so that rounding leaves it on the branch
+        if opt.sharp and rates.nearness[0] > REGULAR_CONDITION:
             v = solver.sharpen(v)
             rates = solver.rates(v, path.rate)
         return Attempt(_node(t, v[0], rates, int(found.iterations[0])), factor)

@@ -188,7 +188,9 @@ def turn_beyond(leads: Parametrizations, v: Array, rates: Array, side: float) ->
 
 def _turn_on_curve(leads: Parametrizations, v: Array, side: float) -> TurnAhead | None:
     """The first dead point ahead on the curve through a position, whatever variables lead to it."""
-    curve = trace(leads, v, side, CurveOptions(track=TrackOptions(), most_legs=_MOST_LEGS))
+    curve = trace(
+        leads, v, side, CurveOptions(track=TrackOptions(sharp=True), most_legs=_MOST_LEGS)
+    )
     turn = next(turning_points(leads, curve), None)
     if turn is None:
         return None
@@ -207,7 +209,7 @@ def _follow_to_turn(options: TrackOptions) -> _Following:
     def follow_leg(
         solver: BlockSolver, path: InputPath, node: Node, goal: float, watch: Watch
     ) -> list[Node]:
-        limited = replace(options, most_steps=_MOST_STEPS)
+        limited = replace(options, most_steps=_MOST_STEPS, sharp=True)
         return follow(solver, path, node, goal, limited, watch)[0]
 
     return follow_leg
