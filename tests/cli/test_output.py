@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import linkwork as lw
 from linkwork.api import example_text, load
 from linkwork.cli import output_file
 from linkwork.foundation.errors import InputError
@@ -290,3 +291,33 @@ def test_a_link_is_followed_and_a_device_is_not_replaced(folder: Path) -> None:
     finally:
         os.close(reader)
     assert pipe.is_fifo()
+
+
+def test_every_command_prints_json(run: Run, folder: Path) -> None:
+    written = {"draw": "a.svg", "plot": "b.svg", "animate": "c.html"}
+    for command, path in written.items():
+        done = run(command, "four-bar.toml", "-o", path, "--json")
+        assert _json(done.stdout) == {"schema": 1, "written": [path]}
+        assert (folder / path).exists()
+    listed = _json(run("examples", "--json").stdout)["examples"]
+    assert [entry["name"] for entry in listed] == list(lw.examples())
+    assert ("boxer-engine", "engine and pump") in [(e["name"], e["family"]) for e in listed]
+    text = _json(run("examples", "four-bar", "--json").stdout)["text"]
+    assert text == lw.example_text("four-bar")
+    assert _json(run("schema", "--json").stdout)["$schema"]
+
+
+def test_inputs_that_a_whole_circuit_does_not_reach_are_no_failure(run: Run) -> None:
+    words = ("sweep", "double-rocker.toml", "--from", "0", "--to", "360", "--step", "30")
+    assert run(*words).exit_code == 1
+    assert run(*words, "--through").exit_code == 0
+
+
+@pytest.mark.parametrize("speed", ["300 rpm", "300 RPM", "300Rpm", "10*pi RAD/S"])
+def test_units_of_speeds_are_read_in_any_case(run: Run, folder: Path, speed: str) -> None:
+    text = (folder / "four-bar.toml").read_text(encoding="utf-8")
+    (folder / "fast.toml").write_text(text.replace("300 rpm", speed), encoding="utf-8")
+    done = run("solve", "fast.toml", "--at", "60", "--json")
+    slow = run("solve", "four-bar.toml", "--at", "60", "--json")  # 300 rpm
+    found, wanted = (_json(text.stdout)["velocity"]["rocker"] for text in (done, slow))
+    assert found == pytest.approx(wanted)

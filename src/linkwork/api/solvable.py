@@ -58,7 +58,7 @@ class SolvableMechanism(DescribedMechanism):
         certify : bool
             Prove the position, and that the motion from the start to it stays on one branch.
         with_steps : bool
-            Keep the iterates in ``position.steps``.
+            Keep the iterates at the value asked in ``position.steps``, started from the guess.
         throw : bool
             Raise an exception instead of returning a position with another status.
 

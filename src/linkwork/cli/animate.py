@@ -13,10 +13,11 @@ from linkwork.cli.options import (
     file_argument,
     force_option,
     forces_of,
+    json_option,
     set_option,
 )
 from linkwork.cli.output_file import check_outputs, write_bytes
-from linkwork.cli.terminal import print_lines, progress
+from linkwork.cli.terminal import print_lines, print_written, progress
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.viewer import FilmOptions, animation, check_animation
@@ -42,6 +43,7 @@ __all__ = ["animate"]
 @force_option
 @configuration_option
 @set_option
+@json_option
 @debug_option
 @click.pass_context
 def animate(
@@ -55,6 +57,7 @@ def animate(
     forces: tuple[str, ...],
     configuration: str | None,
     changes: tuple[str, ...],
+    as_json: bool,
 ) -> None:
     """Write the motion as an animated page or a film.
 
@@ -96,7 +99,8 @@ def animate(
             progress=tell,
         )
     write_bytes(output, [content])
-    print_lines([f"Wrote {output}: {_told(motions, kind)}, {len(content) / 1000:.0f} kB."])
+    about = f": {_told(motions, kind)}, {len(content) / 1000:.0f} kB"
+    print_written(output, as_json, about)
 
 
 def _motions(

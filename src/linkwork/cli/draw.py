@@ -16,10 +16,11 @@ from linkwork.cli.options import (
     force_option,
     forces_of,
     input_values,
+    json_option,
     set_option,
 )
 from linkwork.cli.output_file import check_outputs
-from linkwork.cli.terminal import print_lines, progress
+from linkwork.cli.terminal import print_written, progress
 from linkwork.drawing.scene_options import SceneOptions
 from linkwork.drawing.theme import THEMES
 
@@ -64,6 +65,7 @@ __all__ = ["draw"]
     default="light",
     help="Colours of the page: light (the default) or dark.",
 )
+@json_option
 @debug_option
 def draw(
     file: str,
@@ -75,6 +77,7 @@ def draw(
     traces: tuple[str, ...],
     forces: tuple[str, ...],
     theme: str,
+    as_json: bool,
     **shown: Any,
 ) -> None:
     """Draw one position, with the paths of the traced points.
@@ -103,4 +106,4 @@ def draw(
             progress=tell,
         )
     picture.write(scene, output, theme=THEMES[theme])
-    print_lines([f"Wrote {output}."])
+    print_written(output, as_json)

@@ -8,9 +8,9 @@ from pathlib import Path
 import click
 
 from linkwork.api import example_text, examples as example_names
-from linkwork.cli.options import debug_option
+from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.output_file import check_outputs, write_text
-from linkwork.cli.terminal import fields, print_lines, title_lines
+from linkwork.cli.terminal import fields, print_json, print_lines, title_lines
 from linkwork.foundation.errors import InputError
 
 __all__ = ["examples"]
@@ -22,8 +22,9 @@ _NO_FAMILY = "other"
 @click.argument("name", required=False)
 @click.option("-o", "--output", metavar="PATH", help="Write to this file.")
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
+@json_option
 @debug_option
-def examples(name: str | None, output: str | None, force: bool) -> None:
+def examples(name: str | None, output: str | None, force: bool, as_json: bool) -> None:
     """List the mechanisms of the library, or copy one to a file.
 
     \b
@@ -34,9 +35,15 @@ def examples(name: str | None, output: str | None, force: bool) -> None:
     if name is None:
         if output is not None:
             raise InputError("-o needs the name of an example: linkwork examples NAME -o PATH")
-        print_lines(_listing())
+        if as_json:
+            print_json({"examples": _entries()})
+        else:
+            print_lines(_listing())
         return
     text = example_text(name)
+    if as_json and output is None:
+        print_json({"name": name, "text": text})
+        return
     if output is None or output == "-":
         click.echo(text, nl=False)
         return
@@ -44,16 +51,27 @@ def examples(name: str | None, output: str | None, force: bool) -> None:
     if Path(output).exists() and not force:
         raise InputError(f'"{output}" exists already: choose another name, or add --force')
     write_text(output, [text])
-    print_lines([f"Wrote {output}. Next: linkwork sweep {output}"])
+    if as_json:
+        print_json({"written": [output]})
+    else:
+        print_lines([f"Wrote {output}. Next: linkwork sweep {output}"])
+
+
+def _entries() -> list[dict[str, str]]:
+    """Name, title and family of every example."""
+    found = []
+    for name in example_names():
+        data = tomllib.loads(example_text(name))
+        title, family = str(data.get("name", "")), str(data.get("family", _NO_FAMILY))
+        found.append({"name": name, "title": title, "family": family})
+    return found
 
 
 def _listing() -> list[str]:
     """Name and title of every example, by family."""
     titles: dict[str, dict[str, str]] = {}
-    for name in example_names():
-        data = tomllib.loads(example_text(name))
-        family = str(data.get("family", _NO_FAMILY))
-        titles.setdefault(family, {})[name] = str(data.get("name", ""))
+    for entry in _entries():
+        titles.setdefault(entry["family"], {})[entry["name"]] = entry["title"]
     lines: list[str] = []
     for family in sorted(titles, key=lambda family: (family == _NO_FAMILY, family.casefold())):
         lines += [*title_lines(family), *fields(titles[family].items()), ""]

@@ -16,12 +16,13 @@ from linkwork.cli.options import (
     configuration_option,
     debug_option,
     file_argument,
+    json_option,
     range_options,
     set_option,
     through_option,
 )
 from linkwork.cli.output_file import check_outputs
-from linkwork.cli.terminal import print_lines, progress
+from linkwork.cli.terminal import print_lines, print_written, progress
 from linkwork.drawing.charts.plotting import (
     CIRCUIT_KINDS,
     PlotKind,
@@ -63,6 +64,7 @@ __all__ = ["plot"]
 @through_option
 @change_points_option
 @set_option
+@json_option
 @debug_option
 @click.pass_context
 def plot(
@@ -75,6 +77,7 @@ def plot(
     against: str,
     wrapped: bool,
     theme: str,
+    as_json: bool,
     changes: tuple[str, ...],
     **sweeping: Any,
 ) -> None:
@@ -102,14 +105,14 @@ def plot(
     if kind in [which.value for which in CIRCUIT_KINDS]:
         found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
         picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)
-        print_lines([f"Wrote {output}."])
+        print_written(output, as_json)
         return
     with progress("sweeping") as tell:
         motion = mechanism.sweep(progress=tell, **sweeping)
     if motion.found.any():
         chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
         picture.write(chart, output, theme=colours)
-        print_lines([f"Wrote {output}."])
+        print_written(output, as_json)
     if not motion.found.all():
         print_lines(failure_line(motion), err=True)
         context.exit(1)

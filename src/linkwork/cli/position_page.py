@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwork.api import Mechanism
-from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
+from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
 from linkwork.foundation.certification import Certification
 from linkwork.motion.leading_input import leading_input
-from linkwork.results.position import Certificate, NewtonTrail, Position
+from linkwork.results.position import Certificate, NewtonStep, NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
 __all__ = [
@@ -25,6 +25,8 @@ __all__ = [
 ]
 
 _NOISE = 1e-13  # relative to the largest derivative: rounding, printed as 0
+_SYSTEM_DIGITS = 6
+_SAME_END = 1e-6  # of a turn, or relative
 _NUMBER_DIGITS = 10  # for a number without a unit
 
 
@@ -37,7 +39,7 @@ class Row:
     value: float
 
 
-def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool) -> list[str]:
+def position_lines(mechanism: Mechanism, position: Position) -> list[str]:
     """The lines of a position: values, derivatives, points, evidence, and recorded steps."""
     where = inputs_text(position.input, position.input_units)
     lines = title_lines(position.mechanism)
@@ -45,7 +47,7 @@ def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool
         lines += sentence(bad, "No position found", where)
         told = position.failure
         lines += fields([("why", position.message)] if told is None else told.sentences())
-        return [*lines, *_steps(mechanism, position, from_guess)]
+        return [*lines, *_steps(position, mechanism)]
     lines += sentence(good, "Position found", where)
     if position.failure is not None:
         lines += fields(position.failure.sentences())
@@ -53,7 +55,7 @@ def position_lines(mechanism: Mechanism, position: Position, *, from_guess: bool
     if position.points:
         lines += ["", *_points(position)]
     lines += ["", *fields(_evidence(mechanism, position))]
-    return [*lines, *_steps(mechanism, position, from_guess)]
+    return [*lines, *_steps(position, mechanism)]
 
 
 def value_cells(rows: Sequence[Row]) -> list[str]:
@@ -187,24 +189,39 @@ def inputs_text(values: Mapping[str, float], units: Mapping[str, str]) -> str:
     return f"at {', '.join(parts)}" if parts else ""
 
 
-def _steps(mechanism: Mechanism, position: Position, from_guess: bool) -> Iterator[str]:
-    """The iterations of every block, and the input value at which they ran."""
+def _steps(position: Position, mechanism: Mechanism) -> Iterator[str]:
+    """The iterations of every block from the guess, at the input value that was asked for."""
     if not position.steps:
         return
-    model = mechanism.model
-    own = dict(zip(position.input, (model.start_inputs / model.input_scale).tolist(), strict=True))
-    here = dict(position.input) if from_guess else own
-    where = inputs_text(here, position.input_units)
+    where = inputs_text(position.input, position.input_units)
     yield ""
     yield from sentence(str, f"Newton-Raphson from the guess {where}".rstrip())
-    if position.status.ok and here != dict(position.input):
-        yield from sentence(
-            str,
-            f"(then followed to the position {inputs_text(position.input, position.input_units)})",
-            "",
-        )
     for trail in position.steps:
         yield from ("", *_trail(mechanism, trail))
+    ends = {
+        name: x
+        for trail in position.steps
+        for name, x in trail.steps[-1].unknowns.items()
+        if name in position.unknowns
+    }
+    kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.unknowns}
+    turn = mechanism.model.units.angle.turn
+    away = [
+        math.remainder(x - position.unknowns[name], turn) / turn
+        if kinds[name] is Kind.ANGLE
+        else (x - position.unknowns[name]) / max(1.0, abs(x))
+        for name, x in ends.items()
+    ]
+    converged = all(trail.status.ok for trail in position.steps)
+    if position.status.ok and not (converged and max(map(abs, away), default=0.0) < _SAME_END):
+        own = mechanism.model.start_in_file_units.tolist()
+        guessed = inputs_text(dict(zip(position.input, own, strict=True)), position.input_units)
+        yield ""
+        yield from sentence(
+            str,
+            "These steps do not lead to the position above, which was followed from the guess "
+            f"{guessed}.".replace(" .", "."),
+        )
 
 
 def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
@@ -226,3 +243,25 @@ def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
     yield from table_lines(columns)
     if not trail.status.ok:
         yield from sentence(bad, trail.status.value)
+    for step in steps[:-1]:
+        yield from ("", *table_lines(_system(trail, step)))
+        changes = [
+            f"{name} {significant(change, _SYSTEM_DIGITS)} {units.of(kinds[name])}".rstrip()
+            for name, change in step.changes.items()
+        ]
+        yield from wrapped(", ".join(changes), "  Δ  ")
+
+
+def _system(trail: NewtonTrail, step: NewtonStep) -> list[Column]:
+    """F and J of one iterate as columns."""
+
+    def column(header: str, numbers: Sequence[float]) -> Column:
+        cells = [significant(number, _SYSTEM_DIGITS) for number in numbers]
+        return Column(header=header, cells=cells, align="point")
+
+    slopes = zip(step.unknowns, zip(*step.jacobian, strict=True), strict=True)
+    return [
+        Column(header=f"k = {step.k}", cells=trail.rows),
+        column("F", step.values),
+        *(column(f"∂F/∂{name}", slope) for name, slope in slopes),
+    ]

@@ -13,6 +13,7 @@ __all__ = ["schema"]
 
 @click.command
 @click.option("--plan", is_flag=True, help="Print the schema of study plans instead.")
+@click.option("--json", is_flag=True, expose_value=False, help="Print JSON, as without it.")
 @debug_option
 def schema(plan: bool) -> None:
     """Print the JSON Schema of mechanism files.

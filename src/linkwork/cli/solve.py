@@ -126,6 +126,6 @@ def solve(
     if as_json:
         print_json(position.to_dict())
     else:
-        print_lines(position_lines(mechanism, position, from_guess=from_guess))
+        print_lines(position_lines(mechanism, position))
     if not position.status.ok:
         context.exit(1)

@@ -79,6 +79,14 @@ def print_json(data: dict[str, Any]) -> None:
     click.echo(json.dumps(versioned, indent=2, ensure_ascii=False, allow_nan=False))
 
 
+def print_written(path: str, as_json: bool, about: str = "") -> None:
+    """Say that a file was written."""
+    if as_json:
+        print_json({"written": [path]})
+    else:
+        print_lines([f"Wrote {path}{about}."])
+
+
 def _finite(data: Any) -> Any:
     match data:
         case dict():

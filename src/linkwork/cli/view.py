@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 
 from linkwork.api import example_text, examples, loads
-from linkwork.cli.options import debug_option, file_argument
-from linkwork.cli.terminal import print_lines, title_lines
+from linkwork.cli.options import debug_option, file_argument, json_option
+from linkwork.cli.terminal import print_json, print_lines, title_lines
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.server import LiveServer
@@ -32,6 +32,14 @@ def _opened(file: str) -> MechanismFile:
     return MechanismFile(path, example_text(file))
 
 
+def _told(name: str, address: str) -> list[str]:
+    return [
+        *title_lines(f"{name} is open at"),
+        f"  {address}",
+        "Anyone who knows this address can edit the file. Stop with Ctrl-C.",
+    ]
+
+
 @click.command
 @file_argument
 @click.option(
@@ -42,8 +50,9 @@ def _opened(file: str) -> MechanismFile:
     help="Port of the page. Default: any free port.",
 )
 @click.option("--no-browser", is_flag=True, help="Print the address, but do not open a browser.")
+@json_option
 @debug_option
-def view(file: str, port: int, no_browser: bool) -> None:
+def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
     """Show and edit a mechanism in a browser until Ctrl-C.
 
     \b
@@ -61,13 +70,10 @@ def view(file: str, port: int, no_browser: bool) -> None:
     server = LiveServer(workbench, port)
 
     def tell() -> None:
-        print_lines(
-            [
-                *title_lines(f"{opened.name} is open at"),
-                f"  {server.address}",
-                "Anyone who knows this address can edit the file. Stop with Ctrl-C.",
-            ]
-        )
+        if as_json:
+            print_json({"file": opened.name, "address": server.address})
+        else:
+            print_lines(_told(opened.name, server.address))
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
 

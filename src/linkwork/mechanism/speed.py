@@ -38,8 +38,9 @@ def speed_per_second(speed: Number, kind: str, numbers: Numbers, length: str) ->
     linear = {} if kind in ("link", "joint") else {f"{length}/s": 1.0}
     text = speed.rstrip()
     for unit in sorted({**angular, **linear}, key=len, reverse=True):
-        amount = text.removesuffix(unit)
-        if amount != text and not amount[-1:].isalpha():
+        amount = text[: -len(unit)]
+        # rpm is also written RPM
+        if text[-len(unit) :].lower() == unit.lower() and not amount[-1:].isalpha():
             scale = 1.0 if unit in linear else angular[unit] / numbers.unit.radians
             return numbers(amount) * scale
     try:

@@ -57,7 +57,8 @@ def solve(
     certify : bool
         Prove the position, and that the motion to it stays on the guess's branch.
     with_steps : bool
-        Keep the iterates.
+        Keep the iterates of Newton-Raphson at the value asked, started from the guess. Where that
+        is another value than the guess's own, they may end at another position.
     throw : bool
         Raise instead of returning a position that was not found.
 
@@ -72,6 +73,9 @@ def solve(
     target = target_values(model, at)
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)
+    if with_steps and not from_guess and not np.array_equal(inputs, model.start_inputs):
+        tried = first_position(model, inputs, options, True, explained=False)
+        start = replace(start, trails=tried.trails)
     if not start.status.ok:
         failure = start.failure
         if (

@@ -78,8 +78,12 @@ class _Watcher:
 
     def __init__(self, model: Model, number: int) -> None:
         self.block = model.compiled.solver.blocks[number]
-        labels = model.equations.labels
+        labels, loops = model.equations.labels, len(model.equations.loops)
         self.equations = tuple(labels[e] for e in self.block.equations)
+        closed = [labels[e] for e in self.block.equations if e < loops]
+        others = (labels[e] for e in self.block.equations if e >= loops)
+        # the parts of all loops, then the equations that are real themselves
+        self.rows = (*(f"{name}, {part}" for part in "xy" for name in closed), *others)
         self.variables = [model.equations.unknowns[k] for k in self.block.unknowns]
         self.scales = [model.units.scale(Kind(v.kind)) for v in self.variables]
         self.steps: list[NewtonStep] = []
@@ -87,20 +91,26 @@ class _Watcher:
     def __call__(self, k: int, v: Array, residual: Array, change: Array | None) -> None:
         n = len(self.variables)
         weights = self.block.system.variable_scale[:n]
+        jacobian = self.block.system.jacobian(v[:1])[0, :, :n]
         self.steps.append(
             NewtonStep(
                 k=k,
-                unknowns={
-                    variable.name: float(value / scale)
-                    for variable, value, scale in zip(
-                        self.variables, v[0, :n], self.scales, strict=True
-                    )
-                },
+                unknowns=self._named(v[0, :n]),
                 residual=float(np.linalg.norm(residual[0])),
                 step=None if change is None else float(np.abs(change[0] / weights).max()),
+                values=tuple(residual[0].tolist()),
+                jacobian=tuple(map(tuple, jacobian.tolist())),
+                changes={} if change is None else self._named(change[0]),
             )
         )
 
+    def _named(self, values: Array) -> dict[str, float]:
+        """Values of the unknowns (n,) by name, in file units."""
+        triples = zip(self.variables, values, self.scales, strict=True)
+        return {variable.name: float(value / scale) for variable, value, scale in triples}
+
     def trail(self, status: Status) -> NewtonTrail:
         """The iterates with how they ended."""
-        return NewtonTrail(equations=self.equations, steps=tuple(self.steps), status=status)
+        return NewtonTrail(
+            equations=self.equations, rows=self.rows, steps=tuple(self.steps), status=status
+        )

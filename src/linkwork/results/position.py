@@ -61,12 +61,20 @@ class Certificate:
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonStep:
-    """One iterate of Newton-Raphson; ``step`` is the change to the next iterate."""
+    """One iterate of Newton-Raphson: F + J Δ = 0, and Δ leads to the next iterate.
+
+    ``values``: F, one number for each real equation, in file units. ``jacobian``: J, a row for each
+    of them and a column for each unknown, by radians where that is an angle. ``changes``: Δ by
+    unknown, in file units; none at the last iterate. ``step``: their largest weighted size.
+    """
 
     k: int
     unknowns: Mapping[str, float]
     residual: float
     step: float | None = None
+    values: tuple[float, ...] = ()
+    jacobian: tuple[tuple[float, ...], ...] = ()
+    changes: Mapping[str, float] = FrozenDict()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,10 +82,11 @@ class NewtonTrail:
     """The iterates of one block of equations, in file units.
 
     In the steps, ``residual`` is the 2-norm of the block's real equations in their unit, ``step``
-    the largest weighted change of an unknown.
+    the largest weighted change of an unknown. ``rows`` names the real equations.
     """
 
     equations: tuple[str, ...]
+    rows: tuple[str, ...]
     steps: tuple[NewtonStep, ...]
     status: Status
 
@@ -300,6 +309,7 @@ def _plain(table: Mapping[str, float]) -> dict[str, float | None]:
 def _trail(trail: NewtonTrail) -> dict[str, Any]:
     return {
         "equations": list(trail.equations),
+        "rows": list(trail.rows),
         "status": trail.status.name,
         "steps": [
             {
@@ -307,6 +317,9 @@ def _trail(trail: NewtonTrail) -> dict[str, Any]:
                 "unknowns": _plain(step.unknowns),
                 "residual": _null(step.residual),
                 "step": None if step.step is None else _null(step.step),
+                "F": [_null(value) for value in step.values],
+                "J": [[_null(slope) for slope in row] for row in step.jacobian],
+                "change": _plain(step.changes),
             }
             for step in trail.steps
         ],
