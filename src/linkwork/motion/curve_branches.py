@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
@@ -83,13 +85,14 @@ class CurveBranch:
     def range(self, parameter: int) -> tuple[float, float]:
         """Smallest and largest value of the parameter."""
         values = self.v[:, parameter]
-        low, high = float(values.min()), float(values.max())
-        # rounding may carry a position next to a dead point beyond it
-        if self.begin is not None and self.begin.located:
-            low, high = (self.begin.t, high) if self.side > 0 else (low, self.begin.t)
-        if self.end is not None and self.end.located:
-            low, high = (low, self.end.t) if self.side > 0 else (self.end.t, high)
-        return low, high
+        edges = [float(values.min()), float(values.max())]
+        turns = (self.begin, self.end) if self.side > 0 else (self.end, self.begin)
+        for k, turn in enumerate(turns):
+            if turn is not None and turn.located:
+                # rounding may carry a position next to a dead point beyond it; turns of a closed
+                # curve may lie a lap away
+                edges[k] += math.remainder(turn.t - edges[k], FULL_TURN)
+        return edges[0], edges[1]
 
     def is_joined(self, leads: Parametrizations) -> bool:
         """Whether the anchor is proved to be the same position when the parameter leads."""
