@@ -6,11 +6,12 @@ matrices (a link with three joints enters three loops with a, b and a + b) form 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.numerics.homotopy.bilinear import BilinearSystem
 from linkwork.numerics.homotopy.bilinear_homotopy import ParameterHomotopy, StartHomotopy
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures, sums_hold
@@ -57,6 +58,15 @@ class Structure:
     def random(self, rng: np.random.Generator) -> BilinearSystem:
         """A member with random complex free coefficients."""
         left, right = (random_closures(self.columns, rng) for _ in range(2))
+        return BilinearSystem(left=left, right=right, rows=np.array(self.rows))
+
+    def numbers(self, system: BilinearSystem) -> Mapping[str, AnyArray]:
+        """The coefficients of a member."""
+        return {"left": system.left, "right": system.right}
+
+    def member(self, numbers: Mapping[str, AnyArray]) -> BilinearSystem:
+        """The member with these coefficients."""
+        left, right = (np.asarray(numbers[side], dtype=complex) for side in ("left", "right"))
         return BilinearSystem(left=left, right=right, rows=np.array(self.rows))
 
     def generator(self, purpose: int) -> np.random.Generator:

@@ -7,12 +7,13 @@ run straight from start to goal.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
 from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers, null_space
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
 from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot, most_dead_points
@@ -197,6 +198,17 @@ class DeadPointFamily:
     def random(self, rng: np.random.Generator) -> DeadPointSystem:
         """A member with random complex free coefficients."""
         left, right = (random_closures(self.columns, rng) for _ in range(2))
+        return DeadPointSystem(
+            left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
+        )
+
+    def numbers(self, system: DeadPointSystem) -> Mapping[str, AnyArray]:
+        """The coefficients of a member."""
+        return {"left": system.left, "right": system.right}
+
+    def member(self, numbers: Mapping[str, AnyArray]) -> DeadPointSystem:
+        """The member with these coefficients."""
+        left, right = (np.asarray(numbers[side], dtype=complex) for side in ("left", "right"))
         return DeadPointSystem(
             left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
         )

@@ -3,20 +3,20 @@
 Almost every member of a linear family has the same number of isolated solutions, and a straight
 path from a random complex member to any other one leads to all isolated solutions of the latter
 (Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
-member is solved once per process from products of linear forms, and its set of solutions is
+member is solved once, and kept on disk, from products of linear forms, and its set of solutions is
 completed until closed paths of systems lead to no new one.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
 from linkwork.numerics.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
@@ -29,6 +29,7 @@ from linkwork.numerics.homotopy.path_tracking import (
     track,
 )
 from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polish_roots
+from linkwork.numerics.homotopy.start_sets import key_of, read_set, write_set
 
 __all__ = [
     "SEED",
@@ -82,6 +83,12 @@ class RootFamily(Hashable, Protocol[S]):
 
     def random(self, rng: np.random.Generator) -> S:
         """A member with random complex free coefficients."""
+
+    def numbers(self, system: S) -> Mapping[str, AnyArray]:
+        """The numbers in which members differ, by name."""
+
+    def member(self, numbers: Mapping[str, AnyArray]) -> S:
+        """The member with these numbers."""
 
     def generator(self, purpose: int) -> np.random.Generator:
         """Random numbers of the family's own, the same in every run and in any order of calls."""
@@ -165,24 +172,52 @@ def _agree(a: _Ends, b: _Ends) -> bool:
 
 
 def _generic(family: RootFamily[S]) -> _Generic[S]:
-    """The stored random member; solved when it is first wanted."""
+    """The stored random member; read from disk, or solved when it is first wanted."""
     if family not in _KNOWN:
-        rng = family.generator(0)
-        system = family.random(rng)
-        x = np.zeros((0, 0), dtype=complex)
-        clean = 0
-        for attempt in range(_ATTEMPTS):
-            start = family.from_products(system, rng)
-            ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
-            found = ends.x[ends.regular]
-            x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
-            clean += not (ends.failed | ends.singular | _meeting(ends)).any()
-            if (clean and len(x)) or clean == _LOOPS:
-                break
-        # without solutions closed paths prove nothing: all paths have to run to infinity twice
-        nothing = not len(x) and clean == _LOOPS
-        _KNOWN[family] = _close_paths(family, _Generic(system=system, x=x, sure=nothing), rng)
+        known = _read_generic(family)
+        if known is None:
+            known = _solve_generic(family)
+            arrays = {"x": known.x, "sure": np.array(known.sure), **family.numbers(known.system)}
+            write_set(key_of(family), arrays)
+        _KNOWN[family] = known
     return _KNOWN[family]
+
+
+def _read_generic(family: RootFamily[S]) -> _Generic[S] | None:
+    """The member that is kept on disk, if all its solutions are solutions."""
+    stored = read_set(key_of(family))
+    if stored is None:
+        return None
+    try:
+        system, x = family.member(stored), stored["x"]
+        steps = np.zeros(0)
+        if len(x):
+            x, steps = polish_roots(system, x)
+        sure = bool(stored["sure"])
+    except (KeyError, ValueError, IndexError, TypeError):
+        return None
+    if (steps < 0).any() or len(_distinct(x)) != len(x):
+        return None
+    return _Generic(system=system, x=x, sure=sure)
+
+
+def _solve_generic(family: RootFamily[S]) -> _Generic[S]:
+    """A random member, solved from products of linear forms and completed by closed paths."""
+    rng = family.generator(0)
+    system = family.random(rng)
+    x = np.zeros((0, 0), dtype=complex)
+    clean = 0
+    for attempt in range(_ATTEMPTS):
+        start = family.from_products(system, rng)
+        ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
+        found = ends.x[ends.regular]
+        x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
+        clean += not (ends.failed | ends.singular | _meeting(ends)).any()
+        if (clean and len(x)) or clean == _LOOPS:
+            break
+    # without solutions closed paths prove nothing: all paths have to run to infinity twice
+    nothing = not len(x) and clean == _LOOPS
+    return _close_paths(family, _Generic(system=system, x=x, sure=nothing), rng)
 
 
 def _close_paths(
