@@ -16,7 +16,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, CountArray
 from linkwork.numerics.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
@@ -190,7 +190,7 @@ def _read_generic(family: RootFamily[S]) -> _Generic[S] | None:
         return None
     try:
         system, x = family.member(stored), stored["x"]
-        steps = np.zeros(0)
+        steps: CountArray = np.zeros(0, dtype=np.int64)
         if len(x):
             x, steps = polish_roots(system, x)
         sure = bool(stored["sure"])
