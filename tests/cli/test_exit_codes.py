@@ -104,7 +104,7 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("solve", "four-bar.toml", "--set", "a=1", "--set", "a=2"),
-            "Error: --set a=2: this number has a value already, 1.0\n",
+            'Error: "a" has a value already: 1.0\n',
         ),
         (
             ("solve", "four-bar.toml", "--set", "a=-3"),

@@ -228,7 +228,7 @@ def test_set_finds_a_dimension_in_any_spelling(run: Run, folder: Path) -> None:
     data = _json(run("solve", "rho.toml", "--at", "0", "--json", "--set", "rho=50").stdout)
     assert data["points"]["A"] == pytest.approx([50, 0], abs=1e-9)
     twice = run("solve", "rho.toml", "--set", "rho=50", "--set", "ρ=60")
-    assert twice.stderr == "Error: --set ρ=60: this number has a value already, 50.0\n"
+    assert twice.stderr == 'Error: "ρ" has a value already: 50.0\n'
 
 
 def test_at_takes_one_value_for_each_of_several_inputs(run: Run) -> None:
@@ -311,6 +311,9 @@ def test_inputs_that_a_whole_circuit_does_not_reach_are_no_failure(run: Run) -> 
     words = ("sweep", "double-rocker.toml", "--from", "0", "--to", "360", "--step", "30")
     assert run(*words).exit_code == 1
     assert run(*words, "--through").exit_code == 0
+    drawn = ("plot", *words[1:], "-o", "a.svg")
+    assert run(*drawn).exit_code == 1
+    assert run(*drawn, "--through").exit_code == 0
 
 
 @pytest.mark.parametrize("speed", ["300 rpm", "300 RPM", "300Rpm", "10*pi RAD/S"])

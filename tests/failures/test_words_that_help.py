@@ -42,7 +42,8 @@ BAR: dict[str, Any] = {
         (
             '[lengths]\n"O2 A" = "40mm"\n',
             'line 13  lengths."O2 A"  column 3: numbers carry no unit here: write 40 and set '
-            'length = "mm" for the whole file\n        40mm\n          ^',
+            'length = "mm" for the whole file; a product is written "40*mm"\n'
+            "        40mm\n          ^",
         ),
         (
             '[lengths]\n"O2 A" = 40 mm\n',
@@ -82,6 +83,17 @@ def test_a_misspelt_point_is_told_where_it_is_and_nowhere_else() -> None:
     assert str(caught.value) == (
         '1 problem in text\n  line 10  links.coupler  point "BB" is not defined '
         "(points: B, O2, A, O4)"
+    )
+
+
+def test_a_length_to_a_point_on_no_link_is_told() -> None:
+    text = FOUR_BAR.replace("O4 = [4, 0]", "O4 = [4, 0]\nX = [5, 5]")
+    with pytest.raises(lw.MechanismFileError) as caught:
+        lw.loads(text + '[lengths]\n"A X" = 3\n' + DRIVEN)
+    assert str(caught.value) == (
+        "2 problems in text\n"
+        "  line 7   points.X       is on no link: add it to a link or remove it\n"
+        '  line 14  lengths."A X"  no link carries A and X: a distance between links varies'
     )
 
 

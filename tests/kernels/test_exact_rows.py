@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 from flint import acb, arb, ctx
 
 from linkwork.kernels.exact_rows import exact_line, exact_rows
@@ -32,6 +35,24 @@ def test_rows_are_rounded_once() -> None:
                 assert value.imag == float(exact.imag.mid())
     finally:
         ctx.prec = before
+
+
+@pytest.mark.parametrize("exponent", [-300, -200, 200, 300])
+def test_rows_of_any_length_are_rounded_once(exponent: int) -> None:
+    """All lengths times a power of two: so is the residual, in every bit."""
+    rng = np.random.default_rng(6)
+    for number in range(40):
+        rows = random_example(number).table.loops
+        v = rng.uniform(-1.0, 1.0, rows.variables)
+        scale = 2.0**exponent
+        larger = replace(rows, coefficient=rows.coefficient * np.where(rows.length < 0, scale, 1.0))
+        w = v.copy()
+        w[rows.length[rows.length >= 0]] *= scale
+        if set(rows.length) & set(rows.phase_variable):
+            continue  # a variable that is a length and an angle
+        found = exact_rows(larger, w)
+        assert np.abs(found).max() > 0.0
+        assert (found == exact_rows(rows, v) * scale).all()
 
 
 def test_lines_are_rounded_once() -> None:

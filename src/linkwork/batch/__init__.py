@@ -27,9 +27,11 @@ if TYPE_CHECKING:
     from linkwork.batch.study import (
         Study as Study,
         Summary as Summary,
+        Verification as Verification,
         read_plan as read_plan,
         run_study as run_study,
         summary_of as summary_of,
+        verify_store as verify_store,
     )
 else:
     __getattr__ = loader(__name__)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from linkwork.api import Mechanism, example_text, examples
 from linkwork.cli.options import number_or_formula
 from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.foundation.names import canonical
 from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.varied_number import numbers_named, with_numbers
 from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
 
 __all__ = ["read_mechanism"]
@@ -29,7 +30,8 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
         return Mechanism(read.description, read)
     try:
         # without the file, whose lines no longer match these numbers
-        return Mechanism(read.description).with_dimensions(_dimensions(changes))
+        numbers = numbers_named(read.description, _changes(changes))
+        return Mechanism(with_numbers(read.description, numbers))
     except MechanismError as error:
         located = read.located(error)
         where = f"{located.where} with {', '.join(changes)}"
@@ -52,17 +54,12 @@ def _read(file: str) -> ReadFile:
     return read_file(path)
 
 
-def _dimensions(changes: tuple[str, ...]) -> dict[str, Number]:
-    found: dict[str, Number] = {}
-    for text in changes:
+def _changes(texts: tuple[str, ...]) -> Iterator[tuple[str, Number]]:
+    for text in texts:
         name, equals, number = text.partition("=")
-        name = " ".join(canonical(name).split())
-        if not (name and equals and number.strip()):
+        if not (name.strip() and equals and number.strip()):
             raise InputError(
                 f"--set {text}: write the name of a number and its value, as in --set a2=260 or "
                 '--set "O2 A=38"'
             )
-        if name in found:
-            raise InputError(f"--set {text}: this number has a value already, {found[name]}")
-        found[name] = number_or_formula(number)
-    return found
+        yield name.strip(), number_or_formula(number)

@@ -41,6 +41,15 @@ def motion_lines(
     return [*lines, "", *ranges] if ranges else lines
 
 
+def answers(motion: Motion, *, through: bool) -> bool:
+    """Whether nothing that was asked for is missing.
+
+    Around a whole circuit the inputs that it does not reach are an answer.
+    """
+    misses = {status for status in motion.counts if not status.ok}
+    return not misses or (through and misses == {Status.OUT_OF_CIRCUIT})
+
+
 def failure_line(motion: Motion) -> list[str]:
     """How many rows were not found, in one sentence."""
     missing = int((motion.asked & ~motion.found).sum())

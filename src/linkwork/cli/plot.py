@@ -9,7 +9,7 @@ import click
 from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
-from linkwork.cli.motion_page import failure_line
+from linkwork.cli.motion_page import answers, failure_line
 from linkwork.cli.options import (
     change_points_option,
     columns_option,
@@ -115,7 +115,7 @@ def plot(
         print_written(output, as_json)
     if not motion.found.all():
         print_lines(failure_line(motion), err=True)
-        context.exit(1)
+        context.exit(0 if answers(motion, through=sweeping["through"]) else 1)
 
 
 def _circuits(mechanism: Mechanism, kind: str, options: dict[str, Any]) -> Circuits:

@@ -54,7 +54,7 @@ def _counts(found: Summary) -> Iterator[tuple[str, str]]:
     if found.damaged:
         yield "damaged", f"{_chunks(found.damaged)}: repeat the command of the study"
     if found.repaired:
-        yield "repaired", f"{_chunks(found.repaired)}, which had changed since"
+        yield "repaired", f"{_chunks(found.repaired)}: changed after it was stored"
     yield "computed", f"{found.computed:,}"
     unbuilt = found.computed - found.built
     if unbuilt:

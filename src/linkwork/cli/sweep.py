@@ -11,7 +11,7 @@ import click
 from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
-from linkwork.cli.motion_page import failure_line, motion_lines
+from linkwork.cli.motion_page import answers, failure_line, motion_lines
 from linkwork.cli.options import (
     change_points_option,
     columns_option,
@@ -30,7 +30,6 @@ from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.status import Status
 from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
 from linkwork.results.motion_table import table_of
@@ -130,9 +129,7 @@ def sweep(
     if not motion.found.all():
         if as_json or csv == "-":
             print_lines(failure_line(motion), err=True)
-        # around the whole circuit the inputs that it does not reach are an answer
-        misses = {status for status in motion.counts if not status.ok}
-        context.exit(0 if through and misses <= {Status.OUT_OF_CIRCUIT} else 1)
+        context.exit(0 if answers(motion, through=through) else 1)
 
 
 def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:

@@ -243,7 +243,8 @@ class _Reader:
         if follower.kind == "name" and follower.text in _UNITS:
             raise self.error(
                 f"numbers carry no unit here: write {token.text} and set "
-                f'{_UNITS[follower.text]} = "{follower.text}" for the whole file',
+                f'{_UNITS[follower.text]} = "{follower.text}" for the whole file; '
+                f'a product is written "{token.text}*{follower.text}"',
                 follower.column,
             )
         if follower.kind == "name":

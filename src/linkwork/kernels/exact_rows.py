@@ -2,13 +2,14 @@
 
 Double precision loses a unit or two of rounding per term, which is enough to move a dead point
 that lies close to a change point: there an error δ of a closure shifts the input by δ / |sin θ|.
-All numbers are multiples of 2^-B.
+Angles are multiples of 2^-B, lengths of a power of 2 that depends on the smallest of them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from functools import cache
 
 import numpy as np
@@ -20,45 +21,51 @@ __all__ = ["exact_line", "exact_rows"]
 
 _BITS = 160  # B: products of two floats, sums of many, and room
 _ONE = 1 << _BITS
+_MANTISSA = 53  # bits of a float
 
 
 def exact_rows(rows: PhasorRows, v: Array) -> ComplexArray:
     """F of all rows at one position v (N,), each part rounded once, (R,)."""
-    values = [_whole(x) for x in v.tolist()]
+    values, coefficients = v.tolist(), rows.coefficient.tolist()
+    lengths = [values[k] if k >= 0 else None for k in rows.length.tolist()]
     phases = [0] * len(rows.row)
     lists = (x.tolist() for x in (rows.phase_term, rows.phase_variable, rows.phase_weight))
     for t, k, w in zip(*lists, strict=True):
-        phases[t] += _product(_whole(w), values[k])
+        phases[t] += (_whole(w, _BITS) * _whole(values[k], _BITS)) >> _BITS
+    parts = [part for factor in coefficients for part in (factor.real, factor.imag)]
+    bits = _BITS + _room(parts) + _room(length for length in lengths if length is not None)
     sums = [[0, 0] for _ in range(rows.rows)]
-    lists = (x.tolist() for x in (rows.row, rows.coefficient, rows.length))
-    for phase, row, factor, length in zip(phases, *lists, strict=True):
+    terms = zip(phases, rows.row.tolist(), coefficients, lengths, strict=True)
+    for phase, row, factor, length in terms:
         c, s = _cosine_and_sine(phase)
-        re, im = _whole(factor.real), _whole(factor.imag)
-        along, across = _product(re, c) - _product(im, s), _product(re, s) + _product(im, c)
-        if length >= 0:
-            along, across = _product(values[length], along), _product(values[length], across)
+        re, im = _whole(factor.real, bits), _whole(factor.imag, bits)
+        along, across = (re * c - im * s) >> _BITS, (re * s + im * c) >> _BITS
+        if length is not None:
+            by = _whole(length, bits)
+            along, across = (by * along) >> bits, (by * across) >> bits
         sums[row][0] += along
         sums[row][1] += across
-    return np.array([complex(_rounded(re), _rounded(im)) for re, im in sums], dtype=complex)
+    one = 1 << bits
+    return np.array([complex(re / one, im / one) for re, im in sums], dtype=complex)
 
 
 def exact_line(constant: float, weights: Sequence[float], values: Sequence[float]) -> float:
     """Σ w v + constant, rounded once."""
     pairs = zip(weights, values, strict=True)
-    return _rounded(_whole(constant) + sum(_product(_whole(w), _whole(x)) for w, x in pairs if w))
+    return float(sum((Fraction(w) * Fraction(x) for w, x in pairs if w), Fraction(constant)))
 
 
-def _whole(x: float) -> int:
-    """x · 2^B."""
-    return int(math.ldexp(x, _BITS))
+def _whole(x: float, bits: int) -> int:
+    """x · 2^bits."""
+    part, exponent = math.frexp(x)
+    shift = exponent + bits - _MANTISSA
+    whole = int(math.ldexp(part, _MANTISSA))
+    return whole << shift if shift >= 0 else whole >> -shift
 
 
-def _product(a: int, b: int) -> int:
-    return (a * b) >> _BITS
-
-
-def _rounded(x: int) -> float:
-    return math.ldexp(float(x), -_BITS)
+def _room(sizes: Iterable[float]) -> int:
+    """How many bits more the smallest of some numbers needs to be as precise as 1 is."""
+    return max([0, *(-math.frexp(size)[1] for size in sizes if size)])
 
 
 @cache
@@ -87,7 +94,7 @@ def _cosine_and_sine(angle: int) -> tuple[int, int]:
     c, s, term, k = _ONE, 0, _ONE, 0
     while term:
         k += 1
-        term = _product(term, rest) // k
+        term = ((term * rest) >> _BITS) // k
         if -1 <= term <= 0:
             break
         sign = -1 if k % 4 in (2, 3) else 1

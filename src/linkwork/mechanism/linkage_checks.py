@@ -139,7 +139,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
     for link, points in linkage.links.items():
         for point in points:
             links_at.setdefault(point, set()).add(link)
-    # a misspelt point of a link is told there
+    # the problem of a misspelt point stands at its link
     misspelt = not links_at.keys() <= set(linkage.points)
     for table, count in (("lengths", 2), ("angles", 3)):
         for text, number in getattr(linkage, table).items():
@@ -153,7 +153,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
             missing = [name for name in names if name not in linkage.points]
             if missing:
                 problems.add(key, _no_point(linkage, missing[0]))
-            elif not (misspelt or set.intersection(*(links_at[name] for name in names))):
+            elif not (misspelt or set.intersection(*(links_at.get(name, set()) for name in names))):
                 what = "a distance" if count == 2 else "an angle"
                 problems.add(
                     key, f"no link carries {' and '.join(names)}: {what} between links varies"

@@ -269,9 +269,12 @@ class SweepTable:
         return rows.take(order), added[order]
 
     def shows(self, t: float, here: Array, own: BoolArray) -> BoolArray:
-        """At which places (P,) of a value of t a row beside is among some rows (B,), and there.
+        """At which places (P,) of a value of t a neighbouring row shows the same turn of a branch.
 
-        A row that was found whole turns away shows another turn of the branch.
+        Parameters
+        ----------
+        own : (B,)
+            The rows of that branch.
         """
         shown = np.zeros(len(here), dtype=bool)
         below, above = self._beside(here, -_SAME_PLACE)

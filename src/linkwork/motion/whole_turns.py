@@ -103,10 +103,11 @@ def lap_of(drive: Drive, begin: Node, t: Array) -> Lap | None:
     inputs = drive.model.equations.inputs
     if len(inputs) != 1 or inputs[0].kind != "angle":
         return None
-    if not max(np.ptp(t), np.abs(t - begin.t).max()) > _FAR * FULL_TURN:
+    asked = max(np.ptp(t), np.abs(t - begin.t).max()) / FULL_TURN
+    if not asked > _FAR:
         return None
     here = begin
-    for turns in range(1, _MOST_TURNS + 1):
+    for turns in range(1, int(min(asked, _MOST_TURNS)) + 1):
         nodes, end = follow(drive.solver, drive.path, here, begin.t + turns * FULL_TURN)
         if end is not None:
             return None

@@ -63,9 +63,10 @@ class Certificate:
 class NewtonStep:
     """One iterate of Newton-Raphson: F + J Δ = 0, and Δ leads to the next iterate.
 
-    ``values``: F, one number for each real equation, in file units. ``jacobian``: J, a row for each
-    of them and a column for each unknown, by radians where that is an angle. ``changes``: Δ by
-    unknown, in file units; none at the last iterate. ``step``: their largest weighted size.
+    ``values``: F, one number for each real equation: a length of the file, or radians.
+    ``jacobian``: J, a row for each of them and a column for each unknown, angles in radians.
+    ``changes``: Δ by unknown, in file units; none at the last iterate. ``step``: their largest
+    weighted size.
     """
 
     k: int

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -546,6 +547,11 @@ def test_a_mechanism_of_the_library_is_opened_and_saved_under_its_name(tmp_path:
         state = told(page, "file_state")
         while state["unsaved"]:
             state = told(page, "file_state")
+        saved = tmp_path / "four-bar.toml"
+        saved.rename(tmp_path / "away.toml")
+        ask(page, "reload")  # the file is gone: the library's text does not take its place
+        assert "there is no such file" in json.dumps(told(page, "problems_found"))
+        (tmp_path / "away.toml").rename(saved)
         os.kill(process.pid, signal.SIGINT)
         process.communicate(timeout=60)
     assert [file.name for file in tmp_path.iterdir()] == ["four-bar.toml"]

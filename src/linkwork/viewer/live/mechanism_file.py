@@ -109,6 +109,7 @@ class MechanismFile:
                 "or save again and overwrite it"
             )
         save_text(text, self._path)
+        self._begun = None  # from now on the file is what there is
         # changes by this program are not reported
         self._stamp = self._stamp_now()
         self.accept(text)

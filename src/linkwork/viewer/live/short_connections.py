@@ -7,8 +7,7 @@ one: every other connection ends after a while, and makes room for a newer one b
 from __future__ import annotations
 
 import asyncio
-from collections import OrderedDict
-from typing import ClassVar, cast
+from typing import cast
 
 from uvicorn.protocols.http.h11_impl import H11Protocol  # noqa: TID253 - loaded by a running server
 
@@ -22,25 +21,18 @@ _MOST = 32  # at a time
 class ShortConnection(H11Protocol):
     """Requests for pages over one connection, which becomes that of a page or is closed."""
 
-    #: Open connections, oldest first.
-    _open: ClassVar[OrderedDict[ShortConnection, asyncio.Transport]] = OrderedDict()
-
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Close the oldest connections beyond the largest number, and this one after a while."""
-        own = cast("asyncio.Transport", transport)
-        super().connection_made(own)
-        self._open[self] = own
-        while len(self._open) > _MOST:
-            next(iter(self._open))._close()
-        asyncio.get_running_loop().call_later(PATIENCE, self._close)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the connection."""
-        self._open.pop(self, None)
-        super().connection_lost(exc)
+        """Close the oldest connection beyond the largest number, and this one after a while."""
+        super().connection_made(cast("asyncio.Transport", transport))
+        loop = asyncio.get_running_loop()
+        self._since = loop.time()
+        loop.call_later(PATIENCE, self._close)
+        waiting = [other for other in self.connections if isinstance(other, ShortConnection)]
+        waiting = [other for other in waiting if not other.transport.is_closing()]
+        if len(waiting) > _MOST:
+            min(waiting, key=lambda other: other._since)._close()
 
     def _close(self) -> None:
-        transport = self._open.pop(self, None)
         # a connection that has been upgraded belongs to a page, which has shown the token
-        if transport is not None and transport.get_protocol() is self:
-            transport.close()
+        if self in self.connections:
+            self.transport.close()
