@@ -6,12 +6,11 @@ matrices (a link with three joints enters three loops with a, b and a + b) form 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.numerics.homotopy.bilinear import BilinearSystem
 from linkwork.numerics.homotopy.bilinear_homotopy import ParameterHomotopy, StartHomotopy
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures, sums_hold
@@ -22,6 +21,7 @@ from linkwork.numerics.homotopy.solution_bound import (
     bound_by_products,
     bound_by_sums,
 )
+from linkwork.numerics.homotopy.topology import Renaming, Topology
 
 __all__ = ["Structure", "structure_of"]
 
@@ -55,19 +55,22 @@ class Structure:
         """Whether this many solutions of a member are all, by a theorem."""
         return found == self.bound(found).number
 
+    @property
+    def topology(self) -> Topology:
+        """Products and sums."""
+        return Topology(rows=self.rows, columns=self.columns)
+
     def random(self, rng: np.random.Generator) -> BilinearSystem:
         """A member with random complex free coefficients."""
-        left, right = (random_closures(self.columns, rng) for _ in range(2))
+        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
+
+    def member(self, left: ComplexArray, right: ComplexArray) -> BilinearSystem:
+        """The member with these closures."""
         return BilinearSystem(left=left, right=right, rows=np.array(self.rows))
 
-    def numbers(self, system: BilinearSystem) -> Mapping[str, AnyArray]:
-        """The coefficients of a member."""
-        return {"left": system.left, "right": system.right}
-
-    def member(self, numbers: Mapping[str, AnyArray]) -> BilinearSystem:
-        """The member with these coefficients."""
-        left, right = (np.asarray(numbers[side], dtype=complex) for side in ("left", "right"))
-        return BilinearSystem(left=left, right=right, rows=np.array(self.rows))
+    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
+        """Solutions of another family's member as those of the same member of this one."""
+        return x[:, renaming.halves]
 
     def generator(self, purpose: int) -> np.random.Generator:
         """Random numbers of the family's own, the same in every run and in any order of calls."""

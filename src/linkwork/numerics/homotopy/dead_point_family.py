@@ -7,18 +7,23 @@ run straight from start to goal.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers, null_space
 from linkwork.numerics.homotopy.column_sums import Columns, columns_of, random_closures
-from linkwork.numerics.homotopy.dead_point_system import DeadPointSystem, Slot, most_dead_points
+from linkwork.numerics.homotopy.dead_point_system import (
+    DeadPointSystem,
+    Slot,
+    most_dead_points,
+    norm_of,
+)
 from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
 from linkwork.numerics.homotopy.polynomial_system import Roots
+from linkwork.numerics.homotopy.topology import Renaming, Topology
 
 __all__ = ["DeadPointFamily", "dead_point_roots"]
 
@@ -195,23 +200,26 @@ class DeadPointFamily:
         """Whether this many solutions of a member are all, by Bézout's theorem."""
         return found == most_dead_points(self.own, len(self.rows[0]))
 
+    @property
+    def topology(self) -> Topology:
+        """Products, sums and rates."""
+        return Topology(rows=self.rows, columns=self.columns, own=self.own, slots=self.slots)
+
     def random(self, rng: np.random.Generator) -> DeadPointSystem:
         """A member with random complex free coefficients."""
-        left, right = (random_closures(self.columns, rng) for _ in range(2))
-        return DeadPointSystem(
-            left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
-        )
+        return self.member(*(random_closures(self.columns, rng) for _ in range(2)))
 
-    def numbers(self, system: DeadPointSystem) -> Mapping[str, AnyArray]:
-        """The coefficients of a member."""
-        return {"left": system.left, "right": system.right}
+    def member(self, left: ComplexArray, right: ComplexArray) -> DeadPointSystem:
+        """The member with these closures."""
+        rows = np.array(self.rows)
+        return DeadPointSystem(left=left, right=right, rows=rows, own=self.own, slots=self.slots)
 
-    def member(self, numbers: Mapping[str, AnyArray]) -> DeadPointSystem:
-        """The member with these coefficients."""
-        left, right = (np.asarray(numbers[side], dtype=complex) for side in ("left", "right"))
-        return DeadPointSystem(
-            left=left, right=right, rows=np.array(self.rows), own=self.own, slots=self.slots
-        )
+    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
+        """Solutions of another family's member as those of the same member of this one."""
+        halves = renaming.halves
+        rates = x[:, len(halves) + renaming.rates]
+        normed = rates / (rates @ norm_of(self.own))[:, None]
+        return np.concatenate([x[:, halves], normed], axis=1)
 
     def generator(self, purpose: int) -> np.random.Generator:
         """Random numbers of the family's own, the same in every run and in any order of calls."""

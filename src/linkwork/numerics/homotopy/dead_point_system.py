@@ -27,7 +27,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, IndexArray
 
-__all__ = ["DeadPointSystem", "Slot", "most_dead_points"]
+__all__ = ["DeadPointSystem", "Slot", "most_dead_points", "norm_of"]
 
 #: A term of the own loops' rates: column of the closures, factor in (U, 1), number in ρ, weights in
 #: the rows of U and of V.
@@ -37,6 +37,13 @@ Slot = tuple[int, int, int, float, float]
 def most_dead_points(own: int, size: int) -> int:
     """2 own C(2L + 1, L) for ``own`` loops of a block and ``size`` = 2L + 1 unknowns."""
     return 2 * own * math.comb(size, size // 2)  # eq. (53)
+
+
+def norm_of(own: int) -> ComplexArray:
+    """The linear form (2 own,) that is 1 for the rates ρ of every system of ``own`` loops."""
+    rng = np.random.default_rng(2 * own)
+    drawn: ComplexArray = rng.normal(size=2 * own) + 1j * rng.normal(size=2 * own)
+    return drawn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,9 +91,7 @@ class DeadPointSystem:
     @cached_property
     def norm(self) -> ComplexArray:
         """The linear form of ρ that is 1."""
-        rng = np.random.default_rng(2 * self.own)
-        drawn: ComplexArray = rng.normal(size=2 * self.own) + 1j * rng.normal(size=2 * self.own)
-        return drawn
+        return norm_of(self.own)
 
     @cached_property
     def linear(self) -> ComplexArray:

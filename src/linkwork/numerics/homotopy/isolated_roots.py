@@ -10,13 +10,13 @@ completed until closed paths of systems lead to no new one.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, CountArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.numerics.homotopy.path_tracking import (
     ARRIVED,
     BOLD,
@@ -29,15 +29,19 @@ from linkwork.numerics.homotopy.path_tracking import (
     track,
 )
 from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polish_roots
-from linkwork.numerics.homotopy.start_sets import key_of, read_set, write_set
+from linkwork.numerics.homotopy.start_sets import StartSet, read_sets, write_set
+from linkwork.numerics.homotopy.topology import Renaming, Topology
 
 __all__ = [
     "SEED",
     "HomotopyFromProducts",
     "HomotopyFromRelative",
     "RootFamily",
+    "Solved",
     "isolated_roots",
     "nearest_solution",
+    "random_member",
+    "solve_random_member",
 ]
 
 #: All random numbers follow from this one, so that every run gives the same answer.
@@ -53,7 +57,20 @@ _LOOPS = 2  # closed paths without a new solution after which a set counts as co
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
 
-S = TypeVar("S", bound=PolynomialSystem)
+
+class ClosureSystem(PolynomialSystem, Protocol):
+    """Polynomials that follow from closures."""
+
+    @property
+    def left(self) -> ComplexArray:
+        """The closures (L, K) of U."""
+
+    @property
+    def right(self) -> ComplexArray:
+        """The closures (L, K) of V."""
+
+
+S = TypeVar("S", bound=ClosureSystem)
 
 
 class _ToSystem(Homotopy, Protocol):
@@ -78,17 +95,21 @@ class HomotopyFromRelative(_ToSystem, Protocol):
 class RootFamily(Hashable, Protocol[S]):
     """Systems that differ in free coefficients only."""
 
+    @property
+    def topology(self) -> Topology:
+        """The products, sums and rates that all members have."""
+
     def complete(self, found: int) -> bool:
         """Whether this many solutions of a member are all, by a theorem."""
 
     def random(self, rng: np.random.Generator) -> S:
         """A member with random complex free coefficients."""
 
-    def numbers(self, system: S) -> Mapping[str, AnyArray]:
-        """The numbers in which members differ, by name."""
+    def member(self, left: ComplexArray, right: ComplexArray) -> S:
+        """The member with these closures (L, K)."""
 
-    def member(self, numbers: Mapping[str, AnyArray]) -> S:
-        """The member with these numbers."""
+    def rename(self, x: ComplexArray, renaming: Renaming) -> ComplexArray:
+        """Solutions (B, n) of another family's member as those of the same member of this one."""
 
     def generator(self, purpose: int) -> np.random.Generator:
         """Random numbers of the family's own, the same in every run and in any order of calls."""
@@ -126,15 +147,20 @@ class _Ends:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Generic(Generic[S]):
+class Solved(Generic[S]):
     """A random member of a family with its solutions; ``sure`` that these are all."""
 
     system: S
     x: ComplexArray
     sure: bool = False
 
+    def as_start_set(self, topology: Topology) -> StartSet:
+        """What is kept on disk."""
+        left, right = self.system.left, self.system.right
+        return StartSet(topology=topology, left=left, right=right, x=self.x, sure=self.sure)
 
-_KNOWN: dict[RootFamily[Any], _Generic[Any]] = {}
+
+_KNOWN: dict[RootFamily[Any], Solved[Any]] = {}
 
 
 def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
@@ -144,7 +170,7 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
     Where fewer solutions are found than random systems of the family have, a second set of paths
     has to confirm it.
     """
-    generic = _generic(family)
+    generic = random_member(family)
     rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
@@ -171,39 +197,44 @@ def _agree(a: _Ends, b: _Ends) -> bool:
     return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
 
 
-def _generic(family: RootFamily[S]) -> _Generic[S]:
+def random_member(family: RootFamily[S]) -> Solved[S]:
     """The stored random member; read from disk, or solved when it is first wanted."""
     if family not in _KNOWN:
-        known = _read_generic(family)
+        known = _read_member(family)
         if known is None:
-            known = _solve_generic(family)
-            arrays = {"x": known.x, "sure": np.array(known.sure), **family.numbers(known.system)}
-            write_set(key_of(family), arrays)
+            known = solve_random_member(family)
+            left, right = known.system.left, known.system.right
+            write_set(
+                StartSet(
+                    topology=family.topology, left=left, right=right, x=known.x, sure=known.sure
+                )
+            )
         _KNOWN[family] = known
     return _KNOWN[family]
 
 
-def _read_generic(family: RootFamily[S]) -> _Generic[S] | None:
-    """The member that is kept on disk, if all its solutions are solutions."""
-    stored = read_set(key_of(family))
-    if stored is None:
-        return None
-    try:
-        system, x = family.member(stored), stored["x"]
-        steps: CountArray = np.zeros(0, dtype=np.int64)
+def _read_member(family: RootFamily[S]) -> Solved[S] | None:
+    """A member that is kept on disk, if all its solutions are solutions."""
+    for kept in read_sets(family.topology):
+        renaming = family.topology.renaming(kept.topology)
+        if renaming is None:
+            continue
+        closures = (renaming.loops @ side[:, renaming.order] for side in (kept.left, kept.right))
+        system = family.member(*closures)
+        x, steps = kept.x, np.zeros(0, dtype=np.int64)
         if len(x):
-            x, steps = polish_roots(system, x)
-        sure = bool(stored["sure"])
-    except (KeyError, ValueError, IndexError, TypeError):
-        return None
-    if (steps < 0).any() or len(_distinct(x)) != len(x):
-        return None
-    return _Generic(system=system, x=x, sure=sure)
+            x, steps = polish_roots(system, family.rename(x, renaming))
+        if (steps >= 0).all() and len(_distinct(x)) == len(x):
+            return Solved(system=system, x=x, sure=kept.sure)
+    return None
 
 
-def _solve_generic(family: RootFamily[S]) -> _Generic[S]:
-    """A random member, solved from products of linear forms and completed by closed paths."""
-    rng = family.generator(0)
+def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
+    """A random member, solved from products of linear forms and completed by closed paths.
+
+    Another ``purpose`` takes other random numbers.
+    """
+    rng = family.generator(purpose)
     system = family.random(rng)
     x = np.zeros((0, 0), dtype=complex)
     clean = 0
@@ -217,32 +248,30 @@ def _solve_generic(family: RootFamily[S]) -> _Generic[S]:
             break
     # without solutions closed paths prove nothing: all paths have to run to infinity twice
     nothing = not len(x) and clean == _LOOPS
-    return _close_paths(family, _Generic(system=system, x=x, sure=nothing), rng)
+    return _close_paths(family, Solved(system=system, x=x, sure=nothing), rng)
 
 
-def _close_paths(
-    family: RootFamily[S], known: _Generic[S], rng: np.random.Generator
-) -> _Generic[S]:
+def _close_paths(family: RootFamily[S], known: Solved[S], rng: np.random.Generator) -> Solved[S]:
     """Solutions added until closed paths of systems lead to no new ones."""
     quiet = tries = 0
     while quiet < _LOOPS and tries < _TRIES and len(known.x) and not family.complete(len(known.x)):
         # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
-        back = _Generic(system=away, x=_distinct(there.x[there.regular]))
+        back = Solved(system=away, x=_distinct(there.x[there.regular]))
         ends = _follow_paths(family, back, known.system, rng, CAREFUL)
         x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
         tries += 1
-        known = _Generic(system=known.system, x=x)
+        known = Solved(system=known.system, x=x)
     sure = known.sure or quiet == _LOOPS or family.complete(len(known.x))
     return replace(known, sure=sure)
 
 
 def _follow_paths(
     family: RootFamily[S],
-    generic: _Generic[S],
+    generic: Solved[S],
     goal: S,
     rng: np.random.Generator,
     options: PathOptions,
@@ -342,7 +371,7 @@ def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
     return x[kept]
 
 
-def _roots(system: S, ends: _Ends, generic: _Generic[S]) -> Roots:
+def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
     multiple = _distinct(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(

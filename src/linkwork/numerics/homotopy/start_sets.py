@@ -1,6 +1,6 @@
 """Solved random members of families of systems, kept on disk: shipped ones, and the user's own.
 
-A random member takes up to a minute to be solved and depends on the structure only. The solutions
+A random member takes up to a minute to be solved and depends on the topology only. The solutions
 that are read are polished again, so that no file is trusted with a number.
 """
 
@@ -10,51 +10,95 @@ import hashlib
 import os
 import tempfile
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from platformdirs import user_cache_path
 
-from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.arrays import AnyArray, ComplexArray
+from linkwork.numerics.homotopy.topology import Topology
 
-__all__ = ["FOLDER", "SHIPPED", "key_of", "read_set", "write_set"]
+__all__ = ["FOLDER", "SHIPPED", "StartSet", "name_of", "own_sets", "read_sets", "write_set"]
 
-#: A folder that takes the place of the user's cache.
+#: The environment's name of a folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
 #: The sets of the library and of common topologies; made by ``scripts/start_sets``.
 SHIPPED = Path(__file__).with_name("start_sets.npz")
-_VERSION = 1  # of the random members and of what is stored of them
+_VERSION = 1  # of the random members and of the data stored of them
 
 
-def key_of(family: object) -> str:
-    """The name of a family's set: a digest of all that the family consists of."""
-    return hashlib.sha256(f"{_VERSION} {family!r}".encode()).hexdigest()[:24]
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StartSet:
+    """A random member of a topology's family, ``left`` and ``right``, with its solutions ``x``.
+
+    ``sure``: whether these are confirmed to be all.
+    """
+
+    topology: Topology
+    left: ComplexArray
+    right: ComplexArray
+    x: ComplexArray
+    sure: bool
+
+    def as_arrays(self) -> dict[str, AnyArray]:
+        """The set as arrays; the solutions in single precision, because readers polish them."""
+        return {
+            "topology": np.array(self.topology.as_text()),
+            "left": self.left,
+            "right": self.right,
+            "x": self.x.astype(np.complex64),
+            "sure": np.array(self.sure),
+        }
+
+    @classmethod
+    def of_arrays(cls, arrays: dict[str, AnyArray]) -> StartSet:
+        """The set of :meth:`as_arrays`."""
+        left, right, x = (np.asarray(arrays[n], dtype=complex) for n in ("left", "right", "x"))
+        topology = Topology.of_text(str(arrays["topology"]))
+        return cls(topology=topology, left=left, right=right, x=x, sure=bool(arrays["sure"]))
 
 
-def read_set(key: str) -> dict[str, AnyArray] | None:
-    """The arrays of a set by name; ``None`` if there is none that can be read."""
-    for path, prefix in ((SHIPPED, f"{key}."), (_path(key), "")):
+def read_sets(topology: Topology) -> Iterator[StartSet]:
+    """The sets of families that may be this one in different order; this one's own set first."""
+    own, signature = name_of(topology), topology.signature
+    for path in (SHIPPED, *own_sets(signature)):
         # a file that cannot be read is no set: it is computed, and written again
-        with suppress(OSError, ValueError, KeyError, zipfile.BadZipFile), np.load(path) as stored:
-            names = [name for name in stored.files if name.startswith(prefix)]
-            if names:
-                return {name.removeprefix(prefix): stored[name] for name in names}
-    return None
+        with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+            with np.load(path) as stored:
+                names = {name.rpartition(".")[0] for name in stored.files}
+                near = sorted((n for n in names if n.startswith(signature)), key=own.__ne__)
+                found = [
+                    {field: stored[f"{name}.{field}"] for field in StartSet.__annotations__}
+                    for name in near
+                ]
+            yield from map(StartSet.of_arrays, found)
 
 
-def write_set(key: str, arrays: Mapping[str, AnyArray]) -> None:
+def own_sets(signature: str = "") -> list[Path]:
+    """The files of the user's cache whose names begin so."""
+    return sorted(_folder().glob(f"{signature}*.npz"))
+
+
+def write_set(kept: StartSet) -> None:
     """Keep a set in the user's cache, whole or not at all; nothing where that is not possible."""
-    path = _path(key)
+    folder, name = _folder(), name_of(kept.topology)
     with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as part:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as part:
+            arrays = {f"{name}.{field}": array for field, array in kept.as_arrays().items()}
             np.savez(part, **arrays)  # type: ignore[arg-type]
-        os.replace(part.name, path)
+        os.replace(part.name, folder / f"{name}.npz")
 
 
-def _path(key: str) -> Path:
+def name_of(topology: Topology) -> str:
+    """The name of a topology's set: its signature, and a digest of the order of its unknowns."""
+    digest = hashlib.sha256(f"{_VERSION} {topology.as_text()}".encode()).hexdigest()[:12]
+    return f"{topology.signature}-{digest}"
+
+
+def _folder() -> Path:
     given = os.environ.get(FOLDER)
-    folder = Path(given) if given else user_cache_path("linkwork")
-    return folder / "start_sets" / f"{key}.npz"
+    return (Path(given) if given else user_cache_path("linkwork")) / "start_sets"
