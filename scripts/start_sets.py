@@ -91,7 +91,7 @@ def driven(pins: Edges, rng: np.random.Generator) -> lw.Mechanism:
             )
             for link in range(links)
         },
-        inputs={"b1": 30.0},
+        inputs=lw.Input(link="b1", start=0, stop=360, step=10),
     )
 
 
@@ -102,7 +102,7 @@ def solve_all() -> None:
         mechanism = lw.example(name)
         try:
             mechanism.configurations()
-            if mechanism.inputs:
+            if mechanism.model.equations.inputs:
                 dead_inputs_of(mechanism)
         except lw.LinkworkError as error:
             _say(f"{name}: {error}")

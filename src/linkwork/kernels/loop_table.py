@@ -6,6 +6,7 @@ A v + b = 0 (relative angles, gears), function rows. Columns: n unknowns, then t
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -95,6 +96,27 @@ class LoopTable:
     def equations(self) -> int:
         """m, real equations."""
         return len(self.equation_scale)
+
+    @cached_property
+    def structure(self) -> bytes:
+        """A digest of all but function rows, coefficients, constants and scales."""
+        loops, lines = self.loops, self.linear
+        parts = (
+            np.array([self.unknowns, self.variables, loops.rows, len(lines.constant)]),
+            loops.row,
+            loops.length,
+            loops.phase_term,
+            loops.phase_variable,
+            loops.phase_weight,
+            lines.row,
+            lines.variable,
+            lines.weight,
+            self.is_angle,
+        )
+        digest = hashlib.sha256()
+        for part in parts:
+            digest.update(f"{part.dtype} {part.shape} ".encode() + part.tobytes())
+        return digest.digest()
 
     @cached_property
     def _linear_matrix(self) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from linkwork.foundation.status import Status
 from linkwork.motion import by_kernels
 from linkwork.motion.drive import Drive
 from linkwork.motion.limits import BranchEnd, ends_of
-from linkwork.motion.proving import inputs_apart, prove_rows
+from linkwork.motion.proving import inputs_apart, prove_rows, unproved
 from linkwork.motion.rows_near_limits import fill_last_rows, fill_passed_rows
 from linkwork.motion.tracking import track_to
 from linkwork.motion.whole_turns import Lap, lap_of
@@ -31,6 +32,7 @@ from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
 
+_COARSE = 1 / 8  # of a track's longest step: shorter ones are near its ends
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
 
@@ -55,17 +57,23 @@ class Asked:
 class BranchRows:
     """The rows asked for, those that lie on the branch filled; the branch's track and its ends.
 
-    ``placed`` (B,): where on the track each row lies, or laps earlier, NaN if nowhere. ``lap``: if
-    the motion repeats itself and laps were left out; ``lap_proved``: whether a lap leads back.
+    ``follow``: gives the track. ``placed`` (B,): where on the track each row lies, or laps earlier,
+    NaN if nowhere. ``lap``: if the motion repeats itself and laps were left out; ``lap_proved``:
+    whether a lap leads back.
     """
 
     rows: SolvedRows
-    track: Track
+    follow: Callable[[], Track]
     placed: Array
     ends: tuple[BranchEnd, ...]
     proved_to_ends: bool
     lap: Lap | None = None
     lap_proved: bool = False
+
+    @cached_property
+    def track(self) -> Track:
+        """The branch over the rows' values, with its ends; kernels solve rows without it."""
+        return self.follow()
 
     @property
     def here(self) -> BoolArray:
@@ -151,7 +159,15 @@ def _rows_followed(
     certify: bool,
     passage: Passage | None,
 ) -> BranchRows:
-    """The track is bold first; where that leaves rows unproved it is followed again with care."""
+    """The track is bold first; where that leaves rows unproved it is followed again with care.
+
+    Compiled kernels need no track where they find all rows.
+    """
+    quickly = by_kernels.kernels_pay(drive.model, len(asked.t))
+    found = _by_kernels(drive, anchor, asked, certify) if quickly and passage is None else None
+    if found is not None:
+        report.proved(1.0)
+        return found
     provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and provable else (None,)
@@ -161,7 +177,7 @@ def _rows_followed(
         work = _RowSolver(
             drive=drive, track=track, placed=placed, asked=asked, report=report, certify=certify
         )
-        rows, to_ends = work.solve()
+        rows, to_ends = work.solve(quickly)
         if care is None or not _doubtful(rows, placed, to_ends):
             break
     ends = ends_of(drive, track, certify)
@@ -172,7 +188,38 @@ def _rows_followed(
     if passage is not None:
         rows = fill_passed_rows(drive, passage, asked.t, placed, rows)
     rows = _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
-    return BranchRows(rows=rows, track=track, placed=placed, ends=ends, proved_to_ends=to_ends)
+    return BranchRows(
+        rows=rows, follow=lambda: track, placed=placed, ends=ends, proved_to_ends=to_ends
+    )
+
+
+def _by_kernels(drive: Drive, anchor: Node, asked: Asked, certify: bool) -> BranchRows | None:
+    """All rows by compiled kernels, without a track; ``None`` if a row is not found."""
+    rows = _kernel_rows(drive, anchor, asked, asked.t, certify)
+    if rows is None:
+        return None
+
+    def follow_track() -> Track:
+        return _covering(drive, anchor, asked.t, None, Report(None, 0.0, 0.0, 0.0), None)
+
+    blank = _blank(drive, asked, certify).put(np.arange(len(asked.t)), rows)
+    return BranchRows(rows=blank, follow=follow_track, placed=asked.t, ends=(), proved_to_ends=True)
+
+
+def _kernel_rows(
+    drive: Drive, anchor: Node, asked: Asked, placed: Array, certify: bool
+) -> SolvedRows | None:
+    """Rows at the values ``placed`` (B,) of t; proofs are left out if they are not asked for."""
+    spread = inputs_apart(drive.path.at(placed), asked.inputs).max(axis=0)
+    rows = by_kernels.kernel_rows(drive, anchor, placed, spread)
+    return rows if rows is None or certify else unproved(rows, Certification.NOT_ASKED)
+
+
+def _blank(drive: Drive, asked: Asked, certify: bool) -> SolvedRows:
+    """Rows without positions."""
+    grade = Certification.NO_POSITION if certify else Certification.NOT_ASKED
+    variables = drive.solver.variables
+    return SolvedRows.blank(asked.in_file_units, variables, Status.CONVERGED, grade)
 
 
 def _doubtful(rows: SolvedRows, placed: Array, to_ends: bool) -> bool:
@@ -245,42 +292,47 @@ class _RowSolver:
     report: Report
     certify: bool
 
-    def solve(self) -> tuple[SolvedRows, bool]:
+    def solve(self, quickly: bool) -> tuple[SolvedRows, bool]:
         """All rows that lie on the track, and whether the track is proved up to its ends."""
         there = np.flatnonzero(~np.isnan(self.placed))
         # in the order of the path: proofs join neighbours
         there = there[np.argsort(self.placed[there], kind="stable")]
-        if by_kernels.kernels_pay(self.drive.model, len(there), self.certify):
-            quickly = self._by_kernels(there)
-            if quickly is not None:
-                return quickly
-        return self._along_track(there)
+        found = self._by_kernels(there) if quickly else None
+        return found or self._along_track(there)
 
     def _by_kernels(self, there: IndexArray) -> tuple[SolvedRows, bool] | None:
-        """Most rows by compiled kernels, the others along the track; ``None`` if that is not the
-        way.
+        """Rows between the track's outer nodes by compiled kernels, the others along the track.
+
+        ``None`` where that is not the way.
         """
-        drive, t = self.drive, self.placed[there]
-        spread = inputs_apart(drive.path.at(t), self.asked.inputs[there]).max(axis=0)
-        rows = by_kernels.kernel_rows(drive, self.track, t, spread, self.certify)
+        drive, track = self.drive, self.track
+        t = self.placed[there]
+        nodes = np.array([node.t for node in track.nodes])
+        # the last steps before a limit are short, and its rows are close together
+        coarse = np.flatnonzero(np.diff(nodes) >= _COARSE * np.diff(nodes).max(initial=0.0))
+        if len(coarse) < 2:
+            return None
+        inside = (t > nodes[coarse[0]]) & (t < nodes[coarse[-1] + 1])
+        if not inside.any():
+            return None
+        mine, others = there[inside], there[~inside]
+        anchor = track.nodes[int(np.abs(nodes - np.median(t[inside])).argmin())]
+        asked = self.asked.take(mine)
+        rows = _kernel_rows(drive, anchor, asked, self.placed[mine], self.certify)
         if rows is None:
             return None
-        found, to_ends = self._along_track(there[rows.checked])
-        weights = drive.solver.variable_scale
-        filled = rows.put_into(found, there, weights, self.certify)
-        return None if filled is None else (filled, to_ends)
+        # the track joins the rows of the kernels to its start, if it is proved
+        found, to_ends = self._along_track(others)
+        if self.certify and not to_ends:
+            return None
+        return found.put(mine, rows), to_ends
 
     def _along_track(self, there: IndexArray) -> tuple[SolvedRows, bool]:
         """The table with some rows solved, in the order of the track; whether the track is proved
         up to its ends.
         """
         solver, path, track = self.drive.solver, self.drive.path, self.track
-        blank = SolvedRows.blank(
-            self.asked.in_file_units,
-            solver.variables,
-            Status.CONVERGED,
-            Certification.NO_POSITION if self.certify else Certification.NOT_ASKED,
-        )
+        blank = _blank(self.drive, self.asked, self.certify)
         if not len(there):
             return blank, self.certify
         pieces: list[SolvedRows] = []

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     )
     from linkwork.motion.by_kernels.kernels import kernel_of as kernel_of
     from linkwork.motion.by_kernels.rows import (
-        KernelRows as KernelRows,
         kernel_rows as kernel_rows,
     )
 else:  # rows and kernels load compiled code

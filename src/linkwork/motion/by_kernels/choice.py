@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from linkwork.kernels.program.kernel_cache import kernels_are_compiled, kernels_are_loaded
 from linkwork.motion.model import Model
 
 __all__ = ["are_served", "kernels_pay"]
 
-_ROWS = 5_000  # with fewer, preparing the programs takes longer than the rows
-_LOADING = 400_000  # proved rows times unknowns: as long does it take to load the kernels
-_WITHOUT_PROOF = 0.4  # as much of that time is saved where nothing is proved
+_FEW = 24  # with fewer rows, plain NumPy takes no longer
+_MAKING = 3_000  # proved rows: as long does it take to make the kernels of a topology
+_LOADING = 150_000  # proved rows times unknowns: as long does it take to load compiled code
+
+#: The rows of every topology that have been asked for, and rows times unknowns of all of them
+#: since compiled code was looked for last.
+_ROWS: Counter[bytes] = Counter()
+_WORK = {"": 0}
 
 
 def are_served(model: Model) -> bool:
@@ -20,12 +27,21 @@ def are_served(model: Model) -> bool:
     )
 
 
-def kernels_pay(model: Model, rows: int, certify: bool) -> bool:
+def kernels_pay(model: Model, rows: int) -> bool:
     """Whether kernels take less time for this many rows of one mechanism than plain NumPy.
 
-    Nothing is compiled for that: before the first family is solved, they do not.
+    Many small tables count like a long one. Nothing is compiled for that: before the first family
+    is solved, kernels do not pay.
     """
-    if rows < _ROWS or not are_served(model):
+    if rows < _FEW or not are_served(model):
         return False
-    saved = rows * model.compiled.solver.unknowns * (1.0 if certify else _WITHOUT_PROOF)
-    return kernels_are_loaded() or (saved >= _LOADING and kernels_are_compiled())
+    table = model.compiled.table
+    if not kernels_are_loaded():
+        _WORK[""] += rows * table.unknowns
+        if _WORK[""] < _LOADING:
+            return False
+        _WORK[""] = 0
+        if not kernels_are_compiled():
+            return False
+    _ROWS[table.structure] += rows
+    return _ROWS[table.structure] >= _MAKING
