@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
 
 import numba  # noqa: TID253 - this module is loaded when a family is solved
-from llvmlite import ir
-from numba import types  # noqa: TID253
+from llvmlite import binding, ir
+from numba import carray, types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
@@ -23,8 +23,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "call_at",
+    "call_interpreter",
+    "carray",
     "compiled",
     "compiled_for",
+    "interpreter",
     "memcpy",
     "named_tuple",
     "njit_no_refcount",
@@ -122,6 +125,56 @@ def _call(
 #: Calls a function compiled by :func:`trial_at`, by its address, with the addresses of six blocks
 #: and the number of lanes.
 call_at = cast(Callable[[int, int, int, int, int, int, int, int], None], intrinsic(_call))
+
+
+def _call_interpreter(
+    typing: Context,
+    code: types.Type,
+    first: types.Type,
+    end: types.Type,
+    workspace: types.Type,
+    lanes: types.Type,
+) -> tuple[Signature, Emitter]:
+    def emit(
+        context: BaseContext,
+        builder: ir.IRBuilder,
+        signature: Signature,
+        arguments: Sequence[ir.Value],
+    ) -> ir.Value:
+        whole, number = ir.IntType(64), ir.PointerType(ir.DoubleType())
+        words = ir.PointerType(ir.IntType(32))
+        kind = ir.FunctionType(ir.VoidType(), [words, whole, whole, number, whole])
+        function = _intrinsic(builder.module, kind, _INTERPRETER)
+        places = [builder.inttoptr(arguments[0], words), builder.inttoptr(arguments[3], number)]
+        given = [places[0], *arguments[1:3], places[1], arguments[4]]
+        builder.call(function, given)
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 5), emit
+
+
+#: Calls the function compiled by :func:`interpreter`, by its name: code that calls it holds no copy
+#: of it, which would take the compiler most of its time. Addresses and numbers, as there.
+call_interpreter = cast(Callable[[int, int, int, int, int], None], intrinsic(_call_interpreter))
+_INTERPRETER = "linkwork_interpreter"
+_NAMED: dict[str, object] = {}  # functions that are called by name have to stay
+
+
+def interpreter(function: Any) -> Any:
+    """Compile the function of instructions, first, end, workspace and lanes that
+    :data:`call_interpreter` calls.
+    """
+    signature = types.void(
+        types.CPointer(types.uint32),
+        types.int64,
+        types.int64,
+        types.CPointer(types.float64),
+        types.int64,
+    )
+    made = numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
+    _NAMED[_INTERPRETER] = made
+    binding.add_symbol(_INTERPRETER, made.address)
+    return made
 
 
 def _copy(

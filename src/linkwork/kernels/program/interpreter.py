@@ -10,7 +10,12 @@ from __future__ import annotations
 import math
 
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.program.compiling import njit_no_refcount
+from linkwork.kernels.program.compiling import (
+    call_interpreter,
+    carray,
+    interpreter,
+    njit_no_refcount,
+)
 from linkwork.kernels.program.program import Code, Op
 from linkwork.kernels.program.sine import sin_cos
 
@@ -18,10 +23,13 @@ __all__ = ["LANES", "run", "run_part"]
 
 LANES = 64
 
+_FIELDS = 5  # of an instruction
+_HIGH = 1 << 24  # registers: more than any workspace has, for its height is not known here
+
 
 # long: one branch for each instruction; a call for each would cost as much as the instruction.
 @njit_no_refcount
-def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
+def _interpret(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
         op = code[k, 0]
@@ -87,6 +95,22 @@ def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
         elif op == Op.SQRT:
             for i in range(lanes):
                 w[d, i] = math.sqrt(w[a, i])
+
+
+@interpreter
+def _interpret_at(instructions: Array, first: int, end: int, workspace: Array, lanes: int) -> None:
+    """The same at addresses; all lanes are a loop of known length."""
+    code, w = carray(instructions, (end, _FIELDS)), carray(workspace, (_HIGH, LANES))
+    if lanes == LANES:
+        _interpret(code, first, end, w, LANES)
+    else:
+        _interpret(code, first, end, w, lanes)
+
+
+@njit_no_refcount
+def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
+    """Run some instructions of a program in the first lanes."""
+    call_interpreter(code.ctypes.data, first, end, w.ctypes.data, lanes)
 
 
 @njit_no_refcount
