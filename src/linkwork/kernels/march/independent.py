@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, CountArray, IndexArray
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
 from linkwork.kernels.march.step_trial import (
@@ -42,6 +42,7 @@ from linkwork.marching.step_size import HALF
 __all__ = ["march"]
 
 _NO_TASK_YET, _NO_TASK_LEFT = -2, -1
+_VECTOR = 8  # lanes that a processor computes at once
 
 
 class _Work(NamedTuple):
@@ -164,6 +165,7 @@ def _take_or_halve_step(
     types.void(
         TOPOLOGY, types.Array(types.float64, 2, "C"),
         types.Array(types.float64, 2, "C"), INPUT_TABLE, TASKS, types.int64, MARCH_RESULT,
+        types.Array(types.int64, 1, "C"),
     )
 )  # fmt: skip
 def march(
@@ -174,6 +176,7 @@ def march(
     tasks: Tasks,
     count: int,
     found: MarchResult,
+    counts: CountArray,
 ) -> None:
     """Work through all tasks.
 
@@ -186,6 +189,7 @@ def march(
     tasks : Tasks
         The first ``count`` of them.
     found : MarchResult
+    counts : (R,) of a single mechanism: filled with the corrections that rows took; else (0,)
     """
     rows, nodes, size = table.rows, topology.nodes, topology.nodes.shape[1]
     work = _Work(
@@ -196,7 +200,10 @@ def march(
         np.zeros(LANES),
         np.zeros((LANES, NODES)),
     )
-    standing, times, following, turn = np.ones(LANES), np.zeros(NODES), 0, 0
+    standing, times = np.ones(LANES), np.zeros(NODES)
+    # whole numbers, not constants: callees would be compiled for constants as well
+    following, turn = np.int64(0), np.int64(0)
+    lanes = min(LANES, _VECTOR * ((count + _VECTOR - 1) // _VECTOR))
     # idle lanes compute with these: zeros make no slow or invalid numbers
     w[: nodes.size] = 0.0  # they come first
     for register in topology.noted:
@@ -204,7 +211,7 @@ def march(
     while True:
         t0, t1 = nodes[-turn % ROLES, size - 1], nodes[(1 - turn) % ROLES, size - 1]
         busy = 0
-        for i in range(LANES):
+        for i in range(lanes):
             following = _give_task(
                 w, i, topology, turn, design, table, tasks, count, following, work
             )
@@ -220,9 +227,11 @@ def march(
             update_weights(w, i, topology.weights, times, step, work.known[i], work.spacing[i])
         if busy == 0:
             break
-        correct_and_judge(topology, turn, w, standing, False, LANES)
-        for i in range(LANES):
+        took = correct_and_judge(topology, turn, w, standing, False, lanes)
+        for i in range(lanes):
             if work.task[i] != _NO_TASK_LEFT:
-                member = tasks.member[work.task[i]]
+                member, row = tasks.member[work.task[i]], work.row[i]
                 _take_or_halve_step(w, i, topology, turn, member, table, work, found)
+                if row < len(counts) and work.row[i] != row:
+                    counts[row] = took
         turn = (turn + 1) % ROLES

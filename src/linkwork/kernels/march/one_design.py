@@ -8,9 +8,10 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, CountArray
-from linkwork.kernels.march.rowwise import DONE, NOT_NEAR, by_rows
+from linkwork.kernels import march as loops
 from linkwork.kernels.march.step_trial import Topology
-from linkwork.kernels.march.work_arrays import InputTable, MarchResult
+from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
+from linkwork.kernels.program.kernel_cache import loop_serves
 
 __all__ = ["LoadedFamily", "RowsOfOne", "SingleDesign"]
 
@@ -49,12 +50,13 @@ class Scout(Protocol):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleDesign:
-    """The rows of one design, computed side by side; the workspace holds one design at a time.
+    """The rows of one design; the workspace holds one design at a time.
 
-    ``scale`` (D, n): weights of the unknowns.
+    ``proving``: the kernel itself. ``scale`` (D, n): weights of the unknowns.
     """
 
     scout: Scout
+    proving: Scout
     family: LoadedFamily
     ahead: LoadedFamily
     space: Array
@@ -80,21 +82,32 @@ class LoadedDesign:
     design: int
     spaces: tuple[Topology, Topology, Array, Array]
 
-    def run(self, guess: Array, found: MarchResult, counts: CountArray) -> bool:
+    def run_side_by_side(self, guess: Array, found: MarchResult, counts: CountArray) -> bool:
         """From a guess (n + 1,) of the unknowns and of t; whether all rows are found.
 
         ``counts`` (R,): filled with the corrections that they took.
         """
         alone, scale = self.alone, self.alone.scale[self.design]
-        code = by_rows(*self.spaces, guess, False, alone.table, scale, found, counts)
-        if code == NOT_NEAR:
+        code = loops.by_rows(*self.spaces, guess, False, alone.table, scale, found, counts)
+        if code == loops.NOT_NEAR:
             node = alone.scout.guess_nodes(guess[:-1, None], guess[-1:])
             start, begun = alone.scout.start_nodes(alone.ahead.one(self.design), alone.own, node)
             if not begun[0]:
                 return False
             own = start[:, 0].copy()
-            code = by_rows(*self.spaces, own, True, alone.table, scale, found, counts)
-        return bool(code == DONE)
+            code = loops.by_rows(*self.spaces, own, True, alone.table, scale, found, counts)
+        return bool(code == loops.DONE)
+
+    def run_in_turn(self, guess: Array, found: MarchResult, counts: CountArray) -> bool:
+        """The same, row after row, down and up from the guess."""
+        alone, own = self.alone, self.alone.family.one(self.design)
+        given = alone.proving.guess_nodes(guess[:-1, None], guess[-1:])
+        node, begun = alone.proving.start_nodes(own, alone.space, given)
+        if not begun[0]:
+            return False
+        both = Tasks(np.zeros(2, np.int64), np.array([1, 0]), np.repeat(node, 2, axis=1))
+        loops.march(own.topology, alone.space, own.design, alone.table, both, 2, found, counts)
+        return bool(found.reached[:, found.first].all())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,5 +132,10 @@ class RowsOfOne:
         rows = len(table.rows)
         v = np.empty((table.unknowns, rows, 1))
         radius = np.empty((rows if self.certified else 0, 1))
-        done = self.loaded.run(self.guess, MarchResult(0, v, radius, *self.room), self.counts)
-        return (v, radius) if done else None
+        found = MarchResult(0, v, radius, *self.room)
+        if loop_serves("rowwise", rows) and self.loaded.run_side_by_side(
+            self.guess, found, self.counts
+        ):
+            return v, radius
+        found.reached[:] = False
+        return (v, radius) if self.loaded.run_in_turn(self.guess, found, self.counts) else None

@@ -22,12 +22,14 @@ from linkwork.kernels.march.step_control import (
 )
 from linkwork.kernels.program.compiling import (
     call_at,
+    called_by_name,
+    carray,
     compiled,
     named_tuple,
     njit_no_refcount,
     types,
 )
-from linkwork.kernels.program.interpreter import LANES, run_part
+from linkwork.kernels.program.interpreter import FIELDS, HIGH, LANES, run_part
 from linkwork.kernels.program.program import ROLES, Code
 
 __all__ = [
@@ -192,7 +194,7 @@ def _evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, la
 
 
 @njit_no_refcount
-def correct_and_judge(
+def _correct_and_judge(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
 ) -> int:
     """From the prediction to the judgement; how many corrections the block with most of them took.
@@ -227,6 +229,67 @@ def correct_and_judge(
         most = max(most, more)
     judge(topology, turn, w, lanes)
     return 1 + most
+
+
+_WHOLE, _WHOLES = types.int64, types.CPointer(types.int64)
+_NUMBERS = types.CPointer(types.float64)
+
+
+@called_by_name(
+    "linkwork_trial",
+    types.CPointer(types.uint32), _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE,
+    _WHOLES, _WHOLE, _WHOLE,
+    _WHOLE, _NUMBERS, _NUMBERS, _WHOLE, _WHOLE,
+)  # fmt: skip
+def _correct_and_judge_at(
+    code: Array,
+    length: int,
+    spans: Array,
+    programs: int,
+    nodes: Array,
+    size: int,
+    noted: Array,
+    notes: int,
+    shared: Array,
+    inputs: int,
+    trial: int,
+    turn: int,
+    workspace: Array,
+    standing: Array,
+    together: int,
+    lanes: int,
+) -> int:
+    """The parts of a topology that a trial needs, and its arguments, at addresses."""
+    none = carray(shared, (0,))
+    topology = Topology(
+        carray(code, (ROLES * length, FIELDS)),
+        length,
+        carray(spans, (programs, 2)),
+        none,
+        carray(nodes, (ROLES, size)),
+        carray(noted, (notes,)),
+        carray(shared, (inputs,)),
+        none,
+        trial,
+    )
+    w = carray(workspace, (HIGH, LANES))
+    return _correct_and_judge(topology, turn, w, carray(standing, (LANES,)), together != 0, lanes)
+
+
+@njit_no_refcount
+def correct_and_judge(
+    topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
+) -> int:
+    """:func:`_correct_and_judge`, called by name: one copy of it serves all marches."""
+    return _correct_and_judge_at(
+        (
+            topology.code.ctypes.data, topology.length, topology.spans.ctypes.data,
+            len(topology.spans), topology.nodes.ctypes.data, topology.nodes.shape[1],
+            topology.noted.ctypes.data, len(topology.noted), topology.shared.ctypes.data,
+            len(topology.shared), topology.trial,
+            turn, w.ctypes.data, standing.ctypes.data, int(together), lanes,
+        )
+    )  # fmt: skip
 
 
 @njit_no_refcount

@@ -13,11 +13,10 @@ from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.sharing import share_out
+from linkwork.kernels import march as loops
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.dead_points import LastNodes
-from linkwork.kernels.march.independent import march
-from linkwork.kernels.march.lockstep import in_step
 from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
 from linkwork.kernels.march.one_design import LoadedFamily, RowsOfOne, SingleDesign
 from linkwork.kernels.march.start_positions import begin
@@ -27,6 +26,7 @@ from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.kernel_cache import loop_serves
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import ROLES, registers_read
 
@@ -172,7 +172,7 @@ class SweepKernel:
         count, given = len(start), self.guess_nodes(guess, start)
         family, table = self._load_family(coefficients, count), self._table(rows, steps)
         # few designs cannot fill the lanes; their rows can
-        if count <= _FEW and len(rows) >= LANES:
+        if count <= _FEW and len(rows) >= LANES and loop_serves("rowwise", count * len(rows)):
             return self._few(family, coefficients, given, table, steps, found)
         begun = np.zeros(count, dtype=bool)
 
@@ -276,7 +276,7 @@ class SweepKernel:
         done = np.zeros(given.shape[1], dtype=bool)
         for k in range(given.shape[1]):
             guess = np.append(given[:n, k], given[-1, k])
-            done[k] = alone.with_design(k).run(guess, found._replace(first=k), counts)
+            done[k] = alone.with_design(k).run_side_by_side(guess, found._replace(first=k), counts)
         if done.all():
             return done
         space = self._space(steps)
@@ -332,6 +332,7 @@ class SweepKernel:
         scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
         return SingleDesign(
             scout=scout,
+            proving=self,
             family=family,
             ahead=ahead,
             space=space,
@@ -363,5 +364,7 @@ def _march_part(
     kept: MarchResult,
 ) -> None:
     tasks = Tasks.room(2 * len(begun), len(node))
-    many = in_step(family.topology, space, family.design, node, begun, table, tasks, kept)
-    march(family.topology, space, family.design, table, tasks, many, kept)
+    many = loops.in_step(family.topology, space, family.design, node, begun, table, tasks, kept)
+    if many:
+        none = np.zeros(0, np.int64)
+        loops.march(family.topology, space, family.design, table, tasks, many, kept, none)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
 
 import numba  # noqa: TID253 - this module is loaded when a family is solved
 from llvmlite import binding, ir
-from numba import carray, types  # noqa: TID253
+from numba import types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
@@ -23,11 +23,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "call_at",
-    "call_interpreter",
+    "called_by_name",
     "carray",
     "compiled",
     "compiled_for",
-    "interpreter",
     "memcpy",
     "named_tuple",
     "njit_no_refcount",
@@ -37,6 +36,8 @@ __all__ = [
 ]
 
 _njit: Any = numba.njit  # whose types do not know of the option ``_nrt``
+#: An array at a pointer, with a shape; in compiled code.
+carray: Any = numba.carray
 _P = ParamSpec("_P")
 _R_co = TypeVar("_R_co", covariant=True)
 
@@ -127,54 +128,46 @@ def _call(
 call_at = cast(Callable[[int, int, int, int, int, int, int, int], None], intrinsic(_call))
 
 
-def _call_interpreter(
-    typing: Context,
-    code: types.Type,
-    first: types.Type,
-    end: types.Type,
-    workspace: types.Type,
-    lanes: types.Type,
-) -> tuple[Signature, Emitter]:
-    def emit(
-        context: BaseContext,
-        builder: ir.IRBuilder,
-        signature: Signature,
-        arguments: Sequence[ir.Value],
-    ) -> ir.Value:
-        whole, number = ir.IntType(64), ir.PointerType(ir.DoubleType())
-        words = ir.PointerType(ir.IntType(32))
-        kind = ir.FunctionType(ir.VoidType(), [words, whole, whole, number, whole])
-        function = _intrinsic(builder.module, kind, _INTERPRETER)
-        places = [builder.inttoptr(arguments[0], words), builder.inttoptr(arguments[3], number)]
-        given = [places[0], *arguments[1:3], places[1], arguments[4]]
-        builder.call(function, given)
-        return context.get_dummy_value()
-
-    return types.void(*[types.int64] * 5), emit
+_NAMED: list[object] = []  # functions that are called by name have to stay
 
 
-#: Calls the function compiled by :func:`interpreter`, by its name: code that calls it holds no copy
-#: of it, which would take the compiler most of its time. Addresses and numbers, as there.
-call_interpreter = cast(Callable[[int, int, int, int, int], None], intrinsic(_call_interpreter))
-_INTERPRETER = "linkwork_interpreter"
-_NAMED: dict[str, object] = {}  # functions that are called by name have to stay
+def called_by_name(name: str, *kinds: types.Type) -> Callable[[Any], Callable[..., int]]:
+    """A decorator of functions that compiled code calls without holding a copy of them.
 
-
-def interpreter(function: Any) -> Any:
-    """Compile the function of instructions, first, end, workspace and lanes that
-    :data:`call_interpreter` calls.
+    Copies would take the compiler most of its time. What it makes is called with one tuple of
+    whole numbers, addresses where ``kinds`` has pointers, and returns a whole number.
     """
-    signature = types.void(
-        types.CPointer(types.uint32),
-        types.int64,
-        types.int64,
-        types.CPointer(types.float64),
-        types.int64,
-    )
-    made = numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
-    _NAMED[_INTERPRETER] = made
-    binding.add_symbol(_INTERPRETER, made.address)
-    return made
+    signature = types.int64(*kinds)
+
+    def compile_apart(function: Any) -> Callable[..., int]:
+        made = numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(
+            function
+        )
+        _NAMED.append(made)
+        binding.add_symbol(name, made.address)
+
+        def call(typing: Context, given: types.Type) -> tuple[Signature, Emitter]:
+            def emit(
+                context: BaseContext,
+                builder: ir.IRBuilder,
+                signature: Signature,
+                arguments: Sequence[ir.Value],
+            ) -> ir.Value:
+                wanted = [context.get_value_type(kind) for kind in kinds]
+                kind = ir.FunctionType(ir.IntType(64), wanted)
+                values = [
+                    builder.inttoptr(value, own) if isinstance(own, ir.PointerType) else value
+                    for value, own in zip(
+                        cgutils.unpack_tuple(builder, arguments[0]), wanted, strict=True
+                    )
+                ]
+                return builder.call(_intrinsic(builder.module, kind, name), values)
+
+            return types.int64(types.UniTuple(types.int64, len(kinds))), emit
+
+        return cast(Callable[..., int], intrinsic(call))
+
+    return compile_apart
 
 
 def _copy(

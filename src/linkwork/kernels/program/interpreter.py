@@ -11,20 +11,20 @@ import math
 
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.program.compiling import (
-    call_interpreter,
+    called_by_name,
     carray,
-    interpreter,
     njit_no_refcount,
+    types,
 )
 from linkwork.kernels.program.program import Code, Op
 from linkwork.kernels.program.sine import sin_cos
 
-__all__ = ["LANES", "run", "run_part"]
+__all__ = ["FIELDS", "HIGH", "LANES", "run", "run_part"]
 
 LANES = 64
 
-_FIELDS = 5  # of an instruction
-_HIGH = 1 << 24  # registers: more than any workspace has, for its height is not known here
+FIELDS = 5  # of an instruction
+HIGH = 1 << 24  # registers: more than any workspace has, for its height is not known here
 
 
 # long: one branch for each instruction; a call for each would cost as much as the instruction.
@@ -97,20 +97,25 @@ def _interpret(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
                 w[d, i] = math.sqrt(w[a, i])
 
 
-@interpreter
-def _interpret_at(instructions: Array, first: int, end: int, workspace: Array, lanes: int) -> None:
+@called_by_name(
+    "linkwork_interpreter",
+    types.CPointer(types.uint32), types.int64, types.int64, types.CPointer(types.float64),
+    types.int64,
+)  # fmt: skip
+def _interpret_at(instructions: Array, first: int, end: int, workspace: Array, lanes: int) -> int:
     """The same at addresses; all lanes are a loop of known length."""
-    code, w = carray(instructions, (end, _FIELDS)), carray(workspace, (_HIGH, LANES))
+    code, w = carray(instructions, (end, FIELDS)), carray(workspace, (HIGH, LANES))
     if lanes == LANES:
         _interpret(code, first, end, w, LANES)
     else:
         _interpret(code, first, end, w, lanes)
+    return 0
 
 
 @njit_no_refcount
 def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
-    call_interpreter(code.ctypes.data, first, end, w.ctypes.data, lanes)
+    _interpret_at((code.ctypes.data, first, end, w.ctypes.data, lanes))
 
 
 @njit_no_refcount

@@ -11,48 +11,56 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-__all__ = ["kernels_are_compiled", "kernels_are_loaded", "say_that_it_compiles"]
+__all__ = ["is_compiled", "is_loaded", "loop_serves", "say_that_it_compiles"]
 
-_LAST = (
-    Path(__file__).parents[1] / "march" / "rowwise.py"
-)  # of the modules that take long to compile
-
-
-def kernels_are_loaded() -> bool:
-    """Whether this process has the kernels in use."""
-    return "linkwork.kernels.march.rowwise" in sys.modules
+#: The loops over lanes, by module, with the function that takes long to compile.
+_LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
+_FOLDER = Path(__file__).parents[1] / "march"
+_PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
-def kernels_are_compiled() -> bool:
-    """Whether an earlier process has left the kernels compiled: next to their sources, in the
-    user's cache where that cannot be written to, or in the folder named by ``NUMBA_CACHE_DIR``.
+def is_loaded(loop: str) -> bool:
+    """Whether this process has a loop in use."""
+    return f"linkwork.kernels.march.{loop}" in sys.modules
+
+
+def is_compiled(loop: str) -> bool:
+    """Whether an earlier process has left a loop compiled: next to its source, in the user's cache
+    where that cannot be written to, or in the folder named by ``NUMBA_CACHE_DIR``.
     """
-    return any(map(_is_of_this_source, _indices()))
+    source = _FOLDER / f"{loop}.py"
+    return any(_is_of_source(index, source) for index in _indices(loop))
 
 
-def _indices() -> Iterator[Path]:
-    """Numba's index files of the compiled code that takes longest."""
+def loop_serves(loop: str, positions: int) -> bool:
+    """Whether a loop that others can replace saves time for this many positions."""
+    return is_loaded(loop) or positions >= _PAYS or is_compiled(loop)
+
+
+def _indices(loop: str) -> Iterator[Path]:
+    """Numba's index files of a loop."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(given) if given else user_cache_path("numba", appauthor=False)
-    folders = list(shared.glob(f"{_LAST.parent.name}_*"))
+    folders = list(shared.glob(f"{_FOLDER.name}_*"))
     if not given:
-        folders.append(_LAST.parent / "__pycache__")
+        folders.append(_FOLDER / "__pycache__")
     for folder in folders:
-        yield from folder.glob(f"{_LAST.stem}.by_rows-*.nbi")
+        yield from folder.glob(f"{loop}.{_LOOPS[loop]}-*.nbi")
 
 
-def _is_of_this_source(index: Path) -> bool:
-    """Whether an index belongs to this source: by its digest, since copied files have new
-    times; by the times before numba 0.68, which keeps no digest.
+def _is_of_source(index: Path, source: Path) -> bool:
+    """Whether an index belongs to a source: by its digest, since copied files have new times; by
+    the times before numba 0.68, which keeps no digest.
     """
-    if hashlib.sha256(_LAST.read_bytes()).digest() in index.read_bytes():
+    if hashlib.sha256(source.read_bytes()).digest() in index.read_bytes():
         return True
-    return index.stat().st_mtime >= _LAST.stat().st_mtime
+    return index.stat().st_mtime >= source.stat().st_mtime
 
 
 def say_that_it_compiles() -> None:
     """Warn in the log ``linkwork`` that compiling takes time, if it will."""
-    if not kernels_are_compiled():
+    if not any(map(is_compiled, _LOOPS)):
         logging.getLogger("linkwork").warning(
-            "compiling Linkwork's kernels, once after an installation: one or two minutes"
+            "compiling Linkwork's kernels, once after an installation: up to half a minute "
+            '("linkwork compile" compiles all of them beforehand)'
         )

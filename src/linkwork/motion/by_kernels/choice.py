@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 
-from linkwork.kernels.program.kernel_cache import kernels_are_compiled, kernels_are_loaded
+from linkwork.kernels.program.kernel_cache import is_compiled, is_loaded
 from linkwork.motion.model import Model
 
 __all__ = ["are_served", "kernels_pay"]
 
+_LOOP = "independent"  # serves every mechanism
 _FEW = 24  # with fewer rows, plain NumPy takes no longer
 _MAKING = 3_000  # proved rows: as long does it take to make the kernels of a topology
 _LOADING = 150_000  # proved rows times unknowns: as long does it take to load compiled code
@@ -36,12 +37,12 @@ def kernels_pay(model: Model, rows: int) -> bool:
     if rows < _FEW or not are_served(model):
         return False
     table = model.compiled.table
-    if not kernels_are_loaded():
+    if not is_loaded(_LOOP):
         _WORK[""] += rows * table.unknowns
         if _WORK[""] < _LOADING:
             return False
         _WORK[""] = 0
-        if not kernels_are_compiled():
+        if not is_compiled(_LOOP):
             return False
     _ROWS[table.structure] += rows
     return _ROWS[table.structure] >= _MAKING
