@@ -202,7 +202,7 @@ def march(
     )
     standing, times = np.ones(LANES), np.zeros(NODES)
     # whole numbers, not constants: callees would be compiled for constants as well
-    following, turn = np.int64(0), np.int64(0)
+    following, turn = int(np.int64(0)), int(np.int64(0))
     lanes = min(LANES, _VECTOR * ((count + _VECTOR - 1) // _VECTOR))
     # idle lanes compute with these: zeros make no slow or invalid numbers
     w[: nodes.size] = 0.0  # they come first

@@ -247,7 +247,7 @@ def _march_one_way(
     row, together, count = _set_out(
         base, way, topology, w, begun, node, table.rows, standing, tasks, count
     )
-    turn, steps, good = np.int64(0), np.int64(0), topology.noted[GOOD]
+    turn, steps, good = int(np.int64(0)), int(np.int64(0)), topology.noted[GOOD]
     # with most lanes gone, marching them one by one wastes less
     left = int(standing.sum())
     while 0 <= row < len(table.rows) and left >= min(_WORTH, (width + 1) // 2):
@@ -273,7 +273,7 @@ def _march_one_way(
         if away != 0.0:
             turn = (turn + 1) % ROLES
         else:
-            steps = np.int64(0)
+            steps = int(np.int64(0))
     if 0 <= row < len(table.rows):
         for i in range(width):
             if standing[i] > 0.5:
@@ -316,7 +316,7 @@ def in_step(
     int
         How many tasks.
     """
-    count = np.int64(0)  # no constant, for which callees would be compiled as well
+    count = int(np.int64(0))  # no constant, for which callees would be compiled as well
     for base in range(0, node.shape[1], LANES):
         width = min(LANES, node.shape[1] - base)
         load_all_lanes(w, topology.coefficients, design, base, width)

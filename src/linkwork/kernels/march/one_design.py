@@ -13,7 +13,7 @@ from linkwork.kernels.march.step_trial import Topology
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
 from linkwork.kernels.program.kernel_cache import loop_serves
 
-__all__ = ["LoadedFamily", "RowsOfOne", "SingleDesign"]
+__all__ = ["LoadedFamily", "RowsOfOne", "SingleDesign", "march_in_turn"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +103,32 @@ class LoadedDesign:
         alone, own = self.alone, self.alone.family.one(self.design)
         given = alone.proving.guess_nodes(guess[:-1, None], guess[-1:])
         node, begun = alone.proving.start_nodes(own, alone.space, given)
-        if not begun[0]:
-            return False
-        both = Tasks(np.zeros(2, np.int64), np.array([1, 0]), np.repeat(node, 2, axis=1))
-        loops.march(own.topology, alone.space, own.design, alone.table, both, 2, found, counts)
-        return bool(found.reached[:, found.first].all())
+        march_in_turn(own, alone.space, node, begun, alone.table, found, counts)
+        return bool(begun[0] and found.reached[:, found.first].all())
+
+
+def march_in_turn(
+    family: LoadedFamily,
+    space: Array,
+    node: Array,
+    begun: BoolArray,
+    table: InputTable,
+    found: MarchResult,
+    counts: CountArray,
+) -> None:
+    """March designs row after row, down and up from their starts.
+
+    Parameters
+    ----------
+    node, begun : (S, D), (D,)
+        Where they start, and whether they do.
+    counts : (R,)
+        Of a single design: filled with the corrections that rows took; else (0,).
+    """
+    members = np.repeat(np.flatnonzero(begun), 2)
+    ways = np.tile([1, 0], len(members) // 2)
+    tasks = Tasks(members, ways, np.ascontiguousarray(node[:, members]))
+    loops.march(family.topology, space, family.design, table, tasks, len(members), found, counts)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

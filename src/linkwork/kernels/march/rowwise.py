@@ -129,7 +129,7 @@ def _find_nodes(
     """Nodes from a node to a row and some behind that; the same as :func:`_march_to`."""
     rows, steps = table.rows, table.steps
     _set_out(topology, w, node)
-    turn, known = _march_to(topology, w, np.int64(0), np.int64(1), rows[row], steps, _ANY)
+    turn, known = _march_to(topology, w, int(np.int64(0)), int(np.int64(1)), rows[row], steps, _ANY)
     if known and known < NODES:
         turn, known = _march_to(topology, w, turn, known, rows[-1], steps, NODES)
     return turn, known
@@ -291,7 +291,7 @@ def by_rows(
             own[scout.weights[j], 0] = 1.0 if j == 2 * NODES - 2 else 0.0
         if not _solve_start(scout, own, begin, scale, start):
             return NOT_NEAR
-    before, certify, first = start.copy(), proves_trials(topology), np.int64(0)
+    before, certify, first = start.copy(), proves_trials(topology), int(np.int64(0))
     while first < len(rows):
         if width < _FEWEST:
             return LEFT

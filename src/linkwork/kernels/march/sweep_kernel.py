@@ -18,7 +18,12 @@ from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.closure import BlockPart
 from linkwork.kernels.march.dead_points import LastNodes
 from linkwork.kernels.march.march_programs import WEIGHTS, march_programs
-from linkwork.kernels.march.one_design import LoadedFamily, RowsOfOne, SingleDesign
+from linkwork.kernels.march.one_design import (
+    LoadedFamily,
+    RowsOfOne,
+    SingleDesign,
+    march_in_turn,
+)
 from linkwork.kernels.march.start_positions import begin
 from linkwork.kernels.march.step_trial import Topology
 from linkwork.kernels.march.thread_shares import share_of_threads
@@ -172,7 +177,7 @@ class SweepKernel:
         count, given = len(start), self.guess_nodes(guess, start)
         family, table = self._load_family(coefficients, count), self._table(rows, steps)
         # few designs cannot fill the lanes; their rows can
-        if count <= _FEW and len(rows) >= LANES and loop_serves("rowwise", count * len(rows)):
+        if count <= _FEW:
             return self._few(family, coefficients, given, table, steps, found)
         begun = np.zeros(count, dtype=bool)
 
@@ -271,17 +276,19 @@ class SweepKernel:
         found: MarchResult,
     ) -> BoolArray:
         """One design after the other, its rows side by side; then those that this is not for."""
-        alone, n = self._prepare_single(family, coefficients, table, steps), self.table.unknowns
-        counts = np.zeros(len(table.rows), dtype=np.int64)
-        done = np.zeros(given.shape[1], dtype=bool)
-        for k in range(given.shape[1]):
-            guess = np.append(given[:n, k], given[-1, k])
-            done[k] = alone.with_design(k).run_side_by_side(guess, found._replace(first=k), counts)
+        done, rows = np.zeros(given.shape[1], dtype=bool), len(table.rows)
+        if rows >= LANES and loop_serves("rowwise", len(done) * rows):
+            alone, n = self._prepare_single(family, coefficients, table, steps), len(given) - 1
+            counts = np.zeros(rows, dtype=np.int64)
+            for k in range(len(done)):
+                guess = np.append(given[: self.table.unknowns, k], given[n, k])
+                own = found._replace(first=k)
+                done[k] = alone.with_design(k).run_side_by_side(guess, own, counts)
         if done.all():
             return done
-        space = self._space(steps)
+        space, none = self._space(steps), np.zeros(0, np.int64)
         node, begun = self.start_nodes(family, space, given)
-        _march_part(family, space, node, begun & ~done, table, found)
+        march_in_turn(family, space, node, begun & ~done, table, found, none)
         return done | begun
 
     def prepare_single(

@@ -35,9 +35,9 @@ __all__ = [
     "types",
 ]
 
-_njit: Any = numba.njit  # whose types do not know of the option ``_nrt``
+_numba: Any = numba  # whose types do not know of the option ``_nrt``
 #: An array at a pointer, with a shape; in compiled code.
-carray: Any = numba.carray
+carray: Any = _numba.carray
 _P = ParamSpec("_P")
 _R_co = TypeVar("_R_co", covariant=True)
 
@@ -61,7 +61,7 @@ def compiled_for(signature: object) -> Compiling:
     """Compiled when the module is loaded, for arrays of the signature; ``None``: at the first
     call, for the arrays that are met.
     """
-    compiling: Compiling = _njit(
+    compiling: Compiling = _numba.njit(
         signature, cache=True, error_model="numpy", fastmath={"contract"}, nogil=True
     )
     return compiling
@@ -71,7 +71,7 @@ compiled = compiled_for(None)
 
 #: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.
-njit_no_refcount: Compiling = _njit(
+njit_no_refcount: Compiling = _numba.njit(
     cache=True, error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
 )
 say_that_it_compiles()

@@ -7,6 +7,7 @@ import logging
 import os
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from platformdirs import user_cache_path
@@ -34,7 +35,13 @@ def is_compiled(loop: str) -> bool:
 
 def loop_serves(loop: str, positions: int) -> bool:
     """Whether a loop that others can replace saves time for this many positions."""
-    return is_loaded(loop) or positions >= _PAYS or is_compiled(loop)
+    return is_loaded(loop) or positions >= _PAYS or _was_compiled(loop)
+
+
+@cache
+def _was_compiled(loop: str) -> bool:
+    """Whether a loop was compiled when it was first asked for; looking takes longer than a table."""
+    return is_compiled(loop)
 
 
 def _indices(loop: str) -> Iterator[Path]:
