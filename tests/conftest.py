@@ -9,7 +9,7 @@ import sys
 import pytest
 from hypothesis import settings
 
-from linkwork.kernels.program.kernel_cache import kernels_are_compiled
+from linkwork.kernels.program.kernel_cache import is_compiled
 
 # No profile has a deadline: the first example of a test pays for imports, and the
 # workers of a parallel run share their cores.
@@ -19,16 +19,25 @@ settings.load_profile("ci" if os.environ.get("CI") else "dev")
 
 os.environ.setdefault("MPLBACKEND", "Agg")  # inherited by the commands that tests start
 
-#: Modules that are compiled as they are loaded, two halves of the work.
+#: Modules that are compiled as they are loaded: what all loops share, then halves of the work.
 _COMPILED = (
-    "import linkwork.kernels.march.rowwise",
-    "import linkwork.kernels.march.independent, linkwork.kernels.march.lockstep",
+    ("linkwork.kernels.march.start_positions",),
+    ("linkwork.kernels.march.rowwise", "linkwork.kernels.march.lockstep"),
+    ("linkwork.kernels.march.independent", "linkwork.kernels.march.position_programs"),
 )
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Kernels are compiled before workers begin: each of them would compile all, for itself."""
-    if config.getoption("numprocesses", None) and not kernels_are_compiled():
-        compiling = [subprocess.Popen([sys.executable, "-c", code]) for code in _COMPILED]
-        for process in compiling:
-            process.wait()
+    if config.getoption("numprocesses", None) and not is_compiled("rowwise"):
+        _compile(_COMPILED[:1])
+        _compile(_COMPILED[1:])
+
+
+def _compile(modules: tuple[tuple[str, ...], ...]) -> None:
+    """Load modules, each tuple in a process of its own."""
+    loading = [
+        subprocess.Popen([sys.executable, "-c", f"import {', '.join(names)}"]) for names in modules
+    ]
+    for process in loading:
+        process.wait()

@@ -17,7 +17,8 @@ from linkwork.batch import Family
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.march import one_design, sweep_kernel
+from linkwork.kernels import march as loops
+from linkwork.kernels.march import sweep_kernel
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.varied_number import varied_numbers
 from linkwork.motion import sweep
@@ -159,10 +160,13 @@ def test_without_proofs_the_motions_are_the_same(name: str) -> None:
     assert np.isnan(motion.radius).all()
 
 
-@pytest.mark.parametrize("few", [0, 16])
+@pytest.mark.parametrize(
+    ("few", "side_by_side", "expected"),
+    [(0, True, "in_step"), (16, True, "by_rows"), (16, False, "march")],
+)
 @pytest.mark.parametrize("name", ["rapier-drive", "jansen-leg", "slider-input", "rack-steering"])
-def test_rows_side_by_side_are_those_of_designs_in_step(
-    name: str, few: int, monkeypatch: pytest.MonkeyPatch
+def test_every_loop_finds_the_same_rows(
+    name: str, few: int, side_by_side: bool, expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("linkwork.kernels.march.sweep_kernel._FEW", few)
     ways: list[str] = []
@@ -171,12 +175,12 @@ def test_rows_side_by_side_are_those_of_designs_in_step(
         ways.append(way)
         return inner(*arguments)
 
-    for where, way in ((sweep_kernel, "in_step"), (one_design, "by_rows")):
-        inner = getattr(where, way)
-        monkeypatch.setattr(where, way, partial(noted, way, inner))
+    for way in ("in_step", "by_rows", "march"):
+        monkeypatch.setattr(loops, way, partial(noted, way, getattr(loops, way)))
+    monkeypatch.setattr(sweep_kernel, "loop_serves", lambda loop, positions: side_by_side)
     family = family_of(name, 0.998, 1.002)
     motion = family.sweep()
-    assert ways[0] == ("by_rows" if few else "in_step")
+    assert ways[0] == expected
     assert motion.certified.all()
     assert_agrees(family, motion)
 

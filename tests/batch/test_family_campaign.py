@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from linkwork.kernels.march import one_design, rowwise
+from linkwork.kernels import march as loops
+from linkwork.kernels.march import rowwise
 from tests.campaigns import families, kinds
 from tests.campaigns.motion import FAMILIES
 
@@ -41,7 +42,7 @@ def test_rows_side_by_side_stay_on_their_branch(
         done.append(inner(*arguments))
         return done[-1]
 
-    monkeypatch.setattr(one_design, "by_rows", noted)
+    monkeypatch.setattr(loops, "by_rows", noted)
     counts, false = kinds.kind_campaign(part, 8, step)
     assert not false
     assert counts["row CERTIFIED"] > 0.9 * counts["rows found"] > 0

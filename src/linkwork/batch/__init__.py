@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.batch.compiling_ahead import compile_kernels as compile_kernels
     from linkwork.batch.designs import (
         Designs as Designs,
         designs_of as designs_of,

@@ -28,6 +28,7 @@ _COMMANDS = (
     "animate",
     "view",
     "study",
+    "compile",
     "examples",
     "schema",
 )

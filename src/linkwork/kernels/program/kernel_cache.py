@@ -40,7 +40,7 @@ def loop_serves(loop: str, positions: int) -> bool:
 
 @cache
 def _was_compiled(loop: str) -> bool:
-    """Whether a loop was compiled when it was first asked for; looking takes longer than a table."""
+    """Whether a loop was compiled when it was first asked for: a look takes as long as a table."""
     return is_compiled(loop)
 
 
