@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "src"), str(ROOT)]  # the trusses are those of the tests
@@ -22,10 +23,11 @@ sys.path[:0] = [str(ROOT / "src"), str(ROOT)]  # the trusses are those of the te
 import numpy as np  # noqa: E402 - after the path is set
 
 import linkwork as lw  # noqa: E402
+from linkwork.foundation.cache_folder import CACHE_VARIABLE  # noqa: E402
 from linkwork.numerics.homotopy import start_sets  # noqa: E402
 from linkwork.numerics.homotopy.bilinear_family import Structure  # noqa: E402
 from linkwork.numerics.homotopy.dead_point_family import DeadPointFamily  # noqa: E402
-from linkwork.numerics.homotopy.isolated_roots import solve_random_member  # noqa: E402
+from linkwork.numerics.homotopy.isolated_roots import Solved, solve_random_member  # noqa: E402
 from tests.campaigns.circuits import dead_inputs_of  # noqa: E402
 from tests.oracles.trusses import FIVE_LINKS, SEVEN_LINKS, Edges, edges_of, truss  # noqa: E402
 
@@ -134,7 +136,7 @@ def build() -> None:
     start_sets.SHIPPED.unlink(missing_ok=True)
     arrays = {}
     with tempfile.TemporaryDirectory() as folder:
-        os.environ[start_sets.FOLDER] = folder
+        os.environ[CACHE_VARIABLE] = folder
         solve_all()
         for path in start_sets.own_sets():
             with np.load(path) as stored:
@@ -158,7 +160,7 @@ def check() -> int:
         ]
     for name, kept in zip(names, sets, strict=True):
         begin = time.perf_counter()
-        again = solve_random_member(family_of(kept), _CHECK)
+        again: Solved[Any] = solve_random_member(family_of(kept), _CHECK)
         ok = len(again.x) == len(kept.x)
         wrong += not ok
         took = time.perf_counter() - begin
@@ -171,4 +173,6 @@ def check() -> int:
 if __name__ == "__main__":
     if sys.argv[1:] not in ([], ["--check"]):
         sys.exit("scripts/start_sets [--check]")
-    sys.exit(bool(check()) if sys.argv[1:] else build())
+    if sys.argv[1:]:
+        sys.exit(bool(check()))
+    build()

@@ -11,14 +11,11 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-from platformdirs import user_cache_path
-
+from linkwork.foundation.cache_folder import CACHE_VARIABLE, cache_folder
 from linkwork.foundation.errors import InputError
 
 __all__ = ["is_cached", "load_compiled"]
 
-#: A folder that takes the place of the user's cache.
-FOLDER = "LINKWORK_CACHE"
 #: Modules that written ones are compiled with.
 _WITH = (
     "kernels/gpu/compiling.py",
@@ -64,8 +61,7 @@ def _path(name: str) -> Path:
 
 
 def _folder() -> Path:
-    given = os.environ.get(FOLDER)
-    return Path(given) if given else user_cache_path("linkwork") / "kernels"
+    return cache_folder("kernels")
 
 
 def _name(source: str) -> str:
@@ -88,7 +84,7 @@ def _write(path: Path, source: str) -> None:
     except OSError as error:
         raise InputError(
             f"compiled code cannot be stored in {path.parent} ({error.strerror}): "
-            f"name another folder in {FOLDER}, or use specialised=False"
+            f"name another folder in {CACHE_VARIABLE}, or use specialised=False"
         ) from None
 
 

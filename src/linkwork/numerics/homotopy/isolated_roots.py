@@ -223,7 +223,8 @@ def _read_member(family: RootFamily[S]) -> Solved[S] | None:
         system = family.member(*closures)
         x, steps = kept.x, np.zeros(0, dtype=np.int64)
         if len(x):
-            x, steps = polish_roots(system, family.rename(x, renaming))
+            with np.errstate(all="ignore"):  # of a file that is damaged
+                x, steps = polish_roots(system, family.rename(x, renaming))
         if (steps >= 0).all() and len(_distinct(x)) == len(x):
             return Solved(system=system, x=x, sure=kept.sure)
     return None

@@ -16,12 +16,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from platformdirs import user_cache_path
 
 from linkwork.foundation.arrays import AnyArray, ComplexArray
+from linkwork.foundation.cache_folder import cache_folder
 from linkwork.numerics.homotopy.topology import Topology
 
-__all__ = ["FOLDER", "SHIPPED", "StartSet", "name_of", "own_sets", "read_sets", "write_set"]
+__all__ = ["SHIPPED", "StartSet", "name_of", "own_sets", "read_sets", "write_set"]
 
 #: The environment's name of a folder that takes the place of the user's cache.
 FOLDER = "LINKWORK_CACHE"
@@ -67,7 +67,7 @@ def read_sets(topology: Topology) -> Iterator[StartSet]:
     for path in (SHIPPED, *own_sets(signature)):
         # a file that cannot be read is no set: it is computed, and written again
         with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
-            with np.load(path) as stored:
+            with path.open("rb") as file, np.load(file) as stored:
                 names = {name.rpartition(".")[0] for name in stored.files}
                 near = sorted((n for n in names if n.startswith(signature)), key=own.__ne__)
                 found = [
@@ -100,5 +100,4 @@ def name_of(topology: Topology) -> str:
 
 
 def _folder() -> Path:
-    given = os.environ.get(FOLDER)
-    return (Path(given) if given else user_cache_path("linkwork")) / "start_sets"
+    return cache_folder("start_sets")
