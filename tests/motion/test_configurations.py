@@ -480,6 +480,8 @@ def test_a_random_start_that_was_not_confirmed_makes_no_claim(
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
     assert found.message.endswith("16 complex solutions, at most 20 by Bézout's theorem")
     monkeypatch.setattr(isolated_roots, "_KNOWN", {})
+    monkeypatch.setattr(isolated_roots, "read_sets", lambda topology: iter(()))
+    monkeypatch.setattr(isolated_roots, "write_set", lambda kept: None)
     monkeypatch.setattr(isolated_roots, "_TRIES", 1)
     assert mechanism.configurations().completeness is Completeness.NOT_PROVED
 

@@ -11,6 +11,7 @@ import pytest
 import linkwork as lw
 from linkwork import Completeness
 from linkwork.motion.circuit import dead_inputs
+from linkwork.numerics.homotopy import isolated_roots
 from tests.campaigns.circuits import CRANKED, dead_inputs_of
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.cranked import cranked_truss
@@ -284,8 +285,10 @@ def test_loops_that_say_the_same_twice_are_no_complete_list() -> None:
 
 
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwork.numerics.homotopy.isolated_roots._KNOWN", {})
-    monkeypatch.setattr("linkwork.numerics.homotopy.isolated_roots._TRIES", 0)
+    monkeypatch.setattr(isolated_roots, "_KNOWN", {})
+    monkeypatch.setattr(isolated_roots, "read_sets", lambda topology: iter(()))
+    monkeypatch.setattr(isolated_roots, "write_set", lambda kept: None)
+    monkeypatch.setattr(isolated_roots, "_TRIES", 0)
     found = dead_inputs_of(lw.example("rapier-drive"))
     assert found.completeness is Completeness.NOT_PROVED
     assert found.reason == ("not proved: solution paths were lost, so dead points may be missing")

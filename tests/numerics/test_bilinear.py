@@ -176,9 +176,9 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
 
 def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(9)
-    known = roots_module._generic(structure_of(system))
+    known = roots_module.random_member(structure_of(system))
     twice = np.concatenate([known.x[:5], known.x[:1]])
-    spoiled = roots_module._Generic(system=known.system, x=twice)
+    spoiled = roots_module.Solved(system=known.system, x=twice)
     monkeypatch.setitem(roots_module._KNOWN, structure_of(system), spoiled)
     roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (4, 2)
@@ -187,8 +187,8 @@ def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch
 def test_closed_paths_find_solutions_that_were_missing() -> None:
     system, _ = random_triad(10)
     structure = structure_of(system)
-    known = roots_module._generic(structure)
-    part = roots_module._Generic(system=known.system, x=known.x[:2])
+    known = roots_module.random_member(structure)
+    part = roots_module.Solved(system=known.system, x=known.x[:2])
     whole = roots_module._close_paths(structure, part, np.random.default_rng(0))
     assert len(whole.x) == 6
 

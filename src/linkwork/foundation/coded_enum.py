@@ -5,7 +5,9 @@ from __future__ import annotations
 from enum import Enum
 from typing import Self
 
-from linkwork.foundation.arrays import StatusArray
+import numpy as np
+
+from linkwork.foundation.arrays import BoolArray, StatusArray
 
 __all__ = ["CodedEnum"]
 
@@ -26,4 +28,14 @@ class CodedEnum(Enum):
     @classmethod
     def of_codes(cls, codes: StatusArray) -> tuple[Self, ...]:
         """The members with these codes (B,)."""
-        return tuple(map(tuple(cls).__getitem__, codes.tolist()))
+        members = tuple(cls)
+        # most tables have one status
+        if len(codes) and (codes == codes[0]).all():
+            return (members[codes[0]],) * len(codes)
+        return tuple(map(members.__getitem__, codes.tolist()))
+
+    def where(self, members: tuple[Self, ...]) -> BoolArray:
+        """Which of some members are this one, (B,)."""
+        if members.count(self) == len(members):
+            return np.ones(len(members), dtype=bool)
+        return np.array([member is self for member in members], dtype=bool)

@@ -32,6 +32,7 @@ from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["Asked", "BranchRows", "Report", "rows_of_branch"]
 
+_APART = 1e-6  # of the mean distance of rows: rows nearer to each other are one place
 _COARSE = 1 / 8  # of a track's longest step: shorter ones are near its ends
 _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, small enough for cache
 
@@ -313,6 +314,8 @@ class _RowSolver:
         if len(coarse) < 2:
             return None
         inside = (t > nodes[coarse[0]]) & (t < nodes[coarse[-1] + 1])
+        # rows whole turns apart may lie at one place
+        inside &= np.diff(t, prepend=-np.inf) > _APART * np.ptp(t) / len(t)
         if not inside.any():
             return None
         mine, others = there[inside], there[~inside]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.frozen import ComputedDict
 from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues
 from linkwork.results.series import Series
@@ -18,14 +20,14 @@ __all__ = ["Named", "RowValues", "name_series"]
 
 @dataclass(frozen=True, kw_only=True)
 class Named:
-    """All quantities of a batch of positions by name."""
+    """All quantities of a batch of positions by name; each is computed when it is asked for."""
 
     inputs: dict[str, Array]
-    unknowns: dict[str, Series]
-    links: dict[str, Series]
-    sliders: dict[str, Series]
-    points: dict[str, tuple[Series, Series]]
-    outputs: dict[str, Series]
+    unknowns: Mapping[str, Series]
+    links: Mapping[str, Series]
+    sliders: Mapping[str, Series]
+    points: Mapping[str, tuple[Series, Series]]
+    outputs: Mapping[str, Series]
 
 
 class RowValues(QuantityValues):
@@ -99,12 +101,11 @@ def name_series(
     columns = enumerate(model.equations.inputs)
     return Named(
         inputs={variable.name: inputs[:, k] for k, variable in columns},
-        unknowns={name: values.series(name) for name in names.unknowns},
-        links={name: values.series(name) for name in names.links},
-        sliders={name: values.series(name) for name in names.sliders},
-        points={
-            point: (values.series(f"{point}.x"), values.series(f"{point}.y"))
-            for point in names.points
-        },
-        outputs={name: values.series(name) for name in names.outputs},
+        unknowns=ComputedDict(names.unknowns, values.series),
+        links=ComputedDict(names.links, values.series),
+        sliders=ComputedDict(names.sliders, values.series),
+        points=ComputedDict(
+            names.points, lambda name: (values.series(f"{name}.x"), values.series(f"{name}.y"))
+        ),
+        outputs=ComputedDict(names.outputs, values.series),
     )

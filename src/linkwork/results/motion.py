@@ -261,7 +261,7 @@ class Motion:
     @cached_property
     def found(self) -> BoolArray:
         """Whether a row has a position, shape (N,)."""
-        return read_only(np.array([s is Status.CONVERGED for s in self.status], dtype=bool))
+        return read_only(Status.CONVERGED.where(self.status))
 
     @property
     def asked(self) -> BoolArray:
@@ -271,7 +271,7 @@ class Motion:
     @property
     def certified(self) -> BoolArray:
         """Whether a row is proved, shape (N,)."""
-        return np.array([c is Certification.CERTIFIED for c in self.certification], dtype=bool)
+        return Certification.CERTIFIED.where(self.certification)
 
     @property
     def worst(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -52,11 +53,13 @@ class Scout(Protocol):
 class SingleDesign:
     """The rows of one design; the workspace holds one design at a time.
 
-    ``proving``: the kernel itself. ``scale`` (D, n): weights of the unknowns.
+    ``proving``: the kernel itself. ``fresh``: makes a workspace. ``scale`` (D, n): weights of the
+    unknowns.
     """
 
     scout: Scout
     proving: Scout
+    fresh: Callable[[], Array]
     family: LoadedFamily
     ahead: LoadedFamily
     space: Array
@@ -101,9 +104,9 @@ class LoadedDesign:
     def run_in_turn(self, guess: Array, found: MarchResult, counts: CountArray) -> bool:
         """The same, row after row, down and up from the guess."""
         alone, own = self.alone, self.alone.family.one(self.design)
-        given = alone.proving.guess_nodes(guess[:-1, None], guess[-1:])
-        node, begun = alone.proving.start_nodes(own, alone.space, given)
-        march_in_turn(own, alone.space, node, begun, alone.table, found, counts)
+        given, space = alone.proving.guess_nodes(guess[:-1, None], guess[-1:]), alone.fresh()
+        node, begun = alone.proving.start_nodes(own, space, given)
+        march_in_turn(own, space, node, begun, alone.table, found, counts)
         return bool(begun[0] and found.reached[:, found.first].all())
 
 

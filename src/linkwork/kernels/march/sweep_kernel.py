@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -225,7 +226,7 @@ class SweepKernel:
         places, design = self._coefficient_registers(coefficients, count)
         return LoadedFamily(self._topology(places), design)
 
-    def _space(self, steps: Steps) -> Array:
+    def workspace(self, steps: Steps) -> Array:
         """A workspace with constants and options in place."""
         # filling constants takes longer than copying a filled workspace
         blank = self._blank
@@ -257,7 +258,7 @@ class SweepKernel:
         found: MarchResult,
     ) -> BoolArray:
         """Designs side by side."""
-        space = self._space(steps)
+        space = self.workspace(steps)
         node, begun = self.start_nodes(family, space, given)
         _march_part(family, space, node, begun, table, found)
         return begun
@@ -286,7 +287,7 @@ class SweepKernel:
                 done[k] = alone.with_design(k).run_side_by_side(guess, own, counts)
         if done.all():
             return done
-        space, none = self._space(steps), np.zeros(0, np.int64)
+        space, none = self.workspace(steps), np.zeros(0, np.int64)
         node, begun = self.start_nodes(family, space, given)
         march_in_turn(family, space, node, begun & ~done, table, found, none)
         return done | begun
@@ -334,16 +335,17 @@ class SweepKernel:
             if self.trial:
                 self.scout.choose_execution(Execution(specialised=True))
             ahead = self.scout._load_family(coefficients, count)
-        space = self._space(steps)
+        space = self.workspace(steps)
         ones = np.ones(count)
         scales = [coefficients.get(f"scale{k}", ones) for k in range(self.table.unknowns)]
         return SingleDesign(
             scout=scout,
+            fresh=partial(self.workspace, steps),
             proving=self,
             family=family,
             ahead=ahead,
             space=space,
-            own=space if scout is self else scout._space(replace(steps, tolerance=_ROUGHLY)),
+            own=space if scout is self else scout.workspace(replace(steps, tolerance=_ROUGHLY)),
             table=table,
             scale=np.ascontiguousarray(np.array(scales).T),
         )

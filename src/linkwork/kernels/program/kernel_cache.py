@@ -12,10 +12,10 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-__all__ = ["is_compiled", "is_loaded", "loop_serves", "say_that_it_compiles"]
+__all__ = ["LOOPS", "is_compiled", "is_loaded", "loop_serves", "say_that_it_compiles"]
 
 #: The loops over lanes, by module, with the function that takes long to compile.
-_LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
+LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
 _FOLDER = Path(__file__).parents[1] / "march"
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
@@ -52,7 +52,7 @@ def _indices(loop: str) -> Iterator[Path]:
     if not given:
         folders.append(_FOLDER / "__pycache__")
     for folder in folders:
-        yield from folder.glob(f"{loop}.{_LOOPS[loop]}-*.nbi")
+        yield from folder.glob(f"{loop}.{LOOPS[loop]}-*.nbi")
 
 
 def _is_of_source(index: Path, source: Path) -> bool:
@@ -66,7 +66,7 @@ def _is_of_source(index: Path, source: Path) -> bool:
 
 def say_that_it_compiles() -> None:
     """Warn in the log ``linkwork`` that compiling takes time, if it will."""
-    if not any(map(is_compiled, _LOOPS)):
+    if not any(map(is_compiled, LOOPS)):
         logging.getLogger("linkwork").warning(
             "compiling Linkwork's kernels, once after an installation: up to half a minute "
             '("linkwork compile" compiles all of them beforehand)'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from linkwork.kernels.program.kernel_cache import is_compiled, is_loaded
+from linkwork.kernels.program.kernel_cache import LOOPS, is_loaded, loop_serves
 from linkwork.motion.model import Model
 
 __all__ = ["are_served", "kernels_pay"]
@@ -37,12 +37,12 @@ def kernels_pay(model: Model, rows: int) -> bool:
     if rows < _FEW or not are_served(model):
         return False
     table = model.compiled.table
-    if not is_loaded(_LOOP):
+    if not any(map(is_loaded, LOOPS)):
         _WORK[""] += rows * table.unknowns
         if _WORK[""] < _LOADING:
             return False
         _WORK[""] = 0
-        if not is_compiled(_LOOP):
-            return False
+    if not loop_serves(_LOOP, 0):
+        return False
     _ROWS[table.structure] += rows
     return _ROWS[table.structure] >= _MAKING

@@ -7,13 +7,15 @@ module loads compiled code.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.kernels.march.position_programs import along_rows
-from linkwork.kernels.march.sweep_kernel import Steps
+from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.by_kernels.equations import own_coefficients, zero_names
 from linkwork.motion.by_kernels.kernels import kernel_of, row_program_of
@@ -36,31 +38,70 @@ def kernel_rows(drive: Drive, anchor: Node, t: Array, spread: Array) -> SolvedRo
     spread : (p,)
         How far inputs may be from their exact values, besides their rounding.
     """
-    times, place = np.unique(np.append(t, anchor.t), return_inverse=True)
+    order = np.argsort(t, kind="stable")
+    times = t[order]
     gaps = np.diff(times)
-    if len(gaps) and gaps.min() <= _TWICE * gaps.mean():
+    if gaps.min(initial=np.inf) <= _TWICE * (times[-1] - times[0]) / len(t):
         return None
-    model, path, n = drive.model, drive.path, drive.solver.unknowns
+    model, path = drive.model, drive.path
     coefficients = own_coefficients(model)
     zeros = zero_names(coefficients)
     for j, (origin, rate) in enumerate(zip(path.origin, path.rate, strict=True)):
         own = {"origin": origin, "rate": rate, "spread": spread[j]}
         coefficients |= {f"u{j}.{name}": np.array([value]) for name, value in own.items()}
-    kernel = kernel_of(model, zeros, True)
-    kernel.choose_execution(Execution(positions=len(times)))
-    steps = Steps().times(path.size)
-    march = kernel.prepare_single(coefficients, anchor.v[:n], anchor.t, times, steps)
-    done = march.run()
-    if done is None:
-        return None
-    v = np.vstack([done[0][:, :, 0], path.at(times).T])
-    read = along_rows(row_program_of(model, zeros, True), coefficients, v)
-    rows = _solved(read, v, path.rate, march.counts)
-    # the only solution so near to its row at the anchor's own place has to be the anchor
-    here = int(place[-1])
-    away = float((np.abs(rows.v[here] - anchor.v) / drive.solver.variable_scale).max())
-    proved = np.isfinite(rows.radius).all() and away < float(rows.uniqueness_radius[here])
-    return rows.take(place[:-1]) if proved else None
+    work = _Kernel(drive, anchor, kernel_of(model, zeros, True), coefficients, zeros)
+    rows = work.rows(times)
+    return rows.take(np.argsort(order)) if rows is not None and work.join(rows, times) else None
+
+
+@dataclass(frozen=True, eq=False)
+class _Kernel:
+    """A kernel with the coefficients of one mechanism, and where its rows begin."""
+
+    drive: Drive
+    anchor: Node
+    kernel: SweepKernel
+    coefficients: dict[str, Array]
+    zeros: frozenset[str]
+
+    def rows(self, t: Array) -> SolvedRows | None:
+        """Rows at rising values of t, if all of them are found and proved."""
+        drive, n = self.drive, self.drive.solver.unknowns
+        self.kernel.choose_execution(Execution(positions=len(t)))
+        steps = Steps().times(drive.path.size)
+        begin = self.anchor.v[:n], self.anchor.t
+        march = self.kernel.prepare_single(self.coefficients, *begin, t, steps)
+        done = march.run()
+        if done is None:
+            return None
+        v = np.vstack([done[0][:, :, 0], drive.path.at(t).T])
+        program = row_program_of(drive.model, self.zeros, True)
+        read = along_rows(program, self.coefficients, v)
+        rows = _solved(read, v, drive.path.rate, march.counts)
+        return rows if np.isfinite(rows.radius).all() else None
+
+    def join(self, rows: SolvedRows, t: Array) -> bool:
+        """Whether the rows at t are proved to lie on the anchor's branch.
+
+        They are joined to the kernel's own start. Its row at the anchor's value of t has to be the
+        anchor: within the distance in which there is no other solution. That row is joined to the
+        row nearest to it.
+        """
+        near = int(np.abs(t - self.anchor.t).argmin())
+        if t[near] == self.anchor.t:
+            return self._same(rows.v[near], self.anchor.v, rows, near)
+        both = np.sort([t[near], self.anchor.t])
+        pair = self.rows(both)
+        if pair is None:
+            return False
+        here = int(both[1] == self.anchor.t)
+        return self._same(pair.v[here], self.anchor.v, pair, here) and self._same(
+            rows.v[near], pair.v[1 - here], rows, near
+        )
+
+    def _same(self, one: Array, other: Array, rows: SolvedRows, row: int) -> bool:
+        away = float((np.abs(one - other) / self.drive.solver.variable_scale).max())
+        return away < float(rows.uniqueness_radius[row])
 
 
 def _solved(read: Array, v: Array, rate: Array, counts: CountArray) -> SolvedRows:
