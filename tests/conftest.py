@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 
 import pytest
 from hypothesis import settings
@@ -17,6 +18,8 @@ settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True
 settings.register_profile("dev", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "dev")
 
+# what earlier runs have left in the user's cache must not decide a test; workers inherit the folder
+os.environ.setdefault("LINKWORK_CACHE", tempfile.mkdtemp(prefix="linkwork-tests-"))
 os.environ.setdefault("MPLBACKEND", "Agg")  # inherited by the commands that tests start
 
 #: Modules that are compiled as they are loaded: what all loops share, then halves of the work.
