@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from linkwork.batch.pattern import Coefficients, Pattern
-from linkwork.equations.compiling import compile_equations
+from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.model import LoopEquations, Term
@@ -216,19 +217,52 @@ def family_base(model: Model, varied: Sequence[VariedNumber]) -> tuple[Model, bo
     # released links and contradicting speeds depend on numbers, and are decided design by design
     if model.equations.surplus is not None or spoken > 1:
         return model, False
+    known = _WIDENED.setdefault(model.compiled, {})
+    key = tuple(varied)
+    if key not in known:
+        known[key] = _widened(model, varied)
+    wider = known[key]
+    if wider is None:
+        return model, True
+    equations = wider.within(model.equations)
+    return Model(description, equations, wider.compiled, model.skeleton, model.branch), True
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Widened:
+    """Equations with the terms that varied numbers can bring, and these compiled."""
+
+    equations: LoopEquations
+    compiled: Compiled
+
+    def within(self, own: LoopEquations) -> LoopEquations:
+        """A mechanism's own equations with these terms."""
+        wide = self.equations
+        return replace(own, loops=wide.loops, points=wide.points, symbols=wide.symbols)
+
+
+#: What families of the same mechanism share: by the numbers that they vary; ``None`` if its own
+#: equations have all terms.
+_WIDENED: WeakKeyDictionary[Compiled, dict[tuple[VariedNumber, ...], _Widened | None]] = (
+    WeakKeyDictionary()
+)
+
+
+def _widened(model: Model, varied: Sequence[VariedNumber]) -> _Widened | None:
+    description = model.description
     consensus = LaneArithmetic(1, widest=True)
     numbers = {q: consensus.lanes(np.array([q.of(description)])) for q in varied}
     try:
         with np.errstate(all="ignore"):
             equations = write_equations(with_numbers(description, numbers))
     except NotElementwise:
-        return model, True
+        return None
     own, wider = Pattern.of(model.equations), Pattern.of(equations)
     if (own.loops, own.points) == (wider.loops, wider.points):
-        return model, True
+        return None
     plain = _plain(equations, model.equations)
     compiled = compile_equations(plain, f'mechanism "{description.name}"')
-    return Model(description, plain, compiled, model.skeleton, model.branch), True
+    return _Widened(equations=plain, compiled=compiled)
 
 
 def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
