@@ -146,11 +146,11 @@ def test_threads_share_a_kernel_and_its_workspaces(monkeypatch: pytest.MonkeyPat
 
     def meanwhile(*size: int) -> Array:
         monkeypatch.setattr(sweep_kernel, "allocate_aligned", allocate_aligned)
-        others.append(shared._space(other))
+        others.append(shared.workspace(other))
         return allocate_aligned(*size)
 
     monkeypatch.setattr(sweep_kernel, "allocate_aligned", meanwhile)
-    assert shared._space(mine)[tolerance, 0] == 1e-3
+    assert shared.workspace(mine)[tolerance, 0] == 1e-3
     assert others[0][tolerance, 0] == 1e-4
 
 

@@ -17,6 +17,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.arrays import Array
+from linkwork.kernels.march import position_programs
 from linkwork.kernels.program import kernel_cache
 from linkwork.kernels.program.kernel_cache import is_compiled, say_that_it_compiles
 from linkwork.motion import by_kernels
@@ -167,7 +168,7 @@ def test_two_inputs_move_together(both: Sweep) -> None:
 def test_rows_of_another_position_than_the_anchor_are_not_taken(
     certify: bool, both: Sweep, used: list[SolvedRows | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = rows_module.along_rows
+    own = position_programs.along_rows
 
     def narrow(*arguments: Any) -> Array:
         read = own(*arguments)
@@ -183,7 +184,7 @@ def test_rows_of_another_position_than_the_anchor_are_not_taken(
 def test_rows_without_a_proof_of_their_own_are_not_taken(
     both: Sweep, used: list[SolvedRows | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = rows_module.along_rows
+    own = position_programs.along_rows
 
     def doubtful(*arguments: Any) -> Array:
         read = own(*arguments)

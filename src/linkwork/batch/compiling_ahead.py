@@ -11,7 +11,7 @@ __all__ = ["compile_kernels"]
 #: of the time.
 _MODULES = (
     ("program.interpreter", 0.15),
-    ("march.step_trial", 0.10),
+    ("march.named_trial", 0.10),
     ("march.start_positions", 0.10),
     ("march.position_programs", 0.05),
     ("march.independent", 0.15),

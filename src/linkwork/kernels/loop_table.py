@@ -101,18 +101,9 @@ class LoopTable:
     def structure(self) -> bytes:
         """A digest of all but function rows, coefficients, constants and scales."""
         loops, lines = self.loops, self.linear
-        parts = (
-            np.array([self.unknowns, self.variables, loops.rows, len(lines.constant)]),
-            loops.row,
-            loops.length,
-            loops.phase_term,
-            loops.phase_variable,
-            loops.phase_weight,
-            lines.row,
-            lines.variable,
-            lines.weight,
-            self.is_angle,
-        )
+        sizes = np.array([self.unknowns, self.variables, loops.rows, len(lines.constant)])
+        parts = (sizes, loops.row, loops.length, loops.phase_term, loops.phase_variable)
+        parts += (loops.phase_weight, lines.row, lines.variable, lines.weight, self.is_angle)
         digest = hashlib.sha256()
         for part in parts:
             digest.update(f"{part.dtype} {part.shape} ".encode() + part.tobytes())

@@ -15,6 +15,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray, IndexArray
 from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.named_trial import correct_and_judge
 from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
@@ -22,7 +23,6 @@ from linkwork.kernels.march.step_trial import (
     TOPOLOGY,
     Topology,
     copy_lane,
-    correct_and_judge,
     load_lane,
     update_weights,
 )

@@ -13,12 +13,12 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.named_trial import correct_and_judge
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
     TOPOLOGY,
     Topology,
-    correct_and_judge,
     load_all_lanes,
     update_weights,
 )

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray
+from linkwork.kernels.march.named_trial import correct_and_judge
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
     Topology,
-    correct_and_judge,
 )
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult
 from linkwork.kernels.program.compiling import compiled, njit_no_refcount

@@ -13,6 +13,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.kernels.march.march_programs import NODES
+from linkwork.kernels.march.named_trial import correct_and_judge, correct_from_guess
 from linkwork.kernels.march.row_prediction import (
     KNOTS,
     choose_knots,
@@ -26,8 +27,6 @@ from linkwork.kernels.march.step_trial import (
     GOOD,
     TOPOLOGY,
     Topology,
-    correct_and_judge,
-    correct_from_guess,
     proves_trials,
     update_weights,
 )

@@ -22,14 +22,12 @@ from linkwork.kernels.march.step_control import (
 )
 from linkwork.kernels.program.compiling import (
     call_at,
-    called_by_name,
-    carray,
     compiled,
     named_tuple,
     njit_no_refcount,
     types,
 )
-from linkwork.kernels.program.interpreter import FIELDS, HIGH, LANES, run_part
+from linkwork.kernels.program.interpreter import LANES, run_part
 from linkwork.kernels.program.program import ROLES, Code
 
 __all__ = [
@@ -41,16 +39,18 @@ __all__ = [
     "RADIUS",
     "TOPOLOGY",
     "Topology",
+    "any_live",
     "copy_lane",
-    "correct_and_judge",
-    "correct_from_guess",
     "correct_slowly",
+    "evaluate_inputs",
     "extrapolate",
     "judge",
     "load_all_lanes",
     "load_lane",
     "predict_by_tangent",
     "proves_trials",
+    "run_compiled_trial",
+    "run_trial",
     "update_weights",
 ]
 
@@ -131,7 +131,7 @@ def _any(w: Array, row: int, standing: Array, lanes: int) -> bool:
 
 
 @njit_no_refcount
-def _any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
+def any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
     """Whether a lane that counts has not converged."""
     found = False
     for k in range(_blocks(topology)):
@@ -167,7 +167,7 @@ def judge(topology: Topology, turn: int, w: Array, lanes: int) -> None:
 
 
 @njit_no_refcount
-def _run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> None:
+def run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     place, first = 8 * LANES * topology.nodes.shape[1], w.ctypes.data
     call_at(
         topology.trial,
@@ -182,7 +182,7 @@ def _run_compiled_trial(topology: Topology, turn: int, w: Array, lanes: int) -> 
 
 
 @njit_no_refcount
-def _evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
+def evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, lanes: int) -> None:
     """Compute the inputs and their phasors at the trial."""
     shared = topology.shared
     if together and len(shared):
@@ -194,7 +194,7 @@ def _evaluate_inputs(topology: Topology, turn: int, w: Array, together: bool, la
 
 
 @njit_no_refcount
-def _correct_and_judge(
+def run_trial(
     topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
 ) -> int:
     """From the prediction to the judgement; how many corrections the block with most of them took.
@@ -210,10 +210,10 @@ def _correct_and_judge(
     """
     blocks, live = _blocks(topology), topology.noted[LIVE:]
     is_written = topology.trial != 0
-    _evaluate_inputs(topology, turn, w, together, lanes)
+    evaluate_inputs(topology, turn, w, together, lanes)
     if is_written:
-        _run_compiled_trial(topology, turn, w, lanes)
-        if not _any_live(topology, w, standing, lanes):
+        run_compiled_trial(topology, turn, w, lanes)
+        if not any_live(topology, w, standing, lanes):
             return 1
     else:
         _run_program(topology, turn, w, PREDICT, lanes)
@@ -229,91 +229,6 @@ def _correct_and_judge(
         most = max(most, more)
     judge(topology, turn, w, lanes)
     return 1 + most
-
-
-_WHOLE, _WHOLES = types.int64, types.CPointer(types.int64)
-_NUMBERS = types.CPointer(types.float64)
-
-
-@called_by_name(
-    "linkwork_trial",
-    types.CPointer(types.uint32), _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE, _WHOLES, _WHOLE,
-    _WHOLES, _WHOLE, _WHOLE,
-    _WHOLE, _NUMBERS, _NUMBERS, _WHOLE, _WHOLE,
-)  # fmt: skip
-def _correct_and_judge_at(
-    code: Array,
-    length: int,
-    spans: Array,
-    programs: int,
-    nodes: Array,
-    size: int,
-    noted: Array,
-    notes: int,
-    shared: Array,
-    inputs: int,
-    trial: int,
-    turn: int,
-    workspace: Array,
-    standing: Array,
-    together: int,
-    lanes: int,
-) -> int:
-    """The parts of a topology that a trial needs, and its arguments, at addresses."""
-    none = carray(shared, (0,))
-    topology = Topology(
-        carray(code, (ROLES * length, FIELDS)),
-        length,
-        carray(spans, (programs, 2)),
-        none,
-        carray(nodes, (ROLES, size)),
-        carray(noted, (notes,)),
-        carray(shared, (inputs,)),
-        none,
-        trial,
-    )
-    w = carray(workspace, (HIGH, LANES))
-    return _correct_and_judge(topology, turn, w, carray(standing, (LANES,)), together != 0, lanes)
-
-
-@njit_no_refcount
-def correct_and_judge(
-    topology: Topology, turn: int, w: Array, standing: Array, together: bool, lanes: int
-) -> int:
-    """:func:`_correct_and_judge`, called by name: one copy of it serves all marches."""
-    return _correct_and_judge_at(
-        (
-            topology.code.ctypes.data, topology.length, topology.spans.ctypes.data,
-            len(topology.spans), topology.nodes.ctypes.data, topology.nodes.shape[1],
-            topology.noted.ctypes.data, len(topology.noted), topology.shared.ctypes.data,
-            len(topology.shared), topology.trial,
-            turn, w.ctypes.data, standing.ctypes.data, int(together), lanes,
-        )
-    )  # fmt: skip
-
-
-@njit_no_refcount
-def correct_from_guess(
-    topology: Topology, turn: int, w: Array, standing: Array, lanes: int, unknowns: int
-) -> int:
-    """From a guess in the place of the oldest node, the only one that has weight, to a position:
-    how many corrections that took, 0 if not all lanes have converged. The judgement is made, but
-    need not be good.
-    """
-    nodes = topology.nodes
-    if topology.trial == 0:
-        count = correct_and_judge(topology, turn, w, standing, False, lanes)
-        return 0 if _any_live(topology, w, standing, lanes) else count
-    _evaluate_inputs(topology, turn, w, False, lanes)
-    for k in range(STEPS):
-        _run_compiled_trial(topology, turn, w, lanes)
-        if not _any_live(topology, w, standing, lanes):
-            return k + 1
-        for k in range(unknowns):
-            guess, trial = nodes[(ROLES - 1 - turn) % ROLES, k], nodes[-turn % ROLES, k]
-            for i in range(lanes):
-                w[guess, i] = w[trial, i]
-    return 0
 
 
 @compiled

@@ -18,8 +18,7 @@ from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.change_point import crossing_near
 from linkwork.numerics.homotopy.dead_point_family import dead_point_roots
 from linkwork.numerics.homotopy.idle_component import keeps_complex_input, real_motion
-from linkwork.numerics.homotopy.isolated_roots import nearest_solution
-from linkwork.numerics.homotopy.polynomial_system import Roots
+from linkwork.numerics.homotopy.polynomial_system import Roots, nearest_solution
 
 __all__ = ["DeadPointCount", "DeadPointInputs", "dead_point_inputs"]
 

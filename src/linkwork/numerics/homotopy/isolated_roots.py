@@ -9,7 +9,6 @@ completed until closed paths of systems lead to no new one.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
@@ -28,7 +27,12 @@ from linkwork.numerics.homotopy.path_tracking import (
     Paths,
     track,
 )
-from linkwork.numerics.homotopy.polynomial_system import PolynomialSystem, Roots, polish_roots
+from linkwork.numerics.homotopy.polynomial_system import (
+    PolynomialSystem,
+    Roots,
+    nearest_solution,
+    polish_roots,
+)
 from linkwork.numerics.homotopy.start_sets import StartSet, read_sets, write_set
 from linkwork.numerics.homotopy.topology import Renaming, Topology
 
@@ -39,7 +43,6 @@ __all__ = [
     "RootFamily",
     "Solved",
     "isolated_roots",
-    "nearest_solution",
     "random_member",
     "solve_random_member",
 ]
@@ -203,12 +206,7 @@ def random_member(family: RootFamily[S]) -> Solved[S]:
         known = _read_member(family)
         if known is None:
             known = solve_random_member(family)
-            left, right = known.system.left, known.system.right
-            write_set(
-                StartSet(
-                    topology=family.topology, left=left, right=right, x=known.x, sure=known.sure
-                )
-            )
+            write_set(known.as_start_set(family.topology))
         _KNOWN[family] = known
     return _KNOWN[family]
 
@@ -403,13 +401,3 @@ def _on_a_curve(system: PolynomialSystem, x: ComplexArray) -> bool:
         f, _ = system.residual_and_jacobian(away[None])
     moved = float(np.abs(away - x).max()) / size
     return bool(np.abs(f).max() < 1e-11 * size * size and moved > 0.1 * reach)
-
-
-def nearest_solution(system: PolynomialSystem, x: ComplexArray, steps: int) -> ComplexArray:
-    """Gauss-Newton with the shortest corrections."""
-    for _ in range(steps):
-        f, jacobian = system.residual_and_jacobian(x[None])
-        if not math.isfinite(float(np.abs(f).max())):
-            break
-        x = x - np.linalg.lstsq(jacobian[0], f[0], rcond=1e-7)[0]
-    return x

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, CountArray
 
-__all__ = ["PolynomialSystem", "Roots", "polish_roots", "solve_linear"]
+__all__ = ["PolynomialSystem", "Roots", "nearest_solution", "polish_roots", "solve_linear"]
 
 _POLISH = 12  # steps of Newton's method at most
 
@@ -89,3 +90,13 @@ def solve_linear(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
             except np.linalg.LinAlgError:
                 continue
         return found
+
+
+def nearest_solution(system: PolynomialSystem, x: ComplexArray, steps: int) -> ComplexArray:
+    """Gauss-Newton with the shortest corrections."""
+    for _ in range(steps):
+        f, jacobian = system.residual_and_jacobian(x[None])
+        if not math.isfinite(float(np.abs(f).max())):
+            break
+        x = x - np.linalg.lstsq(jacobian[0], f[0], rcond=1e-7)[0]
+    return x

@@ -23,8 +23,6 @@ from linkwork.numerics.homotopy.topology import Topology
 
 __all__ = ["SHIPPED", "StartSet", "name_of", "own_sets", "read_sets", "write_set"]
 
-#: The environment's name of a folder that takes the place of the user's cache.
-FOLDER = "LINKWORK_CACHE"
 #: The sets of the library and of common topologies; made by ``scripts/start_sets``.
 SHIPPED = Path(__file__).with_name("start_sets.npz")
 _VERSION = 1  # of the random members and of the data stored of them
