@@ -102,8 +102,9 @@ class LoopTable:
         """A digest of all but function rows, coefficients, constants and scales."""
         loops, lines = self.loops, self.linear
         sizes = np.array([self.unknowns, self.variables, loops.rows, len(lines.constant)])
-        parts = (sizes, loops.row, loops.length, loops.phase_term, loops.phase_variable)
-        parts += (loops.phase_weight, lines.row, lines.variable, lines.weight, self.is_angle)
+        of_loops = [loops.row, loops.length, loops.phase_term, loops.phase_variable]
+        of_lines = [lines.row, lines.variable, lines.weight]
+        parts = [sizes, *of_loops, loops.phase_weight, *of_lines, self.is_angle]
         digest = hashlib.sha256()
         for part in parts:
             digest.update(f"{part.dtype} {part.shape} ".encode() + part.tobytes())
