@@ -62,15 +62,13 @@ _TRIES = 30  # closed paths at most
 
 
 class ClosureSystem(PolynomialSystem, Protocol):
-    """Polynomials that follow from closures."""
+    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
 
     @property
-    def left(self) -> ComplexArray:
-        """The closures (L, K) of U."""
+    def left(self) -> ComplexArray: ...
 
     @property
-    def right(self) -> ComplexArray:
-        """The closures (L, K) of V."""
+    def right(self) -> ComplexArray: ...
 
 
 S = TypeVar("S", bound=ClosureSystem)
