@@ -3,8 +3,7 @@
 Almost every member of a linear family has the same number of isolated solutions, and a straight
 path from a random complex member to any other one leads to all isolated solutions of the latter
 (Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
-member is solved once, and kept on disk, from products of linear forms, and its set of solutions is
-completed until closed paths of systems lead to no new one.
+member is solved once from products of linear forms, until closed paths lead to no new solution.
 """
 
 from __future__ import annotations
@@ -156,9 +155,9 @@ class Solved(Generic[S]):
     sure: bool = False
 
     def as_start_set(self, topology: Topology) -> StartSet:
-        """What is kept on disk."""
-        left, right = self.system.left, self.system.right
-        return StartSet(topology=topology, left=left, right=right, x=self.x, sure=self.sure)
+        """The set that is kept on disk."""
+        closures = {"left": self.system.left, "right": self.system.right}
+        return StartSet(topology=topology, x=self.x, sure=self.sure, **closures)
 
 
 _KNOWN: dict[RootFamily[Any], Solved[Any]] = {}
