@@ -309,7 +309,7 @@ class _Halving:
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
         # a step that has shrunk to nothing is not going to be proved
         good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
-        lost = np.unique(lanes.owner[~good])
+        lost = np.flatnonzero(np.bincount(lanes.owner[~good]))
         if len(lost):
             self.proved[lost] = False
             self.cut = np.union1d(self.cut, lost)
