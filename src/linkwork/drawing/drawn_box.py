@@ -28,6 +28,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     drawn = [name for name in pose.points if name not in pose.construction]
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
+    along |= {point for rail in pose.skeleton.rails for point in rail.points}
     along |= {point for figure in pose.skeleton.figures for point in figure.travelling}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
