@@ -157,8 +157,10 @@ def test_rows_without_a_position_are_refused() -> None:
 def test_a_scene_found_from_some_rows_carries_the_same_shapes(name: str) -> None:
     motion = lw.example(name).sweep(certify=False)
     every, some = moving_scene(motion), moving_scene(motion, sampled=True)
-    carried = [(part.shape.role, part.shape.of, part.frame) for part in every.parts]
-    assert [(part.shape.role, part.shape.of, part.frame) for part in some.parts] == carried
+    # a name may turn with another link: it is placed for other rows
+    for one, other in zip(every.parts, some.parts, strict=True):
+        assert (one.shape.role, one.shape.of) == (other.shape.role, other.shape.of)
+        assert isinstance(one.shape, Text) or one.frame == other.frame
     for one, other in zip(every.parts, some.parts, strict=True):
         assert (one.course is None) == (other.course is None)
         if one.course is not None and other.course is not None:

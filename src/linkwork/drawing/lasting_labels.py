@@ -104,11 +104,11 @@ def _with_more_places(
     turns = [""] * len(places)
     if text.of in pose.skeleton.fixed:
         drop = DEPTH * pin_radius(pose, text.of, measures) + 0.5 * measures.pin + 0.76 * text.height
-        for further in range(2):
+        for further in range(3):
             low = (0.0, -drop - further * text.height)
             places.append(replace(text, offset=low, align=0))
             cost.append(_BELOW + _FURTHER * further)
-        return Choice(tuple(places), tuple(cost)), (*turns, "", "")
+        return Choice(tuple(places), tuple(cost)), (*turns, "", "", "")
     point = pose.points[text.of]
     reach = math.hypot(text_width(text.text, text.height), 0.92 * text.height) / 2
     for bar in pose.skeleton.bars:
