@@ -55,6 +55,7 @@ _HEAD = (
         required=True,
     ),
     Key("name", Text(), "Name of the mechanism"),
+    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
