@@ -107,7 +107,8 @@ def _entry(name: str, law: str) -> list[str]:
     scene = mechanism.scene(options=drawing.SceneOptions(larger=_LARGER))
     drawn = inline_svg(scene, _LightInks(), longest=_LONGEST)
     head, rest = drawn.split(">", 1)
-    page = f'{head}><rect x="-1e9" y="-1e9" width="2e9" height="2e9" fill="{LIGHT.background}"/>'
+    x, y, width, height = head.split('viewBox="')[1].split('"')[0].split()
+    page = f'{head}><path d="M{x},{y}h{width}v{height}h-{width}z" fill="{LIGHT.background}"/>'
     (PICTURES / f"{name}.svg").write_text(f"{page}{rest}\n", encoding="utf-8")
     source = f"images/gallery/{quote(name)}.svg"
     return [*text, f'<img src="{source}" alt="{mechanism.name}, {scene.caption}">', ""]

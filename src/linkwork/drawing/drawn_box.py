@@ -11,6 +11,7 @@ from linkwork.drawing.box import Box
 from linkwork.drawing.coupling_symbols import couplings
 from linkwork.drawing.follower_stems import stems
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.part.slot import rounds
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
@@ -57,10 +58,10 @@ def _round_parts(pose: Pose) -> Iterator[complex]:
 
 
 def _discs(pose: Pose) -> Iterator[tuple[str, float]]:
-    """Centres and radii of wheels, Geneva wheels and coupling discs."""
+    """Centres and radii of wheels, Geneva wheels, locking discs and coupling discs."""
     yield from ((disc.center, disc.radius) for disc in pose.skeleton.of(Disc))
     for wheel in pose.skeleton.of(GenevaWheel):
-        yield wheel.center, abs(pose.points[wheel.rim] - pose.points[wheel.center])
+        yield from rounds(wheel, pose)
     for coupling in couplings(pose.skeleton):
         yield from ((coupling.discs[k][1], coupling.radius(pose, k)) for k in range(2))
 

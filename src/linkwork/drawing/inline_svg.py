@@ -94,7 +94,7 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(name)}" '
         f'viewBox="{box}" width="{scale * shown.width:.0f}" height="{scale * shown.height:.0f}" '
         'style="max-width:100%;height:auto;stroke-linecap:round;stroke-linejoin:round;'
-        f'paint-order:stroke;font-family:{_FONT}">{parts}</svg>'
+        f'font-family:{_FONT}">{parts}</svg>'
     )
 
 
@@ -176,9 +176,10 @@ class _Writer:
         anchor = ("start", "middle", "end")[primitive.align + 1]
         fill = self.inks.of(LIGHT.fill(primitive), DARK.fill(primitive))
         page = self.inks.of(LIGHT.background, DARK.background)
+        halo = f"paint-order:stroke;stroke:{page};"
         return (
             f'<text x="{self.number(x)}" y="{self.number(-y)}" text-anchor="{anchor}" '
             f'style="font-size:{self.number(primitive.height)}px;fill:{fill};'
-            f'stroke:{page};stroke-width:{self.number(_HALO * primitive.height)}">'
+            f'{halo}stroke-width:{self.number(_HALO * primitive.height)}">'
             f"{html.escape(primitive.text)}</text>"
         )

@@ -18,7 +18,7 @@ from linkwork.drawing.scene import Polygon, Primitive, Role, xy
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.slot import GenevaWheel
 
-__all__ = ["symbols"]
+__all__ = ["rounds", "symbols"]
 
 _LOCK = 0.82  # radius of the locking arcs over that of the pin's circle
 _PIECE = 0.08  # angle of a piece of an arc [rad]
@@ -29,24 +29,31 @@ def symbols(wheel: GenevaWheel, pose: Pose, measures: Measures) -> Iterator[Prim
     centre, pin = pose.points[wheel.center], pose.points[wheel.pin]
     along = pose.points[wheel.rim] - centre
     radius, tone = abs(along), tones(pose)
-    pivot = _pivot(pose, wheel)
-    if pivot is None:
-        depth, lock, distance = abs(pin - centre), 0.0, 0.0
-    else:
-        distance, arm = abs(pose.points[pivot[1]] - centre), abs(pin - pose.points[pivot[1]])
-        depth, lock = distance - arm, _LOCK * arm
-    corners = centre + along / radius * _star(wheel.count, radius, depth, lock, distance, measures)
-    yield Polygon(role=Role.WHEEL, of=wheel.link, tone=tone.get(wheel.link, 0), points=_xy(corners))
-    if pivot is not None:
-        link, middle = pivot[0], pose.points[pivot[1]]
+    driver = _driver(pose, wheel)
+    lock, distance, depth = 0.0, 0.0, abs(pin - centre)
+    if driver is not None:
+        middle = pose.points[driver[1]]
+        lock, distance = _LOCK * abs(pin - middle), abs(middle - centre)
+        depth = distance - abs(pin - middle)
+    star = _star(wheel.count, radius, depth, lock, distance, measures)
+    corners = tuple(map(xy, centre + along / radius * star))
+    yield Polygon(role=Role.WHEEL, of=wheel.link, tone=tone.get(wheel.link, 0), points=corners)
+    if driver is not None:
         room = 0.3 * measures.pin
         disc = _cut_disc(lock - room, radius + room, distance)
-        way = (pin - middle) / abs(pin - middle)
-        corners = middle + way * disc
-        yield Polygon(role=Role.WHEEL, of=link, tone=tone.get(link, 0), points=_xy(corners))
+        corners = tuple(map(xy, middle + (pin - middle) / abs(pin - middle) * disc))
+        yield Polygon(role=Role.WHEEL, of=driver[0], tone=tone.get(driver[0], 0), points=corners)
 
 
-def _pivot(pose: Pose, wheel: GenevaWheel) -> tuple[str, str] | None:
+def rounds(wheel: GenevaWheel, pose: Pose) -> Iterator[tuple[str, float]]:
+    """Centre and radius of the wheel, and of the locking disc."""
+    yield wheel.center, abs(pose.points[wheel.rim] - pose.points[wheel.center])
+    driver = _driver(pose, wheel)
+    if driver is not None:
+        yield driver[1], _LOCK * abs(pose.points[wheel.pin] - pose.points[driver[1]])
+
+
+def _driver(pose: Pose, wheel: GenevaWheel) -> tuple[str, str] | None:
     """The link with the pin, and its fixed pivot."""
     fixed = set(pose.skeleton.fixed)
     return next(
@@ -105,7 +112,3 @@ def _angle(one: float, distance: float, other: float) -> float:
 def _arc(centre: complex, radius: float, start: float, end: float) -> ComplexArray:
     count = max(2, math.ceil(abs(end - start) / _PIECE))
     return np.asarray(centre + radius * np.exp(1j * np.linspace(start, end, count)))
-
-
-def _xy(corners: ComplexArray) -> tuple[tuple[float, float], ...]:
-    return tuple(map(xy, corners))
