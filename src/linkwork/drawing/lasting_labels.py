@@ -142,11 +142,23 @@ def _over_rows(cost: Array) -> Array:
 
 
 def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
-    """The position of every name given those of the others: a local optimum."""
-    chosen: dict[int, int] = {}
+    """The position of every name given those of the others: the better of two local optima.
+
+    Names with the fewest free positions are placed first, or last.
+    """
     order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
+    found = [_descended(fixed, boxes, one) for one in (order, order[::-1])]
+    return min(found, key=lambda pair: pair[0])[1]
+
+
+def _descended(
+    fixed: Sequence[Array], boxes: Sequence[Array], order: Sequence[int]
+) -> tuple[float, list[int]]:
+    """The penalty and the positions of names placed in an order, then moved one by one."""
+    chosen: dict[int, int] = {}
+    total = 0.0
     for _ in range(4):
-        before = dict(chosen)
+        before, total = dict(chosen), 0.0
         for k in order:
             cost = fixed[k].copy()
             for other, place in chosen.items():
@@ -154,9 +166,10 @@ def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
                     shared = _overlapping(boxes[k], boxes[other][:, place])
                     cost += _NAME_ON_NAME * _over_rows(shared.astype(float))
             chosen[k] = int(cost.argmin())
+            total += float(cost.min())
         if chosen == before:
             break
-    return [chosen[k] for k in range(len(fixed))]
+    return total, [chosen[k] for k in range(len(fixed))]
 
 
 def _overlapping(boxes: Array, others: Array) -> Array:
