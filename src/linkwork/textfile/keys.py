@@ -55,7 +55,6 @@ _HEAD = (
         required=True,
     ),
     Key("name", Text(), "Name of the mechanism"),
-    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
     Key("length", Text(), "Unit of every length in this file; nothing is converted"),
     Key("angle", Text(("deg", "rad")), "Unit of every angle in this file"),
     Key("source", Text(), "Where the mechanism comes from: book, page, drawing"),
@@ -66,6 +65,7 @@ _HEAD = (
         'The configuration or branch to start from instead of the guess: "crossed", '
         '"circuit 1 branch 2"',
     ),
+    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
     "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"
