@@ -28,6 +28,7 @@ PICTURES = ROOT / "docs" / "images" / "gallery"
 PAGE = ROOT / "docs" / "gallery.md"
 FIGURES = ROOT / "docs" / "images" / "pictures"
 _LONGEST = 380.0  # longer side of a drawing on the page [pixels]
+_DIGITS = 4  # of coordinates: a twentieth of a pixel
 _LARGER = 1.4  # names are legible at this size
 _COLOURS = 96
 _FIGURE_DPI = 80.0
@@ -105,7 +106,7 @@ def _entry(name: str, law: str) -> list[str]:
     if not getattr(mechanism.description, "points", None):
         return text
     scene = mechanism.scene(options=drawing.SceneOptions(larger=_LARGER))
-    drawn = inline_svg(scene, _LightInks(), longest=_LONGEST)
+    drawn = inline_svg(scene, _LightInks(), longest=_LONGEST, digits=_DIGITS)
     head, rest = drawn.split(">", 1)
     x, y, width, height = head.split('viewBox="')[1].split('"')[0].split()
     page = f'{head}><path d="M{x},{y}h{width}v{height}h-{width}z" fill="{LIGHT.background}"/>'

@@ -27,7 +27,6 @@ from linkwork.drawing.theme import DARK, LIGHT
 __all__ = ["Inks", "inline_svg"]
 
 _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
-_DIGITS = 4  # digits of coordinates, relative to the size of the picture
 _FLATTEST = 0.36  # minimum ratio of the sides of a picture
 _HALO = 0.22  # width of the outline that keeps a name legible on lines [em]
 _MARGIN = 0.02  # margin as a fraction of the size
@@ -72,7 +71,9 @@ def _under(pages: tuple[str, ...], scope: str) -> str:
     return ",".join(f"{page} .{scope}" for page in pages)
 
 
-def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | None = None) -> str:
+def inline_svg(
+    scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | None = None, digits: int = 5
+) -> str:
     """A scene as an ``<svg>`` element.
 
     Parameters
@@ -83,9 +84,11 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
         The displayed longer side [CSS pixels]; narrower pages reduce it.
     view : Box, optional
         The displayed part of the plane; by default the box of the scene.
+    digits : int
+        Digits of coordinates, relative to the size of the picture.
     """
     shown = _not_flat((view or scene.box).grown(_MARGIN * scene.measures.size))
-    writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height))
+    writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height), digits)
     scale = longest / writer.size
     name = ": ".join(filter(None, (scene.title, scene.caption)))
     box = " ".join(map(writer.number, (shown.left, -shown.top, shown.width, shown.height)))
@@ -108,9 +111,9 @@ def _not_flat(box: Box) -> Box:
 class _Writer:
     """Translates primitives into elements, with the y axis pointing down."""
 
-    def __init__(self, inks: Inks, stroke: float, size: float) -> None:
+    def __init__(self, inks: Inks, stroke: float, size: float, digits: int) -> None:
         self.inks, self.stroke, self.size = inks, stroke, size
-        self.places = _DIGITS - floor(log10(size)) - 1
+        self.places = digits - floor(log10(size)) - 1
 
     def number(self, value: float) -> str:
         """A length, rounded to visible digits."""
