@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,3 +80,10 @@ def test_only_the_oldham_coupling_of_the_library_is_drawn_as_one() -> None:
     }
     found = {name for name, model in models.items() if couplings(model.skeleton)}
     assert found == {"oldham-coupling"}
+
+
+def test_a_link_with_a_pin_is_no_cross_of_a_coupling() -> None:
+    skeleton = read_example("oldham-coupling").model.skeleton
+    (coupling,) = couplings(skeleton)
+    assert (coupling.cross, coupling.guides) == ("cross", {"s1", "s2"})
+    assert couplings(replace(skeleton, pins=(*skeleton.pins, "N"))) == []

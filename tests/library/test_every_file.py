@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -40,6 +41,7 @@ def test_every_law_belongs_to_a_mechanism() -> None:
 def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
     description = read_example(name).description
     assert len(description.source) > 20
+    assert re.fullmatch(r"[A-Z][^.]{20,140}\.", description.purpose)  # one sentence
     assert description.family
     assert description.name != "mechanism"
 
