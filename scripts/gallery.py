@@ -1,4 +1,4 @@
-"""Writes docs/gallery.md, one small picture for each mechanism of the library, and the figures of
+"""Writes docs/gallery.md, one drawing for each mechanism of the library, and the figures of
 docs/pictures.md.
 
 A mechanism's law is the first docstring line of its test.
@@ -20,14 +20,17 @@ sys.path.insert(0, str(ROOT))  # for the register of laws in the tests
 
 import linkwork as lw  # noqa: E402 - after the path is set
 from linkwork import drawing  # noqa: E402
+from linkwork.drawing.inline_svg import Inks, inline_svg  # noqa: E402
+from linkwork.drawing.theme import LIGHT  # noqa: E402
 from tests.library.laws import LAWS  # noqa: E402
 
 PICTURES = ROOT / "docs" / "images" / "gallery"
 PAGE = ROOT / "docs" / "gallery.md"
 FIGURES = ROOT / "docs" / "images" / "pictures"
-_DPI = 54.0  # 324 pixels on the long side
+_LONGEST = 380.0  # longer side of a drawing on the page [pixels]
+_DIGITS = 4  # of coordinates: a twentieth of a pixel
+_LARGER = 1.4  # names are legible at this size
 _COLOURS = 96
-_WIDTH = 300  # of a picture on the page, in pixels
 _FIGURE_DPI = 80.0
 #: Figures of docs/pictures.md: mechanism, theme, and the arguments of its scene.
 _SHOWN: dict[str, tuple[str, str, dict[str, Any]]] = {
@@ -39,15 +42,15 @@ _SHOWN: dict[str, tuple[str, str, dict[str, Any]]] = {
 }
 _HEAD = """# Gallery
 
-All mechanisms of the library, each with a law that a test in `tests/library` checks. `linkwork
-examples NAME` prints a file with its source. `scripts/gallery` writes this page.
+All mechanisms of the library: what each is for, and a law that a test in `tests/library` checks.
+`linkwork examples NAME` prints a file with its source. `scripts/gallery` writes this page.
 """
 
 
 def main() -> None:
     """Write the page and the pictures."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for old in PICTURES.glob("*.png"):
+    for old in PICTURES.iterdir():
         old.unlink()
     laws = {name: tests[0] for name, tests in sorted(_laws().items())}
     families: dict[str, list[str]] = {}
@@ -89,14 +92,27 @@ def _first_line(test: object) -> str:
     return (test.__doc__ or f"{claim[:1].upper()}{claim[1:]}.").strip().splitlines()[0]
 
 
+class _LightInks(Inks):
+    """Plain colours of the light theme, which every program shows."""
+
+    def of(self, light: str, dark: str) -> str:
+        return light or "none"
+
+
 def _entry(name: str, law: str) -> list[str]:
     mechanism = lw.example(name)
-    text = [f"**{mechanism.name}** (`{name}`)  ", law, ""]
+    lines = [f"**{mechanism.name}** (`{name}`)  ", mechanism.description.purpose]
+    text = [f"{lines[0]}", f"{lines[1]}  ", f"Law: {law}", ""] if law else [*lines, ""]
     if not getattr(mechanism.description, "points", None):
         return text
-    _write_small(drawing.render(mechanism.scene(), "png", dpi=_DPI), PICTURES / f"{name}.png")
-    source = f"images/gallery/{quote(name)}.png"
-    return [*text, f'<img src="{source}" width="{_WIDTH}" alt="{mechanism.name}">', ""]
+    scene = mechanism.scene(options=drawing.SceneOptions(larger=_LARGER))
+    drawn = inline_svg(scene, _LightInks(), longest=_LONGEST, digits=_DIGITS)
+    head, rest = drawn.split(">", 1)
+    x, y, width, height = head.split('viewBox="')[1].split('"')[0].split()
+    page = f'{head}><path d="M{x},{y}h{width}v{height}h-{width}z" fill="{LIGHT.background}"/>'
+    (PICTURES / f"{name}.svg").write_text(f"{page}{rest}\n", encoding="utf-8")
+    source = f"images/gallery/{quote(name)}.svg"
+    return [*text, f'<img src="{source}" alt="{mechanism.name}, {scene.caption}">', ""]
 
 
 def _write_small(png: bytes, path: Path) -> None:

@@ -60,6 +60,22 @@ def test_columns_of_one_unit_share_a_panel_with_units_in_its_label() -> None:
     assert chart.legend == ("θ₁₃", "θ₁₄", "θ₁₅")
 
 
+def test_curves_of_very_different_range_have_panels_of_their_own() -> None:
+    """The beam rocks by 40° while the sun turns twice; the rod rocks by 23°."""
+    chart = motion_chart(swept("sun-and-planet"), ["rod", "sun", "beam"])
+    assert [[curve.name for curve in panel.curves] for panel in chart.panels] == [
+        ["rod", "beam"],
+        ["sun"],
+    ]
+
+
+def test_a_level_line_shares_the_panel_of_its_unit() -> None:
+    motion = swept("kempe-translator")
+    assert np.ptp(motion["bridge"]) < 1e-9
+    (panel,) = motion_chart(motion, ["lower_link", "bridge"]).panels
+    assert [curve.name for curve in panel.curves] == ["lower_link", "bridge"]
+
+
 def test_curves_are_the_columns_of_the_table() -> None:
     motion = swept("four-bar")
     table = motion.table()

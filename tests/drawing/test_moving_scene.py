@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import combinations, product
+
 import numpy as np
 import pytest
 
 import linkwork as lw
 from linkwork.drawing import SceneOptions, reach_of, scene_of
 from linkwork.drawing.moving_scene import moving_scene
-from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Scene, Text
+from linkwork.drawing.scene import Arc, Disc, Polyline, Primitive, Role, Scene, Text
 from linkwork.drawing.shape_corners import corners
 from linkwork.mechanism.linkage import Linkage
 from tests.described import described_as
@@ -99,9 +101,10 @@ def test_scene_drawn_like_another_is_the_one_drawn_afresh(
 def test_names_keep_their_place_beside_their_points() -> None:
     motion = lw.example("jansen-leg").sweep(certify=False)
     moving = moving_scene(motion)
-    for name in motion.points:
-        (text,) = moving.at(100).select(Text, Role.LABEL, name)
-        assert complex(*text.anchor) == pytest.approx(motion.trace(name)[100], abs=1e-9)
+    for name, row in product(motion.points, range(0, 360, 20)):
+        (text,) = moving.at(row).select(Text, Role.LABEL, name)
+        point = motion.trace(name)[row]
+        assert text.box.distance((point.real, point.imag)) < 7 * moving.scene.measures.pin
     offsets = [
         {text.of: (text.offset, text.align) for text in moving.at(row).select(Text)}
         for row in (0, 100, 200)
@@ -110,14 +113,20 @@ def test_names_keep_their_place_beside_their_points() -> None:
     assert len(offsets[0]) == 8
 
 
-def test_names_of_a_moving_scene_seldom_meet() -> None:
+@pytest.mark.parametrize(
+    "name", ["jansen-leg", "stephenson-valve-gear", "andrews-squeezer", "oldham-coupling"]
+)
+def test_names_of_a_moving_scene_cover_neither_each_other_nor_pins(name: str) -> None:
     """Over the whole cycle, not only in the rows that were looked at."""
-    moving = moving_scene(lw.example("jansen-leg").sweep(certify=False))
-    meeting = 0
-    for row in range(0, 360, 3):
-        boxes = [text.box for text in moving.at(row).select(Text)]
-        meeting += sum(shared_area(a, b) > 0 for k, a in enumerate(boxes) for b in boxes[:k])
-    assert meeting <= 0.05 * 120
+    motion = lw.example(name).sweep(certify=False)
+    moving = moving_scene(motion)
+    rows = np.flatnonzero(motion.found)
+    for row in rows[np.linspace(0, len(rows) - 1, 47).round().astype(int)]:
+        scene = moving.at(int(row))
+        for one, other in combinations(scene.select(Text), 2):
+            assert shared_area(one.box, other.box) == 0, (row, one.text, other.text)
+        for disc, text in product(scene.select(Disc, Role.PIN), scene.select(Text)):
+            assert text.box.distance(disc.centre) >= 0.9 * disc.radius, (row, text.text, disc.of)
 
 
 def test_view_holds_every_row() -> None:
@@ -148,8 +157,10 @@ def test_rows_without_a_position_are_refused() -> None:
 def test_a_scene_found_from_some_rows_carries_the_same_shapes(name: str) -> None:
     motion = lw.example(name).sweep(certify=False)
     every, some = moving_scene(motion), moving_scene(motion, sampled=True)
-    carried = [(part.shape.role, part.shape.of, part.frame) for part in every.parts]
-    assert [(part.shape.role, part.shape.of, part.frame) for part in some.parts] == carried
+    # a name may turn with another link: it is placed for other rows
+    for one, other in zip(every.parts, some.parts, strict=True):
+        assert (one.shape.role, one.shape.of) == (other.shape.role, other.shape.of)
+        assert isinstance(one.shape, Text) or one.frame == other.frame
     for one, other in zip(every.parts, some.parts, strict=True):
         assert (one.course is None) == (other.course is None)
         if one.course is not None and other.course is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import xml.etree.ElementTree as ElementTree
 from importlib import import_module
 from pathlib import Path
 
@@ -40,6 +42,7 @@ def test_every_law_belongs_to_a_mechanism() -> None:
 def test_every_mechanism_tells_its_source_and_family(name: str) -> None:
     description = read_example(name).description
     assert len(description.source) > 20
+    assert re.fullmatch(r"[A-Z][^.]{20,140}\.", description.purpose)  # one sentence
     assert description.family
     assert description.name != "mechanism"
 
@@ -61,10 +64,20 @@ def test_the_gallery_shows_every_mechanism() -> None:
     docs = Path(__file__).parents[2] / "docs"
     page = (docs / "gallery.md").read_text(encoding="utf-8")
     assert [name for name in lw.examples() if f"(`{name}`)" not in page] == []
-    pictures = {path.stem for path in (docs / "images" / "gallery").iterdir()}
-    assert pictures <= set(lw.examples())
-    assert [name for name in pictures if f"gallery/{name}.png" not in page] == []
+    assert [name for name in lw.examples() if _purpose(name) not in page] == []
+    pictures = {path.stem: path for path in (docs / "images" / "gallery").iterdir()}
+    assert set(pictures) <= set(lw.examples())
+    assert [name for name in pictures if f"gallery/{name}.svg" not in page] == []
     assert len(pictures) > 50
+    for path in pictures.values():
+        text = path.read_text(encoding="utf-8")
+        assert ElementTree.fromstring(text).tag == "{http://www.w3.org/2000/svg}svg"
+        assert len(text) < 40_000
+        assert "var(" not in text  # programs other than browsers do not know it
+
+
+def _purpose(name: str) -> str:
+    return read_example(name).description.purpose
 
 
 @pytest.mark.parametrize("name", DRIVEN)

@@ -65,7 +65,8 @@ class Mechanism(SolvableMechanism):
         Parameters
         ----------
         at : number or Mapping[str, number], optional
-            Input value(s) in file units, as in :meth:`solve`.
+            Input value(s) in file units, as in :meth:`solve`; by default round values near those of
+            the guess.
         configuration : str, optional
             The configuration or branch to draw, as in :meth:`solve`; also selects the cycle.
         vectors : bool
@@ -96,14 +97,15 @@ class Mechanism(SolvableMechanism):
         'crank = 60°'
         """
         position = self.solve(at, configuration=configuration, throw=True)
-        chosen = options or drawing.SceneOptions()
+        chosen, found = options or drawing.SceneOptions(), None
+        if self.description.inputs:
+            model = self.model if configuration is None else self.model.from_position(position)
+            cycle = motion.sweep(model, progress=progress)
+            found = cycle if cycle.found.any() else None
+            if at is None:
+                position = motion.solve_round_start(model, cycle, position)
         if vectors:
             chosen = replace(chosen, vectors=motion.vector_loops(self.model, position))
-        if not self.description.inputs:
-            return drawing.scene_of(position, traces=traces, options=chosen)
-        model = self.model if configuration is None else self.model.from_position(position)
-        cycle = motion.sweep(model, progress=progress)
-        found = cycle if cycle.found.any() else None
         return drawing.scene_of(position, found, traces=traces, options=chosen)
 
     def draw(

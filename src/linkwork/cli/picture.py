@@ -15,7 +15,7 @@ from linkwork.results.position import Position
 
 __all__ = ["check_picture", "check_points", "sweep_scene", "write"]
 
-_FURTHER = 7  # further positions drawn in a sweep: every eighth of a crank's turn
+_FURTHER = 4  # further positions drawn in a sweep: every fifth of a crank's turn
 
 
 def check_picture(path: str) -> None:

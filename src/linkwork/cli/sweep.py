@@ -31,6 +31,7 @@ from linkwork.drawing.scene import Scene
 from linkwork.export import csv_lines, workbook_of
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
+from linkwork.motion import solve_round_start
 from linkwork.results.motion import Motion
 from linkwork.results.motion_table import table_of
 from linkwork.results.table import Table
@@ -134,8 +135,11 @@ def sweep(
 
 def _scene(mechanism: Mechanism, motion: Motion, configuration: str | None) -> Scene | None:
     """The picture of the motion; None if there is no start to draw."""
-    position = mechanism.solve(configuration=configuration)
-    return picture.sweep_scene(position, motion) if position.status.ok else None
+    start = mechanism.solve(configuration=configuration)
+    if not start.status.ok:
+        return None
+    model = mechanism.model if configuration is None else mechanism.model.from_position(start)
+    return picture.sweep_scene(solve_round_start(model, motion, start), motion)
 
 
 def _split_names(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[list[str], list[str]]:

@@ -8,13 +8,16 @@ from itertools import chain
 import numpy as np
 
 from linkwork.drawing.box import Box
+from linkwork.drawing.coupling_symbols import couplings
 from linkwork.drawing.follower_stems import stems
 from linkwork.drawing.measures import Measures
+from linkwork.drawing.part.slot import rounds
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour, Disc
+from linkwork.mechanism.part.slot import GenevaWheel
 from linkwork.results.motion import Motion
 
 __all__ = ["drawn_box", "reach_of"]
@@ -28,6 +31,7 @@ def drawn_box(pose: Pose, traces: tuple[str, ...], others: Sequence[Pose]) -> Bo
     drawn = [name for name in pose.points if name not in pose.construction]
     places = (one.points[name] for one in poses for name in drawn)
     along = {guide.point for guide in pose.skeleton.guides if pose.on_ground(guide)}
+    along |= {point for rail in pose.skeleton.rails for point in rail.points}
     along |= {point for figure in pose.skeleton.figures for point in figure.travelling}
     paths = [pose.paths[name] for name in (*traces, *along) if name in pose.paths]
     travelled = chain.from_iterable(path[np.isfinite(path)] for path in paths)
@@ -47,10 +51,19 @@ def _round_parts(pose: Pose) -> Iterator[complex]:
     if not pose.paths:
         for figure in pose.skeleton.figures:
             yield from (pose.points[name] for name in figure.extent)
-    for disc in pose.skeleton.of(Disc):
-        yield from (pose.points[disc.center] + disc.radius * 1j**k for k in range(4))
+    for center, radius in _discs(pose):
+        yield from (pose.points[center] + radius * 1j**k for k in range(4))
     for contour in pose.skeleton.of(Contour):
         yield from map(complex, pose.placed(contour))
+
+
+def _discs(pose: Pose) -> Iterator[tuple[str, float]]:
+    """Centres and radii of wheels, Geneva wheels, locking discs and coupling discs."""
+    yield from ((disc.center, disc.radius) for disc in pose.skeleton.of(Disc))
+    for wheel in pose.skeleton.of(GenevaWheel):
+        yield from rounds(wheel, pose)
+    for coupling in couplings(pose.skeleton):
+        yield from ((coupling.discs[k][1], coupling.radius(pose, k)) for k in range(2))
 
 
 def reach_of(motion: Motion) -> Box:
@@ -69,9 +82,9 @@ def reach_of(motion: Motion) -> Box:
         )
     skeleton = motion.skeleton
     places = [motion.trace(name)[rows] for name in motion.points]
-    for disc in skeleton.of(Disc):
-        centre = motion.trace(disc.center)[rows]
-        places += [centre + disc.radius * 1j**k for k in range(4)]
+    for name, radius in _discs(Pose.at_row(motion, int(np.flatnonzero(rows)[0]))):
+        centre = motion.trace(name)[rows]
+        places += [centre + radius * 1j**k for k in range(4)]
     for contour in skeleton.of(Contour):
         points = np.array(contour.points)
         points = points[:: max(1, len(points) // _OF_OUTLINE)]

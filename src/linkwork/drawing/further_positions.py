@@ -21,7 +21,7 @@ from linkwork.results.motion import LimitKind, Motion
 
 __all__ = ["Further", "driven_point", "faint_symbols", "further_positions", "limit_marks"]
 
-_FADE = 0.78  # fading of further positions
+_FADE = 0.84  # fading of further positions
 _FADE_OF_LIMITS = 0.4
 _LIMITS = {kind.word: kind for kind in (LimitKind.DEAD_POINT, LimitKind.CHANGE_POINT)}
 

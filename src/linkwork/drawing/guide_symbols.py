@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.drawing.coupling_symbols import couplings
 from linkwork.drawing.follower_stems import stems
 from linkwork.drawing.ground_symbols import hatching
 from linkwork.drawing.link_symbols import Gap, uncovered
@@ -16,6 +17,7 @@ from linkwork.drawing.pose import Pose, travel_along
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, xy
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Guide
+from linkwork.mechanism.part.slot import GenevaWheel
 from linkwork.mechanism.skeleton import Rail
 
 __all__ = ["Track", "guide_symbols", "track_gaps", "tracks"]
@@ -37,6 +39,9 @@ class Track:
         The current positions of blocks or pins.
     foot, tip : complex
         The two points of the link that define the line.
+    shown : bool
+        Whether it has a symbol: slots of Geneva wheels and grooves of couplings are drawn with
+        their links.
     """
 
     name: str
@@ -51,6 +56,7 @@ class Track:
     places: tuple[complex, ...]
     foot: complex
     tip: complex
+    shown: bool = True
 
 
 def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[Track]:
@@ -58,7 +64,12 @@ def tracks(pose: Pose, measures: Measures, tone_of: Mapping[str, int]) -> list[T
     groups: dict[str, list[Guide]] = {}
     for guide in pose.skeleton.guides:
         groups.setdefault(guide.name, []).append(guide)
-    found = [_track(pose, measures, guides, tone_of) for guides in groups.values()]
+    hidden = {wheel.name for wheel in pose.skeleton.of(GenevaWheel)}
+    hidden |= {name for coupling in couplings(pose.skeleton) for name in coupling.guides}
+    found = [
+        replace(_track(pose, measures, guides, tone_of), shown=name not in hidden)
+        for name, guides in groups.items()
+    ]
     return found + [_rail_track(pose, measures, rail, tone_of) for rail in pose.skeleton.rails]
 
 
@@ -198,6 +209,8 @@ def track_gaps(found: list[Track], measures: Measures) -> dict[str, list[Gap]]:
 def guide_symbols(found: list[Track], measures: Measures) -> Iterator[Primitive]:
     """The symbols of all sliders and slots."""
     for track in found:
+        if not track.shown:
+            continue
         if track.block:
             yield from _blocks(track, measures)
             yield from _rail(track, measures) if track.fixed else _rod(track, measures)

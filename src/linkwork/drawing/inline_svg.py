@@ -27,7 +27,8 @@ from linkwork.drawing.theme import DARK, LIGHT
 __all__ = ["Inks", "inline_svg"]
 
 _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
-_DIGITS = 5  # digits of coordinates, relative to the size of the picture
+_FLATTEST = 0.36  # minimum ratio of the sides of a picture
+_HALO = 0.22  # width of the outline that keeps a name legible on lines [em]
 _MARGIN = 0.02  # margin as a fraction of the size
 
 
@@ -70,7 +71,9 @@ def _under(pages: tuple[str, ...], scope: str) -> str:
     return ",".join(f"{page} .{scope}" for page in pages)
 
 
-def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | None = None) -> str:
+def inline_svg(
+    scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | None = None, digits: int = 5
+) -> str:
     """A scene as an ``<svg>`` element.
 
     Parameters
@@ -81,9 +84,11 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
         The displayed longer side [CSS pixels]; narrower pages reduce it.
     view : Box, optional
         The displayed part of the plane; by default the box of the scene.
+    digits : int
+        Digits of coordinates, relative to the size of the picture.
     """
-    shown = (view or scene.box).grown(_MARGIN * scene.measures.size)
-    writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height))
+    shown = _not_flat((view or scene.box).grown(_MARGIN * scene.measures.size))
+    writer = _Writer(inks, scene.measures.stroke, max(shown.width, shown.height), digits)
     scale = longest / writer.size
     name = ": ".join(filter(None, (scene.title, scene.caption)))
     box = " ".join(map(writer.number, (shown.left, -shown.top, shown.width, shown.height)))
@@ -91,20 +96,28 @@ def inline_svg(scene: Scene, inks: Inks, *, longest: float = 400.0, view: Box | 
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(name)}" '
         f'viewBox="{box}" width="{scale * shown.width:.0f}" height="{scale * shown.height:.0f}" '
-        f'style="max-width:100%;height:auto;font-family:{_FONT}">{parts}</svg>'
+        'style="max-width:100%;height:auto;stroke-linecap:round;stroke-linejoin:round;'
+        f'font-family:{_FONT}">{parts}</svg>'
     )
+
+
+def _not_flat(box: Box) -> Box:
+    """The box, its shorter side enlarged so that a flat mechanism has room above and below."""
+    least = _FLATTEST * max(box.width, box.height)
+    wide, high = (max(0.0, least - side) / 2 for side in (box.width, box.height))
+    return Box(box.left - wide, box.bottom - high, box.right + wide, box.top + high)
 
 
 class _Writer:
     """Translates primitives into elements, with the y axis pointing down."""
 
-    def __init__(self, inks: Inks, stroke: float, size: float) -> None:
+    def __init__(self, inks: Inks, stroke: float, size: float, digits: int) -> None:
         self.inks, self.stroke, self.size = inks, stroke, size
-        self.places = _DIGITS - floor(log10(size)) - 1
+        self.places = digits - floor(log10(size)) - 1
 
     def number(self, value: float) -> str:
         """A length, rounded to visible digits."""
-        rounded = round(value, self.places)
+        rounded = round(value, self.places) + 0.0  # no negative zero
         return (
             f"{rounded:.{max(self.places, 0)}f}".rstrip("0").rstrip(".")
             if rounded % 1
@@ -157,16 +170,19 @@ class _Writer:
         wide = style.width * width * self.stroke
         dashes = ",".join(self.number(part * wide) for part in style.dashes)
         return (
-            f"stroke:{line};stroke-width:{self.number(wide)};stroke-linecap:round;"
-            f"stroke-linejoin:round{f';stroke-dasharray:{dashes}' if dashes else ''}"
+            f"stroke:{line};stroke-width:{self.number(wide)}"
+            f"{f';stroke-dasharray:{dashes}' if dashes else ''}"
         )
 
     def _text(self, primitive: Text) -> str:
         x, y = primitive.start
         anchor = ("start", "middle", "end")[primitive.align + 1]
         fill = self.inks.of(LIGHT.fill(primitive), DARK.fill(primitive))
+        page = self.inks.of(LIGHT.background, DARK.background)
+        halo = f"paint-order:stroke;stroke:{page};"
         return (
             f'<text x="{self.number(x)}" y="{self.number(-y)}" text-anchor="{anchor}" '
-            f'style="font-size:{self.number(primitive.height)}px;fill:{fill}">'
+            f'style="font-size:{self.number(primitive.height)}px;fill:{fill};'
+            f'{halo}stroke-width:{self.number(_HALO * primitive.height)}">'
             f"{html.escape(primitive.text)}</text>"
         )

@@ -1,9 +1,12 @@
-"""Names of points with constant positions relative to the points over a motion."""
+"""Names of points at constant distances from the points, or from their links, over a motion."""
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -13,14 +16,17 @@ from linkwork.drawing.link_symbols import pin_radius
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
-from linkwork.drawing.scene import Primitive, Text, xy
-from linkwork.foundation.arrays import Array
+from linkwork.drawing.scene import Primitive, Text, text_width, xy
+from linkwork.foundation.arrays import Array, ComplexArray
 
-__all__ = ["labels_as_before", "lasting_labels"]
+__all__ = ["lasting_labels"]
 
 _NAME_ON_NAME = 100.0
 _BELOW = 0.4  # penalty for a position under the ground symbol
 _CLEAR = 0.12  # margin of every name [em]
+_TURNING = 1.2  # penalty for a position that turns with a link
+_FURTHER = 2.0  # penalty for the larger of two distances
+_WAYS = 8  # directions from the point relative to a link
 _WORST = 0.5  # weight of the worst row in a penalty, relative to the mean of all
 
 
@@ -28,7 +34,7 @@ def lasting_labels(
     poses: Sequence[Pose],
     drawn: Sequence[Sequence[Primitive]],
     measures: Measures,
-) -> list[Text]:
+) -> list[tuple[Text, str]]:
     """The names in the first pose, each in its best position over all poses.
 
     Parameters
@@ -36,64 +42,98 @@ def lasting_labels(
     poses, drawn
         Some rows of a motion, and the drawn primitives of each.
 
+    Returns
+    -------
+    list of (Text, str)
+        Each name, and the link with which its position turns about the point; "" for none.
+
     Notes
     -----
     Names are placed one by one and moved until no single move improves the result, as in
     :func:`~linkwork.drawing.label_placement.placed`; the penalty of a position is the mean
     of its penalties in all rows plus a share of the worst.
     """
-    rows = [
-        [_with_place_below(choice, pose, measures) for choice in point_names(pose, measures)]
-        for pose in poses
-    ]
-    boxes = [_boxes([row[k] for row in rows]) for k in range(len(rows[0]))]
-    obstacles = [Obstacles.of(shapes) for shapes in drawn]
+    pose = poses[0]
+    names = [_with_more_places(choice, pose, measures) for choice in point_names(pose, measures)]
+    boxes = [_boxes(choice, turns, poses) for choice, turns in names]
+    covered = _covered(drawn, boxes)
     fixed = [
-        np.array(choice.cost) + _over_rows(_covered(obstacles, own))
-        for choice, own in zip(rows[0], boxes, strict=True)
+        np.array(choice.cost) + _over_rows(cost)
+        for (choice, _), cost in zip(names, covered, strict=True)
     ]
     chosen = _settled(fixed, boxes)
-    return [choice.places[place] for choice, place in zip(rows[0], chosen, strict=True)]
-
-
-def labels_as_before(pose: Pose, measures: Measures, before: Sequence[Text]) -> list[Text]:
-    """The names of another pose of the mechanism, each in its direction from ``before``."""
-    height = measures.text
     return [
-        replace(
-            text,
-            anchor=xy(pose.points[text.of]),
-            offset=(text.offset[0] * height / text.height, text.offset[1] * height / text.height),
-            height=height,
-        )
-        for text in before
+        (choice.places[place], turns[place])
+        for (choice, turns), place in zip(names, chosen, strict=True)
     ]
 
 
-def _boxes(choices: Sequence[Choice]) -> Array:
-    """The boxes of one name, shape (rows, places, 4)."""
-    return np.array([
-        [
-            text.box.grown(_CLEAR * text.height).edges
-            for text in choice.places
-        ]
-        for choice in choices
-    ])  # fmt: skip
+def _boxes(choice: Choice, turns: Sequence[str], poses: Sequence[Pose]) -> Array:
+    """The boxes of one name in all poses, shape (rows, places, 4)."""
+    name = choice.places[0].of
+    edges = np.array([t.box.grown(_CLEAR * t.height).edges for t in choice.places])
+    way = np.array([pose.points[name] for pose in poses])
+    turned = {turn: _directions(turn, poses) for turn in set(turns)}
+    turn = np.stack([turned[turn] for turn in turns], axis=1)  # (rows, places)
+    anchors = np.array([complex(*text.anchor) for text in choice.places])
+    shift = way[:, None] - way[0] + (anchors - way[0]) * (turn / turn[0] - 1.0)
+    moved: Array = edges + np.stack((shift.real, shift.imag, shift.real, shift.imag), axis=-1)
+    return moved
 
 
-def _with_place_below(choice: Choice, pose: Pose, measures: Measures) -> Choice:
-    """Add the position under a pivot's ground symbol, which a crank rarely covers."""
+def _directions(link: str, poses: Sequence[Pose]) -> ComplexArray:
+    """The unit vectors of a link in all poses; constant without a link."""
+    if not link:
+        return np.ones(len(poses), dtype=complex)
+    bar = next(bar for bar in poses[0].skeleton.bars if bar.name == link)
+    start, end = list(dict.fromkeys(bar.points))[:2]
+    along = np.array([pose.points[end] - pose.points[start] for pose in poses])
+    return np.asarray(along / np.abs(along))
+
+
+def _with_more_places(
+    choice: Choice, pose: Pose, measures: Measures
+) -> tuple[Choice, tuple[str, ...]]:
+    """More positions for a motion, and the link with which each one turns.
+
+    The name of a pivot may be under its ground symbol, which a crank rarely covers; that of a
+    moving point may turn with a link, which then never covers it.
+    """
     text = choice.places[0]
-    if text.of not in pose.skeleton.fixed:
-        return choice
-    drop = DEPTH * pin_radius(pose, text.of, measures) + 0.5 * measures.pin + 0.76 * text.height
-    below = replace(text, offset=(0.0, -drop), align=0)
-    return Choice((*choice.places, below), (*choice.cost, _BELOW))
+    places, cost = list(choice.places), list(choice.cost)
+    turns = [""] * len(places)
+    if text.of in pose.skeleton.fixed:
+        drop = DEPTH * pin_radius(pose, text.of, measures) + 0.5 * measures.pin + 0.76 * text.height
+        for further in range(3):
+            low = (0.0, -drop - further * text.height)
+            places.append(replace(text, offset=low, align=0))
+            cost.append(_BELOW + _FURTHER * further)
+        return Choice(tuple(places), tuple(cost)), (*turns, "", "", "")
+    point = pose.points[text.of]
+    reach = math.hypot(text_width(text.text, text.height), 0.92 * text.height) / 2
+    for bar in pose.skeleton.bars:
+        ends = [pose.points[name] for name in dict.fromkeys(bar.points)]
+        if text.of not in bar.points or len(ends) < 2 or ends[0] == ends[1]:
+            continue
+        along = (ends[1] - ends[0]) / abs(ends[1] - ends[0])
+        for further, k in product(range(2), range(_WAYS)):
+            away = (1.2 + 1.5 * further) * measures.pin + reach
+            anchor = xy(point + away * along * cmath.exp(2j * cmath.pi * k / _WAYS))
+            middle = (0.0, -0.3 * text.height)
+            places.append(replace(text, anchor=anchor, offset=middle, align=0))
+            cost.append(_TURNING + _FURTHER * further)
+            turns.append(bar.name)
+    return Choice(tuple(places), tuple(cost)), tuple(turns)
 
 
-def _covered(obstacles: Sequence[Obstacles], boxes: Array) -> Array:
-    """The penalties of a name's positions in every row: boxes (rows, places, 4), (rows, places)."""
-    return np.array([o.costs(own[:, None, :]) for o, own in zip(obstacles, boxes, strict=True)])
+def _covered(drawn: Sequence[Sequence[Primitive]], boxes: Sequence[Array]) -> list[Array]:
+    """The penalties of every name's positions in every row, each (rows, places)."""
+    every = np.concatenate(boxes, axis=1)
+    cost = [
+        Obstacles.of(shapes).costs(own[:, None, :])
+        for shapes, own in zip(drawn, every, strict=True)
+    ]
+    return np.split(np.array(cost), np.cumsum([b.shape[1] for b in boxes])[:-1], axis=1)
 
 
 def _over_rows(cost: Array) -> Array:
@@ -102,20 +142,34 @@ def _over_rows(cost: Array) -> Array:
 
 
 def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
-    """The position of every name given those of the others: a local optimum."""
-    chosen: dict[int, int] = {}
+    """The position of every name given those of the others: the better of two local optima.
+
+    Names with the fewest free positions are placed first, or last.
+    """
     order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
+    found = [_descended(fixed, boxes, one) for one in (order, order[::-1])]
+    return min(found, key=lambda pair: pair[0])[1]
+
+
+def _descended(
+    fixed: Sequence[Array], boxes: Sequence[Array], order: Sequence[int]
+) -> tuple[float, list[int]]:
+    """The penalty and the positions of names placed in an order, then moved one by one."""
+    chosen: dict[int, int] = {}
+    total = 0.0
     for _ in range(4):
-        before = dict(chosen)
+        before, total = dict(chosen), 0.0
         for k in order:
             cost = fixed[k].copy()
             for other, place in chosen.items():
                 if other != k:
-                    cost += _NAME_ON_NAME * _overlapping(boxes[k], boxes[other][:, place]).mean(0)
+                    shared = _overlapping(boxes[k], boxes[other][:, place])
+                    cost += _NAME_ON_NAME * _over_rows(shared.astype(float))
             chosen[k] = int(cost.argmin())
+            total += float(cost.min())
         if chosen == before:
             break
-    return [chosen[k] for k in range(len(fixed))]
+    return total, [chosen[k] for k in range(len(fixed))]
 
 
 def _overlapping(boxes: Array, others: Array) -> Array:

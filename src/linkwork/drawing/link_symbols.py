@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
+from linkwork.drawing.coupling_symbols import couplings
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Disc, Polygon, Polyline, Primitive, Role, xy
@@ -39,7 +40,8 @@ def tones(pose: Pose) -> Mapping[str, int]:
 def link_symbols(pose: Pose, gaps: Mapping[str, list[Gap]]) -> Iterator[Primitive]:
     """The symbols of all links; ``gaps`` are the interruptions of bars by slots and blocks."""
     tone = tones(pose)
-    for bar in pose.skeleton.bars:
+    hidden = {name for coupling in couplings(pose.skeleton) for name in coupling.links}
+    for bar in (bar for bar in pose.skeleton.bars if bar.name not in hidden):
         yield from _link(pose, bar, tone[bar.name], gaps.get(bar.name, []))
 
 

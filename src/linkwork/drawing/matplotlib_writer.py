@@ -44,7 +44,7 @@ __all__ = ["FORMATS", "Brush", "figure", "render", "write"]
 FORMATS = ("png", "svg", "pdf")
 
 _LONG_SIDE = 6.0  # longer side of the drawing [inches]
-_SHORT_SIDE = 1.5  # minimum, for ticks and title
+_SHORT_SIDE = 2.2  # minimum, so that a flat mechanism has room, ticks and a title
 _LEFT, _RIGHT, _BELOW, _LINE = (
     0.75,
     0.2,

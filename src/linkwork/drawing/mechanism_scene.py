@@ -8,6 +8,7 @@ from dataclasses import replace
 from linkwork.drawing.annotations import Subject, annotation_of
 from linkwork.drawing.box import Box
 from linkwork.drawing.captions import inputs_caption, reached_caption
+from linkwork.drawing.coupling_symbols import coupling_symbols, couplings
 from linkwork.drawing.drawn_box import drawn_box
 from linkwork.drawing.further_positions import (
     Further,
@@ -153,6 +154,7 @@ def symbols(
     figures = pose.skeleton.figures
     yield from ground_symbols(pose, measures)
     yield from wheel_symbols(pose, measures)
+    yield from coupling_symbols(couplings(pose.skeleton), pose, measures, tones(pose))
     yield from part_symbols((f for f in figures if not f.over), pose, measures)
     yield from guide_symbols(found, measures)
     yield from link_symbols(pose, track_gaps(found, measures))

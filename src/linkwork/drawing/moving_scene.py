@@ -18,7 +18,7 @@ from linkwork.drawing.box import Box
 from linkwork.drawing.drawn_box import reach_of
 from linkwork.drawing.guide_symbols import tracks
 from linkwork.drawing.input_arrow import input_arrows
-from linkwork.drawing.lasting_labels import labels_as_before, lasting_labels
+from linkwork.drawing.lasting_labels import lasting_labels
 from linkwork.drawing.link_symbols import tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.mechanism_scene import traced
@@ -38,6 +38,7 @@ from linkwork.drawing.scene import (
     Role,
     Scene,
     Text,
+    xy,
 )
 from linkwork.drawing.shape_corners import corners, with_corners
 from linkwork.drawing.trace_path import trace_symbols
@@ -47,8 +48,8 @@ from linkwork.results.motion import Motion
 
 __all__ = ["MovingScene", "moving_scene"]
 
-_SAMPLED = 9  # rows at which names must not collide
-_FEW = 4  # the same, for a quick picture
+_SAMPLED = 31  # rows at which names must not collide
+_FEW = 9  # the same, for a quick picture
 _TRIED = 25  # rows used to find the frame of a shape
 
 
@@ -186,7 +187,7 @@ def moving_scene(
         parts += _names(motion, pose, moving, _some(rows, _FEW if sampled else _SAMPLED))
     else:
         parts += _arrows_as_before(like, frames, row)
-        parts += _names_as_before(like, pose, measures)
+        parts += _names_as_before(like, pose, frames, row, measures)
     parts.sort(key=lambda part: part.shape.layer)
     return MovingScene(
         scene=_scene(motion, parts, measures, box),
@@ -288,17 +289,25 @@ def _names(motion: Motion, pose: Pose, moving: MovingScene, rows: CountArray) ->
     """The names of points, each in a direction that is free in these rows."""
     poses = [pose.moved_to(motion, int(row)) for row in rows]
     drawn = [moving.at(int(row)).primitives for row in rows]
-    for text in lasting_labels(poses, drawn, moving.scene.measures):
-        yield _name(text, pose)
+    for text, turn in lasting_labels(poses, drawn, moving.scene.measures):
+        still = text.of in pose.skeleton.fixed
+        yield Moving(shape=text, frame=STILL if still else Frame(text.of, turn))
 
 
-def _names_as_before(like: MovingScene, pose: Pose, measures: Measures) -> Iterator[Moving]:
+def _names_as_before(
+    like: MovingScene, pose: Pose, frames: Frames, row: int, measures: Measures
+) -> Iterator[Moving]:
     """The names of points in their directions from another motion."""
-    before = [part.shape for part in like.parts if isinstance(part.shape, Text)]
-    for text in labels_as_before(pose, measures, before):
-        yield _name(text, pose)
-
-
-def _name(text: Text, pose: Pose) -> Moving:
-    still = text.of in pose.skeleton.fixed
-    return Moving(shape=text, frame=STILL if still else Frame(text.of))
+    height = measures.text
+    for part in like.parts:
+        text, frame = part.shape, part.frame
+        if not isinstance(text, Text) or frame is None:
+            continue
+        grown = height / text.height
+        anchor = pose.points[text.of]
+        if frame != STILL:
+            local = like.frames.local(frame, corners(text)[None], np.array([like.row]))[0]
+            anchor = complex(frames.placed(frame, grown * local, np.array([row]))[0, 0])
+        offset = (text.offset[0] * grown, text.offset[1] * grown)
+        shape = replace(text, anchor=xy(anchor), offset=offset, height=height)
+        yield Moving(shape=shape, frame=frame)

@@ -96,10 +96,11 @@ class Obstacles:
         """
         # A trace of many short pieces counts once per penalty, not once per piece.
         found = np.zeros(len(boxes))
-        near = _near(self.pieces, boxes)
-        crossed = _crosses(self.pieces[near], boxes)
+        crossed = np.zeros((len(boxes), len(self.pieces)), dtype=bool)
+        box, piece = np.nonzero(_near(self.pieces, boxes))
+        crossed[box, piece] = _crosses(self.pieces[piece], boxes[box])
         for k, penalty in enumerate(self.levels):
-            count = np.count_nonzero(crossed[:, self.level[near] == k], axis=1)
+            count = np.count_nonzero(crossed[:, self.level == k], axis=1)
             found += np.where(count, penalty * (1.0 + np.log(np.maximum(count, 1))), 0.0)
         inside = np.count_nonzero(_inside(self.plates, boxes), axis=1)
         total: Array = found + _covers(self.discs, boxes) @ self.disc_cost + _INSIDE_PLATE * inside
@@ -125,13 +126,13 @@ def _sides(plates: Sequence[Sequence[XY]]) -> Array:
 
 
 def _near(pieces: Array, boxes: Array) -> BoolArray:
-    """Whether pieces (m, 4) intersect the bounding box of all boxes, (m,)."""
-    edges = boxes.reshape(-1, 4)
-    low, high = edges[:, :2].min(axis=0), edges[:, 2:].max(axis=0)
-    start, end = pieces[:, :2], pieces[:, 2:]
-    return np.asarray(
-        ((np.minimum(start, end) <= high) & (np.maximum(start, end) >= low)).all(axis=1)
-    )
+    """Whether pieces (m, 4) may intersect boxes (k, b, 4): those around both do, (k, m)."""
+    low, high = boxes[..., :2].min(axis=1), boxes[..., 2:].max(axis=1)
+    first = np.minimum(pieces[:, :2], pieces[:, 2:])
+    last = np.maximum(pieces[:, :2], pieces[:, 2:])
+    near = (first[:, 0] <= high[:, None, 0]) & (last[:, 0] >= low[:, None, 0])
+    near &= (first[:, 1] <= high[:, None, 1]) & (last[:, 1] >= low[:, None, 1])
+    return np.asarray(near)
 
 
 def _covers(discs: Array, boxes: Array) -> BoolArray:
@@ -144,19 +145,17 @@ def _covers(discs: Array, boxes: Array) -> BoolArray:
 
 
 def _crosses(pieces: Array, boxes: Array) -> BoolArray:
-    """Whether line pieces (m, 4) intersect one of the boxes (k, b, 4), (k, m).
+    """Whether each line piece (n, 4) intersects one of its boxes (n, b, 4), (n,).
 
-    They do unless x, y or the normal of the piece is a separating axis.
+    It does unless x, y or the normal of the piece is a separating axis.
     """
-    half = 0.5 * (pieces[:, 2:] - pieces[:, :2]).T
-    middle = 0.5 * (pieces[:, 2:] + pieces[:, :2]).T
-    size = 0.5 * (boxes[..., 2:] - boxes[..., :2])[..., None]  # (k, b, 2, 1)
-    x, y = np.moveaxis(0.5 * (boxes[..., 2:] + boxes[..., :2])[..., None] - middle, 2, 0)
-    wide, high = size[..., 0, :], size[..., 1, :]
-    turned = np.abs(half[0] * y - half[1] * x)
-    apart = np.abs(x) > wide + np.abs(half[0])
-    apart |= np.abs(y) > high + np.abs(half[1])
-    apart |= turned > wide * np.abs(half[1]) + high * np.abs(half[0])
+    half = 0.5 * (pieces[:, None, 2:] - pieces[:, None, :2])
+    middle = 0.5 * (pieces[:, None, 2:] + pieces[:, None, :2])
+    size = 0.5 * (boxes[..., 2:] - boxes[..., :2])
+    away = 0.5 * (boxes[..., 2:] + boxes[..., :2]) - middle
+    turned = np.abs(half[..., 0] * away[..., 1] - half[..., 1] * away[..., 0])
+    apart = np.any(np.abs(away) > size + np.abs(half), axis=-1)
+    apart |= turned > size[..., 0] * np.abs(half[..., 1]) + size[..., 1] * np.abs(half[..., 0])
     return np.asarray(np.any(~apart, axis=1))
 
 

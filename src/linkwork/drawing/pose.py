@@ -115,8 +115,11 @@ class Pose:
     @property
     def gaps(self) -> Iterator[float]:
         """Constant distances between pins: within links and within ground."""
-        for names in (self.skeleton.fixed, *(bar.points for bar in self.skeleton.bars)):
-            places = [self.points[name] for name in names if name not in self.construction]
+        skeleton = self.skeleton
+        joined = {*skeleton.pins, *skeleton.fixed, *(p for s in skeleton.struts for p in s.between)}
+        joined -= self.construction
+        for names in (skeleton.fixed, *(bar.points for bar in skeleton.bars)):
+            places = [self.points[name] for name in names if name in joined]
             yield from (abs(a - b) for k, a in enumerate(places) for b in places[:k])
 
     @cached_property

@@ -196,7 +196,7 @@ class MechanismFileError(MechanismError):
     ...     lw.loads(text, "bar.toml")
     ... except lw.MechanismFileError as error:
     ...     print(error.problems[0].line, error.problems[0].message)
-    27 link "crnk" is not defined (links: crank, ground, coupler, rocker)
+    28 link "crnk" is not defined (links: crank, ground, coupler, rocker)
     """
 
 

@@ -56,6 +56,8 @@ class Description:
     ----------
     name : str
         Name of the mechanism.
+    purpose : str
+        What the mechanism is for, in one sentence.
     length : str
         Unit of every length; nothing is converted.
     angle : AngleUnit
@@ -88,6 +90,7 @@ class Description:
     inputs: tuple[Input, ...] = ()
     trace: tuple[str, ...] = ()
     outputs: Mapping[str, str] = FrozenDict()
+    purpose: str = ""
     source: str = ""
     family: str = ""
     configuration: str = ""

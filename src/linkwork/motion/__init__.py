@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     )
     from linkwork.motion.named_start import as_described as as_described
     from linkwork.motion.nearest_assembling import nearest_assembly as nearest_assembly
+    from linkwork.motion.round_start import solve_round_start as solve_round_start
     from linkwork.motion.solving import solve as solve
     from linkwork.motion.sweeping import sweep as sweep
     from linkwork.motion.vector_loops import (

@@ -65,6 +65,7 @@ _HEAD = (
         'The configuration or branch to start from instead of the guess: "crossed", '
         '"circuit 1 branch 2"',
     ),
+    Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
     "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"

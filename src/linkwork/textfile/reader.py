@@ -21,7 +21,7 @@ __all__ = ["ReadFile", "check_format", "located_error", "read_bytes", "read_file
 
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
-    {"name", "length", "source", "family", "configuration", "input", "trace", "outputs"}
+    {"name", "purpose", "length", "source", "family", "configuration", "input", "trace", "outputs"}
 )
 
 
@@ -123,6 +123,7 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
         key: content[key]
         for key in (
             "name",
+            "purpose",
             "length",
             "angle",
             "source",

@@ -88,7 +88,7 @@ def _head(description: Description) -> dict[str, Any]:
         "length": description.length,
         "angle": description.angle.value,
     }
-    for key in ("source", "family", "configuration"):
+    for key in ("purpose", "source", "family", "configuration"):
         if text := getattr(description, key):
             found[key] = text
     if isinstance(description, Linkage) and description.sketch:

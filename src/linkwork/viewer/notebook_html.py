@@ -42,7 +42,7 @@ __all__ = [
 _CLASS = "linkwork-shown"
 _LONGEST, _IN_ROW, _OF_CIRCUIT = 380.0, 230.0, 310.0  # longer sides of pictures [CSS px]
 _LARGER = 1.3  # enlargement of names, for legibility at that size
-_FAINT = 5  # further positions of a motion
+_FAINT = 3  # further positions of a motion
 _MOST = 12  # pictures side by side
 
 # These rules take precedence over the style sheets of notebooks, especially for tables.

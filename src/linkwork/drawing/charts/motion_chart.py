@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -24,14 +25,16 @@ from linkwork.results.motion import Motion
 __all__ = ["across_axis", "check_found", "columns_of", "motion_chart", "shared_panels"]
 
 _MOST_CURVES = 6  # curves in a panel: the number of colours
+_SPANS = 20.0  # largest ratio of the ranges of curves in a panel: flatter ones show nothing
 _BESIDE = 15.0  # em: the longest axis label that names all curves of a panel
+_MOST_VALUES = (2.0, 98.0)  # percentiles
 _BEYOND = 4.0  # beyond this multiple of its usual range a curve runs to infinity at a dead point
 
 
 def motion_chart(
     motion: Motion, names: Sequence[str] = (), *, against: str = "", wrapped: bool = False
 ) -> Chart:
-    """Columns over the leading input, one panel per unit, with limits marked.
+    """Columns over the leading input, in panels of one unit and similar range, with limits marked.
 
     Lines are broken at rows without position.
 
@@ -84,7 +87,7 @@ def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
 def shared_panels(
     motion: Motion, across: Column, columns: Sequence[Column], *, wrapped: bool = False
 ) -> list[Panel]:
-    """Panels of columns over one abscissa; columns of equal measure and unit share a panel."""
+    """Panels of columns over one abscissa; columns of one unit and similar range share a panel."""
     groups = _grouped(columns)
     order = [column.name for group in groups for column in group]
     tones = {name: tone for tone, name in enumerate(order, start=1)}
@@ -92,17 +95,40 @@ def shared_panels(
 
 
 def _grouped(columns: Sequence[Column]) -> list[list[Column]]:
-    """Groups of columns of equal measure and unit, limited to the number of colours."""
+    """Groups of columns of one unit and similar range, limited to the number of colours."""
     groups: dict[tuple[str, str], list[Column]] = {}
     for column in columns:
         key = (column.measure, column.unit) if column.measure else ("", column.name)
         groups.setdefault(key, []).append(column)
     shared: list[list[Column]] = []
-    for group in groups.values():
+    for group in chain.from_iterable(map(_of_similar_range, groups.values())):
         count = math.ceil(len(group) / _MOST_CURVES)
         size = math.ceil(len(group) / count)
         shared += [group[k : k + size] for k in range(0, len(group), size)]
     return shared
+
+
+def _of_similar_range(columns: list[Column]) -> list[list[Column]]:
+    """Columns of one unit, divided at the largest step of their ranges until these are similar."""
+    spans = {column.name: _span(column) for column in columns}
+    # a level line is as legible on any axis
+    varying = sorted((c for c in columns if spans[c.name]), key=lambda c: spans[c.name])
+    if not varying or spans[varying[-1].name] <= _SPANS * spans[varying[0].name]:
+        return [columns]
+    gaps = [spans[b.name] / spans[a.name] for a, b in pairwise(varying)]
+    flat = varying[: 1 + gaps.index(max(gaps))]
+    parts = [c for c in columns if c in flat], [c for c in columns if c not in flat]
+    groups = chain.from_iterable(map(_of_similar_range, parts))
+    return sorted(groups, key=lambda group: columns.index(group[0]))
+
+
+def _span(column: Column) -> float:
+    """The range of most values: a rate is unbounded near a dead point. Zero for a level line."""
+    values = column.values[np.isfinite(column.values)]
+    if not len(values) or level_ends(values, column.size) is not None:
+        return 0.0
+    low, high = np.percentile(values, _MOST_VALUES)
+    return float(high - low)
 
 
 def _panel(

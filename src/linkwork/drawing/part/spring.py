@@ -22,7 +22,7 @@ def symbols(spring: SpringFigure, pose: Pose, measures: Measures) -> Iterator[Pr
     if not length:
         return
     along = (end - start) / length
-    across = 2.0 * measures.pin * 1j * along
+    across = 2.6 * measures.pin * 1j * along
     first, pitch = _END * length, (1.0 - 2.0 * _END) * length / _COILS
     corners = [start, start + first * along]
     for k in range(_COILS):

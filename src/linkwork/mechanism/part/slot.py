@@ -5,14 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from linkwork.foundation.file_keys import Key, Text
+from linkwork.foundation.file_keys import Key, Number as NumberKey, Text
 from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
 from linkwork.mechanism.part.guide import GuidePart
 from linkwork.mechanism.part.part import LINK, POINT, POINT_PAIR, PartChecks, pinned
 
-__all__ = ["Slot"]
+__all__ = ["GenevaWheel", "Slot"]
+
+_FEWEST, _MOST = 3, 60  # slots of a Geneva wheel
+
+
+@dataclass(frozen=True, kw_only=True)
+class GenevaWheel(Figure):
+    """A wheel with ``count`` equal slots about ``center``; ``rim`` is at the mouth of one of them.
+
+    ``name`` is that of the slot, ``pin`` the point that runs in it.
+    """
+
+    link: str
+    center: str
+    rim: str
+    pin: str
+    count: int
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +46,9 @@ class Slot(GuidePart):
         The link with the slot.
     line : (str, str)
         Two points of that link.
+    count : number, optional
+        The number of equal slots around the first point of ``line``, their mouths as far from it as
+        the second: a Geneva wheel, drawn as a star.
 
     Examples
     --------
@@ -46,10 +66,16 @@ class Slot(GuidePart):
         Key("point", POINT, "The pin: a point of another link", required=True),
         Key("on", LINK, "The link with the slot", required=True),
         Key("line", POINT_PAIR, "Two points of that link; positive from first to second", True),
+        Key(
+            "count",
+            NumberKey(),
+            "For drawings: equal slots around the first point of the line, open at the second",
+        ),
     )
     kind = JointKind.PIN_IN_SLOT
 
     point: str
+    count: Number | None = None
 
     @property
     def point_on_line(self) -> str:
@@ -72,5 +98,22 @@ class Slot(GuidePart):
                 f'point "{self.point}" is fixed on "{self.on}" and cannot move in its slot', "point"
             )
 
+        if self.count is None:
+            return
+        count = checks.number(self.count, "count")
+        if not (_FEWEST <= count <= _MOST and count == round(count)):
+            checks.add(
+                f"must be a whole number from {_FEWEST} to {_MOST}, it is {count:g}", "count"
+            )
+
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         yield Guide(name=self.name, point=self.point, on=self.on, line=self.line)
+        if self.count is not None:
+            yield GenevaWheel(
+                name=self.name,
+                link=self.on,
+                center=self.line[0],
+                rim=self.line[1],
+                pin=self.point,
+                count=round(linkage.numbers(self.count)),
+            )
