@@ -17,6 +17,7 @@ from benchmarks import (
     live_time,
     page_time,
     process_start,
+    small_calls,
 )
 from benchmarks.single_thread import run_alone
 
@@ -29,6 +30,7 @@ MEASUREMENTS = {
     "families": family_time.measure,
     "page": page_time.measure,
     "live": live_time.measure,
+    "small": small_calls.measure,
 }
 PROGRAMS = {
     "peers": "benchmarks.peers",
