@@ -9,7 +9,8 @@ import numpy as np
 
 from linkwork.equations.writing import EquationSheet
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, column_name
-from linkwork.export.workbook.cycle_page import CycleColumns
+from linkwork.export.workbook.cycle_columns import CycleColumns
+from linkwork.export.workbook.status_formulas import statement
 from linkwork.foundation.certification import Certification
 
 __all__ = ["notices", "write_about"]
@@ -85,11 +86,13 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
     lines: list[tuple[str, str, float, str]] = []
     if found:
         largest = f"=MAX({whole(columns.largest)})"
-        lines.append(("Largest difference from Linkwork", largest, 0.0, "result"))
-    if found and columns.equations:
-        lines.append(("Largest sum of squares", f"=MAX({whole(columns.squares)})", 0.0, "result"))
-        closing = f'=COUNTIF({whole(columns.closes)},"yes")'
-        lines.append(("Rows that close", closing, found, "result_count"))
+        lines.append(("Largest relative difference", largest, 0.0, "result"))
+    closing = f'=COUNTIF({whole(columns.closes)},"yes")'
+    lines.append(("Rows with a position", closing, found, "result_count"))
+    proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
+    certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
+    lines.append(("Rows with a proof", proved, certified, "result_count"))
+    lines.append(("Changed cells", "=changes", 0, "result_count"))
     for head, formula, value, look in lines:
         sheet.write(row, 0, head, style["head_left"])
         sheet.write_formula(row, 1, formula, style[look], value)

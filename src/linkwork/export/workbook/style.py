@@ -42,6 +42,12 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "italic": True, "font_color": _FAINT, "bg_color": "#eceff1", "border": 1,
         "border_color": _RULE,
     },
+    "right": {"align": "right"},
+    "good": {"font_color": "#2d6a4f"},
+    "doubtful": {"font_color": "#8d6708"},
+    "faded": {"font_color": "#b8c1cc"},
+    "solved": {"font_color": _FAINT, "align": "right"},
+    "changed": {"bg_color": "#ffe2b8", "bold": True},
     "wrong": {"bg_color": "#ffd9d1", "font_color": "#9c1c00", "bold": True},
 }  # fmt: skip
 
