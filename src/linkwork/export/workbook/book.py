@@ -88,6 +88,9 @@ class Book:
         for k, variable in enumerate(self.variables):
             self.names.claim(variable.symbol, variable.shown)
             self.values[variable.symbol] = self.iterations.values[-1][:, k]
+        for variable in self.model.equations.inputs:  # known in rows without a position, too
+            own = self.motion.inputs[variable.name]
+            self.values[variable.symbol] = own[self.iterations.rows]
         for link in self.closure.links:
             self.names.claim(canonical(link), f"theta_{link}")
         for point in self.closure.points:
@@ -223,10 +226,9 @@ class Book:
         self, sheet: Any, k: int, column: int, formula: str, look: str, value: float | str
     ) -> None:
         """Write a formula in the row of position k, with its value, unless that is not known."""
-        if not self.iterations.found[k]:
-            value = NO_VALUE
-        elif not isinstance(value, str):
-            value = cached(value)
+        if not isinstance(value, str):
+            known = math.isfinite(value) or self.iterations.found[k]
+            value = cached(value) if known else NO_VALUE
         sheet.write_formula(FIRST + k, column, formula, self.style[look], value)
 
     def column(self, sheet: Any, column: int, formula: CellFormula, look: str) -> Array:

@@ -158,16 +158,15 @@ class _Page:
                 found[:, c] = own[book.iterations.rows] * book.speed**order
         live = book.iterations.live
         if block.rows and live.any():
-            solver = book.model.compiled.solver.blocks[b]
-            here = (book.iterations.values[-1] * book.scales)[live][:, solver.variables]
-            _, jacobian = solver.system.residual_and_jacobian(here)
-            sides = [
-                book.over_rows(pair[order - 1].value(book.values))[live]
-                for pair in book.rates.sides[b]
-            ]
-            found[live], _ = corrections(
-                jacobian[:, :, : len(block.unknowns)], np.stack(sides, axis=1)
+            jacobian, sides = (
+                np.array([[book.over_rows(part.value(book.values)) for part in line] for line in of])
+                for of in (
+                    [row.slopes for row in block.rows],
+                    [[pair[order - 1]] for pair in book.rates.sides[b]],
+                )
             )
+            of_rows = np.moveaxis(jacobian, 2, 0)[live], np.moveaxis(sides[:, 0], 1, 0)[live]
+            found[live], _ = corrections(*of_rows)
         return found
 
     def _rate(self, b: int, order: int, c: int, row: int) -> str:
