@@ -10,11 +10,13 @@ import numpy as np
 from linkwork.equations.writing import EquationSheet
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, column_name
 from linkwork.export.workbook.cycle_columns import CycleColumns
+from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.export.workbook.status_formulas import statement
 from linkwork.foundation.certification import Certification
 
 __all__ = ["notices", "write_about"]
 
+_ONE_PAGE = 70  # rows
 _WIDTH = 110  # characters per line of equations
 _LINE, _LINE_LENGTH = 15.0, 95  # height of a text line, and its characters
 
@@ -42,6 +44,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
     for line in EquationSheet(book.model.equations).text(_WIDTH).splitlines():
         row += 1
         sheet.write_string(row, 0, line, style["code"])
+    print_on_one_page(sheet, tall=1 if row < _ONE_PAGE else 0)
 
 
 def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:

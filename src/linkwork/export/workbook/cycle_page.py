@@ -21,13 +21,14 @@ from linkwork.export.workbook.cell_formula import cell_number
 from linkwork.export.workbook.cycle_columns import CycleColumns
 from linkwork.export.workbook.dimension_page import input_table
 from linkwork.export.workbook.newton_page import NewtonColumns
+from linkwork.export.workbook.page_layout import print_table
 from linkwork.export.workbook.status_formulas import StatusFormulas, statement
 from linkwork.foundation.names import canonical
 from linkwork.results.quantity import Kind
 
 __all__ = ["write_cycle"]
 
-_WIDTH = 13
+_WIDTH, _STATUS = 13, 44
 
 
 def write_cycle(book: Book, sheet: Any, columns: CycleColumns, newton: NewtonColumns) -> None:
@@ -46,9 +47,9 @@ class _Page:
         """Write the headings, then column by column."""
         book, sheet = self.book, self.sheet
         self.status = StatusFormulas(book, self.columns)
-        sheet.set_column(0, 0, 6)
-        sheet.set_column(1, self.columns.closes, _WIDTH)
-        sheet.set_column(self.columns.status, self.columns.status, 40)
+        widths = [6, *[_WIDTH] * self.columns.closes, _STATUS]
+        repeated = 1 + len(book.model.equations.inputs)
+        print_table(sheet, widths, repeated, book.last - 1)
         book.title(sheet, "positions")
         sheet.write(
             1, 0, "After a change, statuses follow: Linkwork's proofs are shown only for rows as "
@@ -61,7 +62,7 @@ class _Page:
         self._equations()
         self._rest()
         self._check()
-        sheet.freeze_panes(FIRST, 1 + len(book.model.equations.inputs))
+        sheet.freeze_panes(FIRST, repeated)
 
     def _inputs(self) -> None:
         book = self.book
@@ -161,7 +162,7 @@ class _Page:
                 (columns.as_solved, status.as_solved(k), "yes", "right"),
                 (columns.largest, status.difference(k), 0.0 if found else "-", "small"),
                 (columns.closes, status.closes(k), closes, "right"),
-                (columns.status, status.status(k), said, "text"),
+                (columns.status, status.status(k), said, "status"),
             ):
                 own = book.style[look]
                 self.sheet.write_formula(FIRST + k, column, f"={formula}", own, value)

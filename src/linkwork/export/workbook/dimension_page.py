@@ -11,6 +11,7 @@ from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
 from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.dimension_units import dimension_kinds
+from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.export.workbook.rate_formulas import rate_key
 from linkwork.export.workbook.traced_equations import Dimension
 from linkwork.expression.writing import text
@@ -23,6 +24,7 @@ _CLOSED = 1e-9  # of the longest link: a row with larger equation errors does no
 _TOP = 4  # rows above the sections
 _EVEN = 1e-12  # of the largest value: rounding of an evenly spaced table
 _HEADS = ("name", "value", "unit", "cell name", "by Linkwork", "", "note")
+_WIDTHS = 24, 18, 8, 22, 18, 17, 60
 _FLAG, _NOTE = 5, 6  # columns
 _CHANGED, _UNUSED = "changed", "changed, not used"
 _SAME = 1e-13  # relative: rounding of a computed cell
@@ -41,13 +43,10 @@ def input_table(values: Array) -> tuple[float, float] | None:
 
 def write_dimensions(book: Book, sheet: Any) -> None:
     """Write the sheet and name its cells."""
-    sheet.set_column(0, 0, 24)
-    sheet.set_column(1, 1, 18)
-    sheet.set_column(2, 2, 8)
-    sheet.set_column(3, 3, 22)
-    sheet.set_column(4, 4, 18)
-    sheet.set_column(_FLAG, _FLAG, 17)
-    sheet.set_column(_NOTE, _NOTE, 60)
+    for column, width in enumerate(_WIDTHS):
+        sheet.set_column(column, column, width)
+    sheet.repeat_rows(0, _TOP - 2)
+    print_on_one_page(sheet, tall=0)
     book.title(sheet, "dimensions")
     about = 'Edit a yellow cell: all sheets recalculate. "By Linkwork" are the values it solved.'
     sheet.write(1, 0, about, book.style["note"])

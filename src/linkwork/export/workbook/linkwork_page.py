@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.export.workbook.book import FIRST, Book
+from linkwork.export.workbook.page_layout import PRINTED, print_table
 from linkwork.export.workbook.status_formulas import statement
 
 __all__ = ["write_linkwork"]
@@ -29,10 +30,17 @@ def write_linkwork(book: Book, sheet: Any) -> None:
         "Numbers only: this sheet does not recalculate. Its statements hold for the inputs in the "
         "same row and the dimensions that Linkwork solved.", style["note"],
     )  # fmt: skip
+    widths = [
+        _STATEMENT if name == "statement" else min(max(12, len(name) + 2), _WIDEST)
+        for name in columns
+    ]
+    last = min(len(motion), PRINTED)
+    repeated = len(book.model.equations.inputs)
+    print_table(sheet, widths, repeated, FIRST + last - 1)
+    if len(motion) > last:
+        sheet.write(2, 0, f"Printed: the first {last} rows.", style["note"])
     for column, (name, values) in enumerate(columns.items()):
         numeric = values.dtype.kind in "fiu"
-        width = _STATEMENT if name == "statement" else min(max(12, len(name) + 2), _WIDEST)
-        sheet.set_column(column, column, width)
         sheet.write_string(FIRST - 2, column, name, style["head" if numeric else "head_left"])
         sheet.write_string(FIRST - 1, column, units[name], style["unit"])
         look = style["small"] if name in ("residual", "condition") else style["general"]

@@ -12,6 +12,7 @@ from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import CYCLE, FIRST, NEWTON, Book, apart, cached, column_name
 from linkwork.export.workbook.cell_formula import CellFormula, cell_number
 from linkwork.export.workbook.closure_formulas import BlockFormulas
+from linkwork.export.workbook.page_layout import PRINTED, print_table
 from linkwork.expression.tree import names_in
 from linkwork.foundation.errors import InputError
 
@@ -76,8 +77,10 @@ def planned_newton(book: Book) -> NewtonColumns:
 
 def write_newton(book: Book, sheet: Any, columns: NewtonColumns, cycle: dict[str, int]) -> None:
     """Write all iterations of all rows; ``cycle`` numbers the columns of the positions."""
-    sheet.set_column(0, 0, 6)
-    sheet.set_column(1, columns.end + 1, 11)
+    widths = [6, *[11] * (columns.end + 1)]
+    print_table(sheet, widths, 1, min(book.last, FIRST + PRINTED) - 1)
+    if book.count > PRINTED:
+        sheet.write(2, 0, f"Printed: the first {PRINTED} rows.", book.style["note"])
     book.title(sheet, "Newton-Raphson")
     sheet.write(
         1, 0,

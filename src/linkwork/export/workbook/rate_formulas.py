@@ -57,11 +57,10 @@ class RateFormulas:
             self.sides.append(tuple(pairs))
         for name, angle in self.closure.traced.equations.links.items():
             if name in self.closure.links and angle.variable is not None:
-                first, second = (
-                    CellFormula(Name(rate_key(canonical(angle.variable), order)))
-                    for order in (1, 2)
-                )
-                self.of[canonical(name)] = (first, second)
+                symbol = canonical(angle.variable)
+                second: Node = Name(rate_key(symbol, 2)) if symbol in self._moved else Number(0.0)
+                pair = CellFormula(Name(rate_key(symbol, 1))), CellFormula(second)
+                self.of[canonical(name)] = pair
         self._place_points()
         self._differentiate_outputs()
 

@@ -43,6 +43,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "border_color": _RULE,
     },
     "right": {"align": "right"},
+    "status": {"indent": 1},
     "good": {"font_color": "#2d6a4f"},
     "doubtful": {"font_color": "#8d6708"},
     "faded": {"font_color": "#b8c1cc"},

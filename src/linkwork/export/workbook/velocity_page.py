@@ -19,7 +19,9 @@ from linkwork.export.workbook.book import (
 )
 from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.newton_page import NewtonColumns, correction
+from linkwork.export.workbook.page_layout import print_table
 from linkwork.export.workbook.rate_formulas import rate_key
+from linkwork.expression.tree import Name
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.names import canonical
 from linkwork.numerics.newton import corrections
@@ -43,7 +45,8 @@ class VelocityColumns:
 
 def planned_velocities(book: Book) -> VelocityColumns:
     """Number the columns and name their cells: ``theta13.velocity``."""
-    columns = VelocityColumns()
+    inputs = len(book.model.equations.inputs)
+    columns = VelocityColumns(groups=[("Input", 1, inputs)], end=1 + inputs)
     for order, word in _WORDS.items():
         for b, block in enumerate(book.closure.blocks):
             columns.side[b, order] = columns.end
@@ -105,8 +108,9 @@ class _Page:
     def write(self) -> None:
         """Write right-hand sides and rates, velocities first."""
         book, sheet = self.book, self.sheet
-        sheet.set_column(0, 0, 6)
-        sheet.set_column(1, max(self.columns.end - 1, 1), _WIDTH)
+        widths = [6, *[_WIDTH] * (self.columns.end - 1)]
+        repeated = 1 + len(book.model.equations.inputs)
+        print_table(sheet, widths, repeated, book.last - 1)
         book.title(sheet, "velocities and accelerations")
         lead = book.leading
         sheet.write(
@@ -117,11 +121,14 @@ class _Page:
         )  # fmt: skip
         book.group_heads(sheet, self.columns.groups)
         book.row_numbers(sheet)
+        for column, variable in enumerate(book.model.equations.inputs, 1):
+            book.head(sheet, column, book.shown(variable), book.unit(variable.kind))
+            book.column(sheet, column, CellFormula(Name(variable.symbol)), "number")
         for order in (1, 2):
             for b in range(len(book.closure.blocks)):
                 self._block(b, order)
             self._others(order)
-        sheet.freeze_panes(FIRST, 1)
+        sheet.freeze_panes(FIRST, repeated)
 
     def _head(self, key: str, shown: str, kind: Kind, order: int) -> int:
         column = self.columns.of[rate_key(key, order)]
@@ -159,7 +166,9 @@ class _Page:
         live = book.iterations.live
         if block.rows and live.any():
             jacobian, sides = (
-                np.array([[book.over_rows(part.value(book.values)) for part in line] for line in of])
+                np.array(
+                    [[book.over_rows(part.value(book.values)) for part in line] for line in of]
+                )
                 for of in (
                     [row.slopes for row in block.rows],
                     [[pair[order - 1]] for pair in book.rates.sides[b]],
