@@ -79,6 +79,7 @@ _FUNCTIONS: dict[str, Any] = {
     "LOG10": math.log10, "ABS": abs, "PI": lambda: math.pi,
     "MIN": lambda *given: min(_numbers(*given)), "MAX": lambda *given: max(_numbers(*given)),
     "SUM": lambda *given: sum(_numbers(*given)),
+    "COUNT": lambda *given: sum(isinstance(e, int | float) for e in given),
     "SUMSQ": lambda *given: sum(x**2 for x in _numbers(*given)),
     "SUMXMY2": _difference_squares, "MINVERSE": _inverse,
     "MMULT": lambda a, b: np.matmul(_matrix(a), _matrix(b)),
@@ -200,7 +201,7 @@ class _Formula:
             case "IF" if not isinstance(given[0], CellError):
                 return given[1] if given[0] else given[2]
         for argument in given:
-            if isinstance(argument, CellError):
+            if isinstance(argument, CellError) and function != "COUNT":
                 return argument
         try:
             found = _FUNCTIONS[function](*given)

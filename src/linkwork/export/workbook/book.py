@@ -131,9 +131,18 @@ class Book:
     @cached_property
     def dimensions(self) -> list[Dimension]:
         """The dimensions with cells: those of the file, and points used by formulas."""
-        used = set(self._used())  # a sketch has many points that formulas do not use
         kept = ("dimensions", "lengths", "angles")
-        return [d for d in self.traced.dimensions if d.kind in kept or d.key in used]
+        # a sketch has many points that formulas do not use
+        return [d for d in self.traced.dimensions if d.kind in kept or d.key in self.used]
+
+    @cached_property
+    def used(self) -> set[str]:
+        """The keys of everything that a formula uses, derived dimensions included."""
+        found = set(self._used())
+        for dimension in reversed(self.traced.dimensions):
+            if dimension.key in found and dimension.formula is not None:
+                found |= {node.name for node in names_in(dimension.formula)}
+        return found
 
     def _used(self) -> Iterator[str]:
         closure = self.closure

@@ -148,7 +148,7 @@ class _Page:
             formula = CellFormula(dimension.formula, book.model.equations.angle)
             shown = book.text(formula)
             self.sheet.write_formula(row, 1, shown, book.style["derived"], dimension.value)
-        used = dimension.live and dimension.key not in book.traced.settled
+        used = dimension.live and dimension.key in book.used - set(book.traced.settled)
         computed = dimension.formula is not None and dimension.live
         self._watch(row, dimension.value, used=used, computed=computed)
 

@@ -37,8 +37,8 @@ class RateFormulas:
     """The right-hand sides of every block, and the rates of links, points and outputs.
 
     ``sides[block]`` has velocity and acceleration of every row with the rates of the block's own
-    unknowns at 0; ``of`` the rates of other quantities by key. Quantities without a formula for
-    their rates are missing.
+    unknowns at 0, and nothing without formulas; ``of`` the rates of other quantities by key, as
+    far as they have formulas.
     """
 
     closure: ClosureFormulas
@@ -53,8 +53,11 @@ class RateFormulas:
             self.closure.model.compiled.form.blocks, self.closure.blocks, strict=True
         ):
             own = {equations.unknowns[k].symbol for k in unknowns}
-            pairs = (pair for k in numbers for pair in self._side(k, own)) if block.rows else ()
-            self.sides.append(tuple(pairs))
+            try:
+                pairs = (pair for k in numbers for pair in self._side(k, own))
+                self.sides.append(tuple(pairs) if block.rows else ())
+            except NoFormula:
+                self.sides.append(())
         for name, angle in self.closure.traced.equations.links.items():
             if name in self.closure.links and angle.variable is not None:
                 symbol = canonical(angle.variable)

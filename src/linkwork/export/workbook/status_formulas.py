@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import groupby
 
+from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import FIRST, LINKWORK, Book, column_name
 from linkwork.export.workbook.cell_formula import cell_number
 from linkwork.export.workbook.cycle_columns import CycleColumns
@@ -13,6 +14,7 @@ from linkwork.foundation.certification import Certification
 __all__ = ["StatusFormulas", "statement"]
 
 _LONGEST = 200  # characters of names in a text of a formula, which takes 255
+_MOST_ARGUMENTS = 250  # of a function, which takes 255
 _NEAR = 1e-9  # of a full size: cells that differ less from Linkwork's contain its position
 _SAME_INPUT = 1e-12  # of the largest value: rounding of first value + step · k
 _PROVED = {
@@ -105,26 +107,46 @@ class StatusFormulas:
             largest = f"{column_name(self.columns.largest)}{row}"
             holds = f"AND({holds},{largest}<={cell_number(_NEAR)})"
         closes = f"{column_name(self.columns.closes)}{row}"
-        own = f'IF({closes}="yes",{self._converged},"no convergence from the row above")'
-        stale = 'IF(unused_changes>0,"not solved for the changed grey cell"'
+        own = f'IF({closes}="yes",{self._converged},{self._lost(row)})'
+        stale = 'IF(unused_changes>0,"not solved: a changed cell is not used"'
         return f"IF({holds},{said},{stale},{own}))"
+
+    @property
+    def _held(self) -> list[Variable]:
+        """The unknowns that cells do not solve for."""
+        unknowns = self.book.model.equations.unknowns
+        return [unknowns[k] for b in self.book.closure.blocks if b.reason for k in b.unknowns]
+
+    def _lost(self, row: int) -> str:
+        """What is said of a row that does not close after a change."""
+        text = '"no convergence from the row above"'
+        if not self._held:
+            return text
+        held = self._held[:_MOST_ARGUMENTS]
+        cells = ",".join(f"{column_name(self.columns.of[v.symbol])}{row}" for v in held)
+        stale = f'"{self._names} not recalculated for another input"'
+        return f"IF(COUNT({cells})={len(held)},{text},{stale})"
+
+    @property
+    def _names(self) -> str:
+        return " ".join(self.book.shown(v) for v in self._held)[:_LONGEST].replace('"', "'")
 
     @property
     def _converged(self) -> str:
         """What is said of a row that closes after a change."""
         book = self.book
-        unknowns = book.model.equations.unknowns
-        held = [k for block in book.closure.blocks if block.reason for k in block.unknowns]
         text = f'"{_NOT_PROVED}"'
-        if held:
-            names = " ".join(book.shown(unknowns[k]) for k in held)[:_LONGEST]
-            text = f'"converged, {names} as before (not proved)"'
+        if self._held:
+            text = f'"converged, {self._names} as before (not proved)"'
         for redundant, formula in book.closure.released:
-            variable = next(v for v in unknowns if v.name == redundant.variable)
+            variable = next(
+                v for v in book.model.equations.unknowns if v.name == redundant.variable
+            )
             given = formula.text(book.names.cells)
             near = cell_number(float(f"{_NEAR * book.model.equations.length_scale:.1e}"))
             fits = f"ABS({book.names.cells[variable.symbol]}-({given}))<={near}"
-            text = f'IF({fits},{text},"redundant link {redundant.link} does not fit")'
+            link = redundant.link[:_LONGEST].replace('"', "'")
+            text = f'IF({fits},{text},"redundant link {link} does not fit")'
         return text
 
 

@@ -48,9 +48,9 @@ def planned_velocities(book: Book) -> VelocityColumns:
     inputs = len(book.model.equations.inputs)
     columns = VelocityColumns(groups=[("Input", 1, inputs)], end=1 + inputs)
     for order, word in _WORDS.items():
-        for b, block in enumerate(book.closure.blocks):
+        for b, sides in enumerate(book.rates.sides):
             columns.side[b, order] = columns.end
-            _group(columns, f"Right sides of {word}", len(block.rows))
+            _group(columns, f"Right sides of {word}", len(sides))
         first = columns.end
         for key, shown, _ in _quantities(book):
             columns.of[rate_key(key, order)] = columns.end
@@ -140,10 +140,11 @@ class _Page:
     def _block(self, b: int, order: int) -> None:
         """The rates of a block's unknowns."""
         book, block = self.book, self.book.closure.blocks[b]
-        for r, row in enumerate(block.rows):
+        sides = book.rates.sides[b]
+        for r, (row, pair) in enumerate(zip(block.rows, sides, strict=False)):
             column = self.columns.side[b, order] + r
             book.head(self.sheet, column, row.name, "")
-            self._formulas(column, book.rates.sides[b][r][order - 1])
+            self._formulas(column, pair[order - 1])
         rates = self._solved(b, order)
         for c, k in enumerate(block.unknowns):
             variable = book.model.equations.unknowns[k]
@@ -151,7 +152,7 @@ class _Page:
             book.values[rate_key(variable.symbol, order)] = rates[:, c]
             for row in range(book.count):
                 formula = self._rate(b, order, c, row)
-                look = "number" if block.rows else "value"
+                look = "number" if sides else "value"
                 book.put(self.sheet, row, column, f"={formula}", look, rates[row, c])
 
     def _solved(self, b: int, order: int) -> AnyArray:
@@ -164,7 +165,7 @@ class _Page:
                 own = series.first if order == 1 else series.second
                 found[:, c] = own[book.iterations.rows] * book.speed**order
         live = book.iterations.live
-        if block.rows and live.any():
+        if book.rates.sides[b] and live.any():
             jacobian, sides = (
                 np.array(
                     [[book.over_rows(part.value(book.values)) for part in line] for line in of]
@@ -192,7 +193,7 @@ class _Page:
             own = (
                 f"{LINKWORK}!{column_name(source)}{int(done.rows[row]) + FIRST + 1}*{speed}{power}"
             )
-        if not block.rows:
+        if not book.rates.sides[b]:
             return f'IF(as_solved="yes",{own},NA())'
         side = self.columns.side[b, order]
         solved = correction(
