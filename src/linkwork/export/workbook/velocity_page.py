@@ -52,9 +52,9 @@ def planned_velocities(book: Book) -> VelocityColumns:
             columns.side[b, order] = columns.end
             _group(columns, f"Right sides of {word}", len(sides))
         first = columns.end
-        for key, shown, _ in _quantities(book):
+        for key, _, _ in _quantities(book):
             columns.of[rate_key(key, order)] = columns.end
-            book.names.claim(rate_key(key, order), f"{shown}.{word}")
+            book.names.claim(rate_key(key, order), f"{book.names.cells[key].rstrip('_')}.{word}")
             book.define(rate_key(key, order), VELOCITIES, f"${column_name(columns.end)}1")
             columns.end += 1
         title = {1: "Velocities", 2: "Accelerations"}[order]
