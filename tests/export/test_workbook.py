@@ -17,6 +17,7 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import InputError, MissingPackageError
+from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet, calculated
 from tests.thinned import thinned
 
@@ -49,14 +50,7 @@ def check_rows(sheet: Spreadsheet, motion: Any) -> None:
     ),
 )  # fmt: skip
 def test_cells_come_to_linkworks_positions(name: str, tmp_path: Path) -> None:
-    mechanism = lw.example(name)
-    inputs = [
-        lw.Input(
-            **{**vars(which), "step": (float(which.stop or 360) - float(which.start or 0)) / 10}
-        )
-        for which in mechanism.description.inputs
-    ]
-    mechanism = mechanism.changed(inputs=inputs)
+    mechanism = coarse(lw.example(name), 6)
     motion = mechanism.sweep(certify=False)
     check_rows(written(tmp_path, mechanism, motion), motion)
 

@@ -78,12 +78,12 @@ def test_a_row_out_of_reach_after_a_change_has_no_position(tmp_path: Path) -> No
 
 
 def test_a_row_that_comes_into_reach_after_a_change_has_a_position(tmp_path: Path) -> None:
-    sheet = written(tmp_path, lw.example("rapier-drive-limited"), step=30)
+    sheet = written(tmp_path, lw.example("rapier-drive-limited"), start=60, stop=180, step=30)
     out = "no position: this branch does not reach the input value (OUT_OF_REACH)"
     lost = statuses(sheet)[out]
     assert lost > 0
     sheet.set("a2_", 200)
-    assert statuses(sheet) == {"converged (not proved)": 13}
+    assert statuses(sheet) == {"converged (not proved)": 5}
     assert all(isinstance(x, float) for x in sheet.column("Cycle", "s16"))
 
 

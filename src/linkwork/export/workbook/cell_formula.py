@@ -105,7 +105,7 @@ def _begins_with_power(node: Node) -> bool:
 
 def cell_number(value: float) -> str:
     """A number in spreadsheet notation."""
-    shown = repr(value)
+    shown = repr(float(value))
     return (shown[:-2] if shown.endswith(".0") else shown).replace("e", "E")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
-from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.workbook.cell_formula import CellFormula, cell_number
 from linkwork.export.workbook.dimension_units import dimension_kinds
 from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.export.workbook.rate_formulas import rate_key
@@ -27,7 +27,7 @@ _HEADS = ("name", "value", "unit", "cell name", "by Linkwork", "", "note")
 _WIDTHS = 24, 18, 8, 22, 18, 17, 60
 _FLAG, _NOTE = 5, 6  # columns
 _CHANGED, _UNUSED = "changed", "changed, not used"
-_SAME = 1e-13  # relative: rounding of a computed cell
+_SAME = 1e-13  # relative, also to the longest link: rounding of a computed cell
 
 
 def input_table(values: Array) -> tuple[float, float] | None:
@@ -90,9 +90,11 @@ class _Page:
     def _watch(self, row: int, value: float, *, used: bool = True, computed: bool = False) -> None:
         """Write the value that Linkwork solved, and a mark if the cell differs from it."""
         cell, own = f"B{row + 1}", f"E{row + 1}"
-        same = f"ABS({cell}-{own})<={_SAME!r}*ABS({own})".replace("e-", "E-")
-        if not computed:
-            same = f"{cell}={own}"
+        same = f"{cell}={own}"
+        if computed:
+            size = self.book.model.equations.length_scale
+            near = cell_number(float(f"{_SAME * max(abs(value), size):.1e}"))
+            same = f"ABS({cell}-{own})<={near}"
         self.sheet.write_number(row, 4, value, self.book.style["solved"])
         mark = _CHANGED if used else _UNUSED
         formula = f'=IF(ISNUMBER({cell}),IF({same},"","{mark}"),"{mark}")'

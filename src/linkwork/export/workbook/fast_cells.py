@@ -28,7 +28,7 @@ class FastCells:
             return
         start = f'<c r="{column_name(column)}{row + 1}" s="{cell.format._get_xf_index()}"'
         if kind == "Number":
-            self.fh.write(f"{start}><v>{cell.number!r}</v></c>")
+            self.fh.write(f"{start}><v>{float(cell.number)!r}</v></c>")
             return
         value = cell.value
         if isinstance(value, str):
