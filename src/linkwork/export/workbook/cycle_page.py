@@ -28,7 +28,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["write_cycle"]
 
-_WIDTH, _STATUS = 13, 44
+_WIDTH, _STATUS = 13, 60
 
 
 def write_cycle(book: Book, sheet: Any, columns: CycleColumns, newton: NewtonColumns) -> None:
@@ -47,7 +47,8 @@ class _Page:
         """Write the headings, then column by column."""
         book, sheet = self.book, self.sheet
         self.status = StatusFormulas(book, self.columns)
-        widths = [6, *[_WIDTH] * self.columns.closes, _STATUS]
+        said = (statement(book, int(row)) for row in book.iterations.rows)
+        widths = [6, *[_WIDTH] * self.columns.closes, min(max(map(len, said), default=0), _STATUS)]
         repeated = 1 + len(book.model.equations.inputs)
         print_table(sheet, widths, repeated, book.last - 1)
         book.title(sheet, "positions")
@@ -152,7 +153,7 @@ class _Page:
         book.head(self.sheet, columns.as_solved, "as solved", "by Linkwork")
         book.head(self.sheet, columns.largest, "difference", "relative")
         book.head(self.sheet, columns.closes, "closes", "")
-        self.sheet.write(FIRST - 2, columns.status, "status", book.style["head_left"])
+        self.sheet.write(FIRST - 2, columns.status, "status", book.style["head_indented"])
         self.sheet.write(FIRST - 1, columns.status, "", book.style["unit"])
         status = self.status
         for k, found in enumerate(book.iterations.found.tolist()):
@@ -160,7 +161,7 @@ class _Page:
             said = statement(book, int(book.iterations.rows[k]))
             for column, formula, value, look in (
                 (columns.as_solved, status.as_solved(k), "yes", "right"),
-                (columns.largest, status.difference(k), 0.0 if found else "-", "small"),
+                (columns.largest, status.difference(k), 0.0 if found else "-", "relative"),
                 (columns.closes, status.closes(k), closes, "right"),
                 (columns.status, status.status(k), said, "status"),
             ):
@@ -174,7 +175,7 @@ class _Page:
         last = book.last - 1
         no = {"type": "cell", "criteria": "==", "value": '"NO"', "format": book.style["wrong"]}
         self.sheet.conditional_format(FIRST, columns.closes, last, columns.closes, no)
-        for text, look in (("proved for", "good"), ("not proved", "doubtful"), ("no ", "wrong")):
+        for text, look in (("proved for", "good"), ("not proved", "doubtful"), ("no ", "lost")):
             rule = {
                 "type": "text", "criteria": "begins with" if look != "doubtful" else "containing",
                 "value": text, "format": book.style[look],

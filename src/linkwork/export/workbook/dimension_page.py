@@ -25,6 +25,7 @@ _TOP = 4  # rows above the sections
 _EVEN = 1e-12  # of the largest value: rounding of an evenly spaced table
 _HEADS = ("name", "value", "unit", "cell name", "by Linkwork", "", "note")
 _WIDTHS = 24, 18, 8, 22, 18, 17, 60
+_HEAD_LOOKS = {"value": "head", "by Linkwork": "head", "unit": "head_indented"}
 _FLAG, _NOTE = 5, 6  # columns
 _CHANGED, _UNUSED = "changed", "changed, not used"
 _SAME = 1e-13  # relative, also to the longest link: rounding of a computed cell
@@ -107,7 +108,7 @@ class _Page:
         self.sheet.write(self.row, 0, title, self.book.style["heading"])
         self.row += 1
         for column, head in enumerate(_HEADS):
-            look = "head" if head == "value" else "head_left"
+            look = _HEAD_LOOKS.get(head, "head_left")
             self.sheet.write(self.row, column, head, self.book.style[look])
         self.row += 1
 
