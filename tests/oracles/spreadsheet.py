@@ -56,7 +56,7 @@ def _matrix(area: Any) -> Any:
 def _difference_squares(a: Any, b: Any) -> float:
     pairs = zip(a.flat, b.flat, strict=True)
     numbers = [pair for pair in pairs if len(_numbers(*pair)) == 2]
-    return sum((x - y) ** 2 for x, y in numbers)
+    return float(sum((x - y) ** 2 for x, y in numbers))
 
 
 def _count_if(area: Any, wanted: str) -> int:

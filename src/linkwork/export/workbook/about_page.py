@@ -53,7 +53,8 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
         "How to use it",
         (
             "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve "
-            "all rows of Cycle again. Drawing shows the row whose number you enter there."
+            "all rows of Cycle again, and Velocities follows. Drawing shows the row whose number "
+            "you enter there."
         ),
     )
     if description.source:
@@ -70,9 +71,14 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     )
     yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
     statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
-    yield "Status of all rows", statuses
     proved = sum(c is Certification.CERTIFIED for c in book.motion.certification)
-    yield "Proved by Linkwork", f"{proved} of {len(book.motion)} rows"
+    yield (
+        "By Linkwork",
+        (
+            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and inputs "
+            "of the file. The lines below and the statuses of the sheet Cycle follow the cells."
+        ),
+    )
     yield "Iterations in every row", str(book.iterations.count)
 
 
@@ -94,7 +100,7 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
     lines.append(("Rows with a position", closing, found, "result_count"))
     proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
     certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
-    lines.append(("Rows with a proof", proved, certified, "result_count"))
+    lines.append(("Rows still proved", proved, certified, "result_count"))
     lines.append(("Changed cells", "=changes", 0, "result_count"))
     for head, formula, value, look in lines:
         sheet.write(row, 0, head, style["head_left"])

@@ -28,7 +28,7 @@ _WIDTHS = 24, 18, 8, 22, 18, 17, 60
 _HEAD_LOOKS = {"value": "head", "by Linkwork": "head", "unit": "head_indented"}
 _FLAG, _NOTE = 5, 6  # columns
 _CHANGED, _UNUSED = "changed", "changed, not used"
-_SAME = 1e-13  # relative, also to the longest link: rounding of a computed cell
+_ROUNDED = 1e-13  # relative, also to the longest link: rounding of a computed cell
 
 
 def input_table(values: Array) -> tuple[float, float] | None:
@@ -94,7 +94,7 @@ class _Page:
         same = f"{cell}={own}"
         if computed:
             size = self.book.model.equations.length_scale
-            near = cell_number(float(f"{_SAME * max(abs(value), size):.1e}"))
+            near = cell_number(float(f"{_ROUNDED * max(abs(value), size):.1e}"))
             same = f"ABS({cell}-{own})<={near}"
         self.sheet.write_number(row, 4, value, self.book.style["solved"])
         mark = _CHANGED if used else _UNUSED

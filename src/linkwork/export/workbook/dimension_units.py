@@ -13,7 +13,8 @@ from linkwork.results.quantity import Kind
 __all__ = ["dimension_kinds"]
 
 _OF_ANGLE = ("sin", "cos", "tan", "radians", "degrees")
-_SAME = ("abs", "min", "max", "hypot")
+_KINDS = {"lengths": Kind.LENGTH, "angles": Kind.ANGLE, "points": Kind.LENGTH}  # of tables
+_ALIKE = ("abs", "min", "max", "hypot")
 
 
 def dimension_kinds(traced: TracedEquations) -> dict[str, Kind]:
@@ -33,18 +34,17 @@ def dimension_kinds(traced: TracedEquations) -> dict[str, Kind]:
     for angle in equations.links.values():
         found.read(forms_of(angle.constant)[0].node, Kind.ANGLE)
     for dimension in traced.dimensions:
-        # the file's other tables have units
-        kind = {"lengths": Kind.LENGTH, "angles": Kind.ANGLE, "points": Kind.LENGTH}.get(
-            dimension.kind
-        )
-        if kind is not None and dimension.formula is not None:
-            found.read(dimension.formula, kind)
+        if dimension.kind in _KINDS and dimension.formula is not None:
+            found.read(dimension.formula, _KINDS[dimension.kind])
     for _ in traced.dimensions:  # a chain of derived dimensions is as long as their number
         known = len(found.of)
         for dimension in traced.dimensions:
-            kind = found.of.get(dimension.key)
-            if kind is not None and dimension.formula is not None:
-                found.read(dimension.formula, kind)
+            if dimension.formula is None:
+                continue
+            own = found.of.get(dimension.key) or found.kind_of(dimension.formula)
+            if own is not None:
+                found.read(Name(dimension.key), own)
+                found.read(dimension.formula, own)
         if len(found.of) == known:
             break
     return {key: kind for key, kind in found.of.items() if kind is not None}
@@ -83,11 +83,27 @@ class _Kinds:
                 self._product(node, kind)
             case Call() if node.function in _OF_ANGLE:
                 self.read(node.arguments[0], Kind.ANGLE)
-            case Call() if node.function in _SAME:
+            case Call() if node.function in _ALIKE:
                 for argument in node.arguments:
                     self.read(argument, kind)
             case Binary() | Call() | Number():
                 return
+
+    def kind_of(self, node: Node) -> Kind | None:
+        """The kind of a formula of dimensions whose kinds are known."""
+        match node:
+            case Name():
+                return self.of.get(node.name)
+            case Negative():
+                return self.kind_of(node.operand)
+            case Binary("+" | "-"):
+                return self.kind_of(node.left) or self.kind_of(node.right)
+            case Binary("*" | "/") if _is_plain(node.right):
+                return self.kind_of(node.left)
+            case Binary("*") if _is_plain(node.left):
+                return self.kind_of(node.right)
+            case _:
+                return None
 
     def _product(self, node: Binary, kind: Kind) -> None:
         """A product: its only factor with a dimension has its kind."""

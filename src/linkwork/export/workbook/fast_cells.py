@@ -12,7 +12,7 @@ __all__ = ["FastCells"]
 class FastCells:
     """Overrides two methods of XlsxWriter's ``Worksheet``; without them files are the same."""
 
-    def _prepare_formula(self, formula: str, expand_future_functions: bool = False) -> str:
+    def _prepare_formula(self, formula: str, *_: bool) -> str:
         """The formula without equals sign.
 
         XlsxWriter marks functions newer than the file format, by thirty regular expressions for

@@ -15,7 +15,7 @@ __all__ = ["StatusFormulas", "statement"]
 
 _LONGEST = 200  # characters of names in a text of a formula, which takes 255
 _MOST_ARGUMENTS = 250  # of a function, which takes 255
-_NEAR = 1e-9  # of a full size: cells that differ less from Linkwork's contain its position
+_CELL_AGREES = 1e-9  # of a full size: cells that differ less from Linkwork's contain its position
 _SAME_INPUT = 1e-12  # of the largest value: rounding of first value + step · k
 _PROVED = {
     Certification.CERTIFIED: "proved for {}",
@@ -105,7 +105,7 @@ class StatusFormulas:
         holds = 'as_solved="yes"'
         if self.book.iterations.found[k]:
             largest = f"{column_name(self.columns.largest)}{row}"
-            holds = f"AND({holds},{largest}<={cell_number(_NEAR)})"
+            holds = f"AND({holds},{largest}<={cell_number(_CELL_AGREES)})"
         closes = f"{column_name(self.columns.closes)}{row}"
         own = f'IF({closes}="yes",{self._converged},{self._lost(row)})'
         stale = 'IF(unused_changes>0,"not solved: a changed cell is not used"'
@@ -143,7 +143,7 @@ class StatusFormulas:
                 v for v in book.model.equations.unknowns if v.name == redundant.variable
             )
             given = formula.text(book.names.cells)
-            near = cell_number(float(f"{_NEAR * book.model.equations.length_scale:.1e}"))
+            near = cell_number(float(f"{_CELL_AGREES * book.model.equations.length_scale:.1e}"))
             fits = f"ABS({book.names.cells[variable.symbol]}-({given}))<={near}"
             link = redundant.link[:_LONGEST].replace('"', "'")
             text = f'IF({fits},{text},"redundant link {link} does not fit")'

@@ -141,19 +141,18 @@ class _Page:
         """The rates of a block's unknowns."""
         book, block = self.book, self.book.closure.blocks[b]
         sides = book.rates.sides[b]
-        for r, (row, pair) in enumerate(zip(block.rows, sides, strict=False)):
+        for r, pair in enumerate(sides):
             column = self.columns.side[b, order] + r
-            book.head(self.sheet, column, row.name, "")
+            book.head(self.sheet, column, block.rows[r].name, "")
             self._formulas(column, pair[order - 1])
         rates = self._solved(b, order)
         for c, k in enumerate(block.unknowns):
             variable = book.model.equations.unknowns[k]
             column = self._head(variable.symbol, book.shown(variable), Kind(variable.kind), order)
             book.values[rate_key(variable.symbol, order)] = rates[:, c]
-            for row in range(book.count):
-                formula = self._rate(b, order, c, row)
-                look = "number" if sides else "value"
-                book.put(self.sheet, row, column, f"={formula}", look, rates[row, c])
+            for row, value in enumerate(rates[:, c].tolist()):
+                formula = f"={self._rate(b, order, c, row)}"
+                book.put(self.sheet, row, column, formula, "number" if sides else "value", value)
 
     def _solved(self, b: int, order: int) -> AnyArray:
         """The values of a block's rates, (R, n); those of Linkwork where cells do not solve."""
