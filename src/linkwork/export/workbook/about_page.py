@@ -75,8 +75,8 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     yield (
         "By Linkwork",
         (
-            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and inputs "
-            "of the file. The lines below and the statuses of the sheet Cycle follow the cells."
+            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and "
+            "inputs of the file. The lines below and the statuses of Cycle follow the cells."
         ),
     )
     yield "Iterations in every row", str(book.iterations.count)

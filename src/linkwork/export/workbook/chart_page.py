@@ -76,6 +76,7 @@ def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[
     heading = f"{title.capitalize()} over {book.shown(leading)}"
     chart.set_title({"name": heading, "name_font": {"size": 13}})
     chart.set_legend({"position": "right"})
+    chart.show_na_as_empty_cell()  # a gap where there is no position, not a line across
     chart.set_size({"width": _WIDTH, "height": _HEIGHT})
     return chart
 

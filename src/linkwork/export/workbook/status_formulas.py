@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 
 from linkwork.equations.model import Variable
@@ -67,7 +68,7 @@ class StatusFormulas:
         distance = f"SQRT({'+'.join(found)})" if found else "0"
         return f'IF(as_solved="yes",IFERROR({distance},"-"),"-")'
 
-    @property
+    @cached_property
     def _runs(self) -> list[tuple[float, int, int, int]]:
         """Neighbouring columns of one size: size, first column, Linkwork's first column, count."""
         book = self.book
@@ -111,7 +112,7 @@ class StatusFormulas:
         stale = 'IF(unused_changes>0,"not solved: a changed cell is not used"'
         return f"IF({holds},{said},{stale},{own}))"
 
-    @property
+    @cached_property
     def _held(self) -> list[Variable]:
         """The unknowns that cells do not solve for."""
         unknowns = self.book.model.equations.unknowns
@@ -127,11 +128,11 @@ class StatusFormulas:
         stale = f'"{self._names} not recalculated for another input"'
         return f"IF(COUNT({cells})={len(held)},{text},{stale})"
 
-    @property
+    @cached_property
     def _names(self) -> str:
         return " ".join(self.book.shown(v) for v in self._held)[:_LONGEST].replace('"', "'")
 
-    @property
+    @cached_property
     def _converged(self) -> str:
         """What is said of a row that closes after a change."""
         book = self.book
