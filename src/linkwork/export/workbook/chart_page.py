@@ -9,7 +9,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["write_charts"]
 
-_WIDTH, _HEIGHT, _ROWS = 860, 400, 21
+_WIDTH, _HEIGHT, _ROWS = 1100, 400, 21
 _PRINTED = 72  # percent: two charts on a page
 
 
