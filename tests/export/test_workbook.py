@@ -172,6 +172,11 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
         )  # fmt: skip
         assert isinstance(shown, float) == there
     first = int(np.flatnonzero(~found)[-1]) + 1
+    told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    assert told[:2] == (
+        f"rows without a position, with Linkwork's reason in their status: {int((~found).sum())}",
+        "rows that start from estimates of their own, yellow cells of Newton: 1",
+    )
     assert isinstance(sheet.book["Newton"].cell(7 + first, 2).value, float)
     assert str(sheet.book["Newton"].cell(8 + first, 2).value).startswith("=")
     own = motion["s16"][motion.asked]

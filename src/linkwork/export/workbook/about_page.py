@@ -35,7 +35,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
         row += 1
     row = _checks(book, sheet, columns, row + 1)
     told = list(notices(book))
-    row = _listed(book, sheet, row + 1, "Does not recalculate", told, "warning")
+    row = _listed(book, sheet, row + 1, "To note", told, "warning")
     limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
     row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
     row += 1
@@ -126,7 +126,7 @@ def _wrapped(sheet: Any, row: int, text: str, look: Any) -> None:
 
 
 def notices(book: Book) -> Iterator[str]:
-    """The parts that do not follow the yellow cells, with reasons."""
+    """The parts that do not follow the yellow cells, with reasons, and special rows."""
     unknowns = book.model.equations.unknowns
     for block in book.closure.blocks:
         if block.reason:
@@ -149,11 +149,15 @@ def notices(book: Book) -> Iterator[str]:
     if held:
         yield (
             f"{held} rows: Newton-Raphson does not converge there, as at a change point; they "
-            "contain Linkwork's values"
+            "contain Linkwork's values until something changes"
         )
     lost = book.count - int(book.iterations.found.sum())
     if lost:
-        yield f"{lost} rows: there is no position; the last column has Linkwork's reason"
+        yield f"rows without a position, with Linkwork's reason in their status: {lost}"
+    done = book.iterations
+    apart = int((done.live & (done.above < 0)).sum()) - 1
+    if apart > 0:
+        yield f"rows that start from estimates of their own, yellow cells of Newton: {apart}"
     added = int(np.count_nonzero(book.motion.added))
     if added:
         yield (

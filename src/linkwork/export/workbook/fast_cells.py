@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from linkwork.export.workbook.book import NO_VALUE, column_name
 
 __all__ = ["FastCells"]
 
+_OFTEN = 100  # rows between two calls of the progress function
+
 
 class FastCells:
-    """Overrides two methods of XlsxWriter's ``Worksheet``; without them files are the same."""
+    """Overrides methods of XlsxWriter's ``Worksheet``; without them files are the same."""
+
+    _told: Callable[[float], None] | None = None
+    _from, _per_row = 0.0, 0.0
+
+    def follow(self, progress: Callable[[float], None], start: float, per_row: float) -> None:
+        """Call ``progress`` with ``start`` + ``per_row`` · row while the sheet is written."""
+        self._told, self._from, self._per_row = progress, start, per_row
 
     def _prepare_formula(self, formula: str, *_: bool) -> str:
         """The formula without equals sign.
@@ -22,6 +32,8 @@ class FastCells:
 
     def _write_cell(self: Any, row: int, column: int, cell: Any) -> None:
         """Write the element of a formula or number; other cells by XlsxWriter."""
+        if column == 0 and row % _OFTEN == 0 and self._told is not None:
+            self._told(self._from + self._per_row * row)
         kind = type(cell).__name__
         if cell.format is None or kind not in ("Formula", "Number"):
             super()._write_cell(row, column, cell)  # type: ignore[misc]

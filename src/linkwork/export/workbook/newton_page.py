@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -75,7 +76,13 @@ def planned_newton(book: Book) -> NewtonColumns:
     return found
 
 
-def write_newton(book: Book, sheet: Any, columns: NewtonColumns, cycle: dict[str, int]) -> None:
+def write_newton(
+    book: Book,
+    sheet: Any,
+    columns: NewtonColumns,
+    cycle: dict[str, int],
+    progress: Callable[[float], None],
+) -> None:
     """Write all iterations of all rows; ``cycle`` numbers the columns of the positions."""
     widths = [6, *[11] * (columns.end + 1)]
     print_table(sheet, widths, 1, min(book.last, FIRST + PRINTED) - 1)
@@ -88,9 +95,11 @@ def write_newton(book: Book, sheet: Any, columns: NewtonColumns, cycle: dict[str
         "is in radians.", book.style["note"],
     )  # fmt: skip
     book.row_numbers(sheet)
+    count = len(book.closure.blocks)
     for b, block in enumerate(book.closure.blocks):
         if block.rows:
-            _Block(book, sheet, columns, b, block, cycle).write()
+            for done in _Block(book, sheet, columns, b, block, cycle).write():
+                progress((b + done) / count)
     _write_verdicts(book, sheet, columns)
     sheet.freeze_panes(FIRST, 1)
 
@@ -133,11 +142,12 @@ class _Block:
     block: BlockFormulas
     cycle: dict[str, int]
 
-    def write(self) -> None:
-        """Write the start, then the iterations from left to right."""
+    def write(self) -> Iterator[float]:
+        """Write the start, then the iterations from left to right; yields the finished part."""
         self._start()
         for k in range(self.book.iterations.count):
             self._iteration(k)
+            yield (k + 1) / self.book.iterations.count
 
     @property
     def _variables(self) -> list[Variable]:

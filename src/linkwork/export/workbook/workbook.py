@@ -98,6 +98,10 @@ def workbook_of(
         names.remove(DRAWING)
     sheets = {name: workbook.add_worksheet(name, sheet_class) for name in names}
     _write_sheets(book, sheets, version, progress)
+    large = [sheets[name] for name in (CYCLE, VELOCITIES, NEWTON, LINKWORK)]
+    for k, sheet in enumerate(large):
+        span = (1.0 - _SHEETS) / len(large)
+        sheet.follow(progress, _SHEETS + k * span, span / book.last)
     for name, sheet in sheets.items():
         set_up_page(sheet, name, description.name)
     workbook.close()
@@ -109,15 +113,15 @@ def _write_sheets(
 ) -> None:
     """Write all sheets, those that others refer to first."""
     write_dimensions(book, sheets[DIMENSIONS])
-    newton, columns, velocities = (
-        planned_newton(book),
-        planned_cycle(book),
-        planned_velocities(book),
-    )
+    newton, columns = planned_newton(book), planned_cycle(book)
+    velocities = planned_velocities(book)
+    _check_size(book.count, newton.end + columns.status + velocities.end)
     write_cycle(book, sheets[CYCLE], columns, newton)
     progress(_CYCLE)
-    write_newton(book, sheets[NEWTON], newton, columns.of)
-    progress(_NEWTON)
+    span = _NEWTON - _CYCLE
+    write_newton(
+        book, sheets[NEWTON], newton, columns.of, lambda part: progress(_CYCLE + span * part)
+    )
     write_velocities(book, sheets[VELOCITIES], velocities, newton)
     if DRAWING in sheets:
         write_drawing(book, sheets[DRAWING], columns.of)
@@ -139,6 +143,14 @@ def _new(buffer: io.BytesIO) -> tuple[Any, type]:
 
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     return xlsxwriter.Workbook(buffer, options), type("Sheet", (FastCells, Worksheet), {})
+
+
+def _check_size(rows: int, columns: int) -> None:
+    if rows * columns > _MOST_CELLS:
+        raise InputError(
+            f"{rows} rows of {columns} columns are too many cells for a workbook with formulas (at "
+            f"most {_MOST_CELLS}): take a larger step, or write CSV"
+        )
 
 
 def _check(model: Model, motion: Motion) -> None:
