@@ -24,6 +24,7 @@ from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
+from tests.campaigns.workbooks import workbook_campaign
 
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
@@ -105,6 +106,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "families": (family_campaign, 1_000_000),
     "study": (study_campaign, 1_000_000),
+    "workbooks": (workbook_campaign, 100),
 }
 
 

@@ -17,7 +17,7 @@ def test_sweep_writes_a_workbook(run: Run) -> None:
     )
     book = openpyxl.load_workbook("bar.xlsx")
     assert book.sheetnames == [
-        "About", "Dimensions", "Cycle", "Drawing", "Charts", "Newton", "Linkwork",
+        "About", "Dimensions", "Cycle", "Velocities", "Drawing", "Charts", "Newton", "Linkwork",
     ]  # fmt: skip
     assert book["Cycle"].freeze_panes == "C7"
 

@@ -17,6 +17,7 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import InputError, MissingPackageError
+from tests.export.coarse import coarse
 from tests.oracles.spreadsheet import Spreadsheet, calculated
 from tests.thinned import thinned
 
@@ -49,14 +50,7 @@ def check_rows(sheet: Spreadsheet, motion: Any) -> None:
     ),
 )  # fmt: skip
 def test_cells_come_to_linkworks_positions(name: str, tmp_path: Path) -> None:
-    mechanism = lw.example(name)
-    inputs = [
-        lw.Input(
-            **{**vars(which), "step": (float(which.stop or 360) - float(which.start or 0)) / 10}
-        )
-        for which in mechanism.description.inputs
-    ]
-    mechanism = mechanism.changed(inputs=inputs)
+    mechanism = coarse(lw.example(name), 6)
     motion = mechanism.sweep(certify=False)
     check_rows(written(tmp_path, mechanism, motion), motion)
 
@@ -168,16 +162,25 @@ def test_rows_beyond_a_dead_point_say_so_and_the_next_starts_anew(tmp_path: Path
     motion = mechanism.sweep(step=12, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     found = motion.found[motion.asked]
-    said = sheet.column("Cycle", "Linkwork's status")
+    said = sheet.column("Cycle", "status")
     values = sheet.column("Cycle", "s16")
     assert 0 < found.sum() < len(found)
     for there, text, shown in zip(found, said, values, strict=True):
-        assert text.startswith("found") == there
-        assert (shown is not None) == there
+        assert text == (
+            "converged (proofs were switched off)" if there
+            else "no position: this branch does not reach the input value (OUT_OF_REACH)"
+        )  # fmt: skip
+        assert isinstance(shown, float) == there
     first = int(np.flatnonzero(~found)[-1]) + 1
-    assert said[first] == "found, not asked; starts from a separate estimate"
+    told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    assert told[:2] == (
+        f"rows without a position, with Linkwork's reason in their status: {int((~found).sum())}",
+        "rows that start from estimates of their own, yellow cells of Newton: 1",
+    )
+    assert isinstance(sheet.book["Newton"].cell(7 + first, 2).value, float)
+    assert str(sheet.book["Newton"].cell(8 + first, 2).value).startswith("=")
     own = motion["s16"][motion.asked]
-    near = [abs(v - o) for v, o in zip(values, own, strict=True) if v is not None]
+    near = [abs(v - o) for v, o, there in zip(values, own, found, strict=True) if there]
     assert max(near) < _NEAR
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ _TOKEN = re.compile(
     r"|(?P<cell>(?:[A-Za-z]+!)?\$?[A-Z]{1,3}\$?\d+(?::\$?[A-Z]{1,3}\$?\d+)?(?![\w.(]))"
     r"|(?P<name>[^\W\d][\w.]*)|(?P<sign><=|>=|<>|[-+*/^(){};,<>=]))"
 )
+sys.setrecursionlimit(20_000)  # a formula asks for those that it uses
 _CELL = re.compile(r"(\$?)([A-Z]+)(\$?)(\d+)")
 
 
@@ -30,16 +32,60 @@ def _parts(cell: str) -> tuple[str, str, str, str]:
     return found[1], found[2], found[3], found[4]
 
 
+class CellError(Exception):
+    """An error value such as #N/A; it spreads to the formulas that use it."""
+
+
+def _numbers(*given: Any) -> list[float]:
+    """The numbers among arguments; texts and empty cells of areas do not count."""
+    found = []
+    for one in given:
+        for entry in one.flat if isinstance(one, np.ndarray) else [one]:
+            if isinstance(entry, CellError):
+                raise entry
+            if isinstance(entry, int | float):
+                found.append(float(entry))
+    return found
+
+
+def _matrix(area: Any) -> Any:
+    _numbers(area)
+    return np.array([[0.0 if e is None else e for e in row] for row in area], dtype=float)
+
+
+def _difference_squares(a: Any, b: Any) -> float:
+    pairs = zip(a.flat, b.flat, strict=True)
+    numbers = [pair for pair in pairs if len(_numbers(*pair)) == 2]
+    return float(sum((x - y) ** 2 for x, y in numbers))
+
+
+def _count_if(area: Any, wanted: str) -> int:
+    begin, star, _ = wanted.partition("*")
+    texts = [e for e in area.flat if isinstance(e, str)]
+    return sum(t.startswith(begin) if star else t == wanted for t in texts)
+
+
+def _inverse(area: Any) -> Any:
+    try:
+        return np.linalg.inv(_matrix(area))
+    except np.linalg.LinAlgError:
+        raise CellError("#NUM!") from None
+
+
 _FUNCTIONS: dict[str, Any] = {
     "COS": math.cos, "SIN": math.sin, "TAN": math.tan, "ASIN": math.asin, "ACOS": math.acos,
     "ATAN": math.atan, "ATAN2": lambda x, y: math.atan2(y, x), "RADIANS": math.radians,
     "DEGREES": math.degrees, "SQRT": math.sqrt, "EXP": math.exp, "LN": math.log,
-    "LOG10": math.log10, "ABS": abs, "PI": lambda: math.pi, "MIN": min, "MAX": max,
-    "SUMSQ": lambda area: float((area**2).sum()), "MINVERSE": np.linalg.inv, "MMULT": np.matmul,
-    "SUMPRODUCT": lambda a, b: float((a * b).sum()),
-    "ISNUMBER": lambda x: isinstance(x, int | float),
-    "INDEX": lambda area, n: float(area.flat[int(n) - 1]), "NA": lambda: math.nan,
-    "IF": lambda condition, yes, no: yes if condition else no,
+    "LOG10": math.log10, "ABS": abs, "PI": lambda: math.pi,
+    "MIN": lambda *given: min(_numbers(*given)), "MAX": lambda *given: max(_numbers(*given)),
+    "SUM": lambda *given: sum(_numbers(*given)),
+    "COUNT": lambda *given: sum(isinstance(e, int | float) for e in given),
+    "SUMSQ": lambda *given: sum(x**2 for x in _numbers(*given)),
+    "SUMXMY2": _difference_squares, "MINVERSE": _inverse,
+    "MMULT": lambda a, b: np.matmul(_matrix(a), _matrix(b)),
+    "SUMPRODUCT": lambda a, b: float((_matrix(a) * _matrix(b)).sum()),
+    "INDEX": lambda area, n: area.flat[int(n) - 1], "AND": lambda *given: all(given),
+    "COUNTIF": _count_if,
 }  # fmt: skip
 _LEVELS = [("<", ">", "=", "<=", ">=", "<>"), ("+", "-"), ("*", "/"), ("^",)]
 
@@ -117,7 +163,8 @@ class _Formula:
 
     def signed(self) -> Any:
         if self.take("-"):
-            return -self.signed()
+            found = self.signed()
+            return found if isinstance(found, CellError) else -found
         return self.signed() if self.take("+") else self.atom()
 
     def atom(self) -> Any:
@@ -140,8 +187,29 @@ class _Formula:
             while not self.take(")"):
                 given.append(self.level(0))
                 self.take(",")
-            return _FUNCTIONS[text](*given)
+            return self.call(text, given)
         return self.named(text)
+
+    def call(self, function: str, given: list[Any]) -> Any:
+        match function:
+            case "NA":
+                return CellError("#N/A")
+            case "ISNUMBER":
+                return isinstance(given[0], int | float)
+            case "IFERROR":
+                return given[1] if isinstance(given[0], CellError) else given[0]
+            case "IF" if not isinstance(given[0], CellError):
+                return given[1] if given[0] else given[2]
+        for argument in given:
+            if isinstance(argument, CellError) and function != "COUNT":
+                return argument
+        try:
+            found = _FUNCTIONS[function](*given)
+        except CellError as error:
+            return error
+        except (ValueError, OverflowError, ZeroDivisionError):
+            return CellError("#NUM!")
+        return found
 
     def array(self) -> Any:
         rows: list[list[float]] = [[]]
@@ -167,28 +235,46 @@ class _Formula:
             return self.book[sheet, first]
         (_, left, _, top), (_, right, _, bottom) = (_parts(corner) for corner in (first, last))
         columns = range(column_index_from_string(left), column_index_from_string(right) + 1)
-        return np.array(
-            [
-                [self.book[sheet, f"{get_column_letter(column)}{row}"] for column in columns]
-                for row in range(int(top), int(bottom) + 1)
-            ],
-            dtype=float,
-        )
+        rows = [
+            [self.book[sheet, f"{get_column_letter(column)}{row}"] for column in columns]
+            for row in range(int(top), int(bottom) + 1)
+        ]
+        return np.array(rows, dtype=object)
 
 
 def _combined(sign: str, left: Any, right: Any) -> Any:
-    match sign:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right
-        case "^":
-            return left**right
-        case "<":
-            return left < right
-        case _:
-            raise NotImplementedError(sign)
+    for side in (left, right):
+        if isinstance(side, CellError):
+            return side
+    left, right = (0.0 if side is None else side for side in (left, right))
+    if sign in ("<", "<=", ">", ">=", "=", "<>"):
+        return _compared(sign, left, right)
+    if isinstance(left, str) or isinstance(right, str):
+        return CellError("#VALUE!")
+    left, right = (_matrix(s) if isinstance(s, np.ndarray) else s for s in (left, right))
+    try:
+        match sign:
+            case "+":
+                return left + right
+            case "-":
+                return left - right
+            case "*":
+                return left * right
+            case "/":
+                return left / right
+            case _:
+                return left**right
+    except (ZeroDivisionError, OverflowError):
+        return CellError("#DIV/0!")
+
+
+def _compared(sign: str, left: Any, right: Any) -> bool:
+    """Texts are larger than all numbers, and equal without regard to capitals."""
+    mine, other = (
+        (isinstance(side, str), side.casefold() if isinstance(side, str) else side)
+        for side in (left, right)
+    )
+    return {
+        "<": mine < other, "<=": mine <= other, ">": mine > other, ">=": mine >= other,
+        "=": mine == other, "<>": mine != other,
+    }[sign]  # fmt: skip

@@ -186,7 +186,8 @@ def _written_workbook(
     mechanism: Mechanism, motion: Motion, columns: list[str], path: str
 ) -> list[str]:
     """Write the workbook; returns lines about it and its values that do not recalculate."""
-    found = workbook_of(mechanism.model, motion, columns)
+    with progress("writing the workbook") as tell:
+        found = workbook_of(mechanism.model, motion, columns, tell)
     write_bytes(path, [found.content])
     rows = int(motion.asked.sum())
     said = [f"Wrote {path}: {rows} rows with formulas; edit a yellow cell to solve them again."]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 
-__all__ = ["derivative"]
+__all__ = ["derivative", "product_of", "sum_of"]
 
 _ZERO, _ONE = Number(0.0), Number(1.0)
 
@@ -29,16 +29,16 @@ def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
                 derivative(node.left, name, radians),
                 derivative(node.right, name, radians),
             )
-            return _sum(left, right) if node.operator == "+" else _sum(left, _negative(right))
+            return sum_of(left, right) if node.operator == "+" else sum_of(left, _negative(right))
         case Binary("*"):
-            return _sum(
-                _product(derivative(node.left, name, radians), node.right),
-                _product(node.left, derivative(node.right, name, radians)),
+            return sum_of(
+                product_of(derivative(node.left, name, radians), node.right),
+                product_of(node.left, derivative(node.right, name, radians)),
             )
         case Binary("/"):
-            top = _sum(
-                _product(derivative(node.left, name, radians), node.right),
-                _negative(_product(node.left, derivative(node.right, name, radians))),
+            top = sum_of(
+                product_of(derivative(node.left, name, radians), node.right),
+                _negative(product_of(node.left, derivative(node.right, name, radians))),
             )
             return Binary("/", top, Binary("^", node.right, Number(2.0)))
         case Binary():
@@ -61,12 +61,12 @@ def _power(node: Binary, name: str, radians: float) -> Node:
             reduced = base if lower == _ONE else Binary("^", base, lower)
         else:
             reduced = Binary("^", base, Binary("-", exponent, _ONE))
-        return _product(_product(exponent, reduced), derivative(base, name, radians))
+        return product_of(product_of(exponent, reduced), derivative(base, name, radians))
     # u^v = exp(v ln u)
-    inner = _product(exponent, Call("ln", (base,)))
+    inner = product_of(exponent, Call("ln", (base,)))
     if base == Name("e"):
         inner = exponent
-    return _product(node, derivative(inner, name, radians))
+    return product_of(node, derivative(inner, name, radians))
 
 
 def _chain(node: Call, name: str, radians: float) -> Node:
@@ -88,25 +88,25 @@ def _chain(node: Call, name: str, radians: float) -> Node:
     inner = derivative(x, name, radians)
     # the derivative of sin(k x) has the factor k = radians per unit
     if node.function in ("sin", "cos", "tan") and radians != 1.0:
-        inner = _product(Number(radians), inner)
+        inner = product_of(Number(radians), inner)
     if node.function in ("asin", "acos", "atan") and radians != 1.0:
-        inner = _product(Number(1.0 / radians), inner)
+        inner = product_of(Number(1.0 / radians), inner)
     if node.function in outer:
-        return _product(outer[node.function], inner)
+        return product_of(outer[node.function], inner)
     if node.function == "hypot":
         y = node.arguments[1]
-        top = _sum(
-            _product(x, derivative(x, name, radians)), _product(y, derivative(y, name, radians))
+        top = sum_of(
+            product_of(x, derivative(x, name, radians)), product_of(y, derivative(y, name, radians))
         )
         return Binary("/", top, node)
     if node.function == "atan2":
         other = node.arguments[1]
-        top = _sum(
-            _product(other, derivative(x, name, radians)),
-            _negative(_product(x, derivative(other, name, radians))),
+        top = sum_of(
+            product_of(other, derivative(x, name, radians)),
+            _negative(product_of(x, derivative(other, name, radians))),
         )
         whole = Binary("/", top, Binary("+", square, Binary("^", other, Number(2.0))))
-        return whole if radians == 1.0 else _product(Number(1.0 / radians), whole)
+        return whole if radians == 1.0 else product_of(Number(1.0 / radians), whole)
     raise ValueError(f"{node.function} has a derivative that is not a single formula")
 
 
@@ -116,7 +116,8 @@ def _negative(node: Node) -> Node:
     return node.operand if isinstance(node, Negative) else Negative(node)
 
 
-def _sum(left: Node, right: Node) -> Node:
+def sum_of(left: Node, right: Node) -> Node:
+    """left + right, without zeros."""
     if left == _ZERO:
         return right
     if right == _ZERO:
@@ -126,7 +127,8 @@ def _sum(left: Node, right: Node) -> Node:
     return Binary("+", left, right)
 
 
-def _product(left: Node, right: Node) -> Node:
+def product_of(left: Node, right: Node) -> Node:
+    """left · right, without ones, signs first."""
     if _ZERO in (left, right):
         return _ZERO
     if left == _ONE:
@@ -134,7 +136,7 @@ def _product(left: Node, right: Node) -> Node:
     if right == _ONE:
         return left
     if isinstance(left, Negative):
-        return _negative(_product(left.operand, right))
+        return _negative(product_of(left.operand, right))
     if isinstance(right, Negative):
-        return _negative(_product(left, right.operand))
+        return _negative(product_of(left, right.operand))
     return Binary("*", left, right)

@@ -9,11 +9,14 @@ import numpy as np
 
 from linkwork.equations.writing import EquationSheet
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, column_name
-from linkwork.export.workbook.cycle_page import CycleColumns
+from linkwork.export.workbook.cycle_columns import CycleColumns
+from linkwork.export.workbook.page_layout import print_on_one_page
+from linkwork.export.workbook.status_formulas import statement
 from linkwork.foundation.certification import Certification
 
 __all__ = ["notices", "write_about"]
 
+_ONE_PAGE = 70  # rows
 _WIDTH = 110  # characters per line of equations
 _LINE, _LINE_LENGTH = 15.0, 95  # height of a text line, and its characters
 
@@ -32,7 +35,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
         row += 1
     row = _checks(book, sheet, columns, row + 1)
     told = list(notices(book))
-    row = _listed(book, sheet, row + 1, "Does not recalculate", told, "warning")
+    row = _listed(book, sheet, row + 1, "To note", told, "warning")
     limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
     row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
     row += 1
@@ -41,6 +44,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
     for line in EquationSheet(book.model.equations).text(_WIDTH).splitlines():
         row += 1
         sheet.write_string(row, 0, line, style["code"])
+    print_on_one_page(sheet, tall=1 if row < _ONE_PAGE else 0)
 
 
 def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
@@ -49,7 +53,8 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
         "How to use it",
         (
             "Edit a yellow cell of the sheet Dimensions: the formulas of the sheet Newton solve "
-            "all rows of Cycle again. Drawing shows the row whose number you enter there."
+            "all rows of Cycle again, and Velocities follows. Drawing shows the row whose number "
+            "you enter there."
         ),
     )
     if description.source:
@@ -66,9 +71,14 @@ def _facts(book: Book, version: str) -> Iterator[tuple[str, str]]:
     )
     yield "Rows", f"{count} values of the input, {int(book.iterations.found.sum())} with a position"
     statuses = ", ".join(f"{s.name} {n}" for s, n in book.motion.counts.items())
-    yield "Status of all rows", statuses
     proved = sum(c is Certification.CERTIFIED for c in book.motion.certification)
-    yield "Proved by Linkwork", f"{proved} of {len(book.motion)} rows"
+    yield (
+        "By Linkwork",
+        (
+            f"{statuses}; {proved} of {len(book.motion)} rows proved, for the dimensions and "
+            "inputs of the file. The lines below and the statuses of Cycle follow the cells."
+        ),
+    )
     yield "Iterations in every row", str(book.iterations.count)
 
 
@@ -85,11 +95,13 @@ def _checks(book: Book, sheet: Any, columns: CycleColumns, row: int) -> int:
     lines: list[tuple[str, str, float, str]] = []
     if found:
         largest = f"=MAX({whole(columns.largest)})"
-        lines.append(("Largest difference from Linkwork", largest, 0.0, "result"))
-    if found and columns.equations:
-        lines.append(("Largest sum of squares", f"=MAX({whole(columns.squares)})", 0.0, "result"))
-        closing = f'=COUNTIF({whole(columns.closes)},"yes")'
-        lines.append(("Rows that close", closing, found, "result_count"))
+        lines.append(("Largest relative difference", largest, 0.0, "result"))
+    closing = f'=COUNTIF({whole(columns.closes)},"yes")'
+    lines.append(("Rows with a position", closing, found, "result_count"))
+    proved = f'=COUNTIF({whole(columns.status)},"proved for*")'
+    certified = sum(statement(book, int(k)).startswith("proved for") for k in book.iterations.rows)
+    lines.append(("Rows still proved", proved, certified, "result_count"))
+    lines.append(("Changed cells", "=changes", 0, "result_count"))
     for head, formula, value, look in lines:
         sheet.write(row, 0, head, style["head_left"])
         sheet.write_formula(row, 1, formula, style[look], value)
@@ -114,7 +126,7 @@ def _wrapped(sheet: Any, row: int, text: str, look: Any) -> None:
 
 
 def notices(book: Book) -> Iterator[str]:
-    """The parts that do not follow the yellow cells, with reasons."""
+    """The parts that do not follow the yellow cells, with reasons, and special rows."""
     unknowns = book.model.equations.unknowns
     for block in book.closure.blocks:
         if block.reason:
@@ -137,11 +149,15 @@ def notices(book: Book) -> Iterator[str]:
     if held:
         yield (
             f"{held} rows: Newton-Raphson does not converge there, as at a change point; they "
-            "contain Linkwork's values"
+            "contain Linkwork's values until something changes"
         )
     lost = book.count - int(book.iterations.found.sum())
     if lost:
-        yield f"{lost} rows: there is no position; the last column has Linkwork's reason"
+        yield f"rows without a position, with Linkwork's reason in their status: {lost}"
+    done = book.iterations
+    apart = int((done.live & (done.above < 0)).sum()) - 1
+    if apart > 0:
+        yield f"rows that start from estimates of their own, yellow cells of Newton: {apart}"
     added = int(np.count_nonzero(book.motion.added))
     if added:
         yield (

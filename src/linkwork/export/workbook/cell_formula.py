@@ -14,7 +14,7 @@ from linkwork.expression.precedence import ATOM, STRENGTH, strength
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
 
-__all__ = ["CellFormula"]
+__all__ = ["CellFormula", "cell_number"]
 
 _OF_ANGLE = ("sin", "cos", "tan")
 _TO_ANGLE = ("asin", "acos", "atan", "atan2")
@@ -56,7 +56,7 @@ class _Writer:
     def text(self, node: Node) -> str:
         match node:
             case Number():
-                return _number(node.value)
+                return cell_number(node.value)
             case Name():
                 return self._name(node)
             case Negative():
@@ -103,8 +103,9 @@ def _begins_with_power(node: Node) -> bool:
     return isinstance(node, Binary)
 
 
-def _number(value: float) -> str:
-    shown = repr(value)
+def cell_number(value: float) -> str:
+    """A number in spreadsheet notation."""
+    shown = repr(float(value))
     return (shown[:-2] if shown.endswith(".0") else shown).replace("e", "E")
 
 

@@ -9,13 +9,15 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["write_charts"]
 
-_WIDTH, _HEIGHT, _ROWS = 860, 400, 21
+_WIDTH, _HEIGHT, _ROWS = 1100, 400, 21
+_PRINTED = 72  # percent: two charts on a page
 
 
 def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
     """Write one chart for each unit; ``columns`` are those of the positions."""
     sheet.write(0, 0, f"{book.model.description.name}: charts", book.style["title"])
     sheet.hide_gridlines(2)
+    sheet.set_print_scale(_PRINTED)
     row = 2
     for kind in Kind:
         curves = _curves(book, kind)
@@ -23,6 +25,7 @@ def write_charts(book: Book, sheet: Any, columns: dict[str, int]) -> None:
             chart = _chart(book, kind, curves, columns)
             sheet.insert_chart(row, 0, chart)
             row += _ROWS
+    sheet.set_h_pagebreaks(list(range(2 + 2 * _ROWS, row, 2 * _ROWS)))
 
 
 def _curves(book: Book, kind: Kind) -> list[tuple[str, str]]:
@@ -73,6 +76,7 @@ def _chart(book: Book, kind: Kind, curves: list[tuple[str, str]], columns: dict[
     heading = f"{title.capitalize()} over {book.shown(leading)}"
     chart.set_title({"name": heading, "name_font": {"size": 13}})
     chart.set_legend({"position": "right"})
+    chart.show_na_as_empty_cell()  # a gap where there is no position, not a line across
     chart.set_size({"width": _WIDTH, "height": _HEIGHT})
     return chart
 

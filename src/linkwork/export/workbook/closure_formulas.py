@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
-from linkwork.equations.model import LinearEquation, RealEquation, Term
+from linkwork.equations.model import LinearEquation, RealEquation, Redundant, Term
 from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.linear_form import LinearForm, cosine, sine
 from linkwork.export.workbook.traced_equations import TracedEquations, forms_of
@@ -21,9 +21,12 @@ from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
 from linkwork.results import quantities
 
-__all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "Row"]
+__all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "NoFormula", "Row", "check_length"]
 
 _MOST_NODES = 7  # longer coefficients get their own cell
+_MOST_UNKNOWNS = 40  # of a block: its corrections must fit into one cell
+_LONGEST = 7_000  # characters of a formula; a cell takes 8,192
+_PER_NODE, _PER_PART = 4, 24  # characters at most: parentheses; a number or a function
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +77,7 @@ class ClosureFormulas:
     points: dict[str, tuple[CellFormula, CellFormula]] = field(default_factory=dict)
     links: dict[str, CellFormula] = field(default_factory=dict)
     outputs: dict[str, CellFormula] = field(default_factory=dict)
+    released: list[tuple[Redundant, CellFormula]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.variables = {v.symbol: v for v in self.model.equations.variables}
@@ -83,6 +87,9 @@ class ClosureFormulas:
         }
         for equations, unknowns in self.model.compiled.form.blocks:
             self.blocks.append(self._block(equations, unknowns))
+        for redundant in self.traced.equations.redundant:
+            length = self._coefficient(forms_of(redundant.length)[0], f"{redundant.variable}_given")
+            self.released.append((redundant, CellFormula(length.node)))
         self._place_points()
         for link in self.model.riding:
             self.links[link] = self._link(link)
@@ -123,21 +130,21 @@ class ClosureFormulas:
 
     # Vectors
 
-    def _turn(self, term: Term) -> LinearForm:
+    def turn(self, term: Term) -> LinearForm:
         """Σ weight θ in radians."""
         total = LinearForm()
         for symbol, weight in term.phase:
             total += LinearForm.named(symbol) * (weight * self._units[symbol])
         return total
 
-    def _vector(
+    def vector(
         self, term: Term, *, length: bool = True, turned: bool = False
     ) -> tuple[LinearForm, LinearForm]:
         """Real and imaginary part of a term, or of i times the term."""
         re, im = self._parts(term)
         if turned:
             re, im = -im, re
-        angle = self._turn(term)
+        angle = self.turn(term)
         c, s = cosine(angle), sine(angle)
         x, y = re * c - im * s, re * s + im * c
         if length and term.length is not None:
@@ -150,9 +157,9 @@ class ClosureFormulas:
         weight = dict(term.phase).get(symbol, 0.0)
         x, y = LinearForm(), LinearForm()
         if weight:
-            x, y = (part * weight for part in self._vector(term, turned=True))
+            x, y = (part * weight for part in self.vector(term, turned=True))
         if term.length == symbol:
-            along = self._vector(term, length=False)
+            along = self.vector(term, length=False)
             x, y = x + along[0], y + along[1]
         return x, y
 
@@ -161,8 +168,12 @@ class ClosureFormulas:
     def _block(self, equations: tuple[int, ...], unknowns: tuple[int, ...]) -> BlockFormulas:
         symbols = [self.model.equations.unknowns[k].symbol for k in unknowns]
         try:
+            if len(symbols) > _MOST_UNKNOWNS:
+                raise NoFormula(f"more than {_MOST_UNKNOWNS} unknowns depend on each other")
             rows = tuple(row for k in equations for row in self._rows(k, symbols))
-        except _NoFormula as error:
+            for row in rows:
+                check_length(row.formula, *row.slopes)
+        except NoFormula as error:
             return BlockFormulas(unknowns=unknowns, reason=str(error))
         return BlockFormulas(unknowns=unknowns, rows=rows)
 
@@ -179,11 +190,11 @@ class ClosureFormulas:
             yield self._real_row(equation, f"F{number + loops + 1}", symbols)
         else:
             law = found.laws[number - loops - lines - plain]
-            raise _NoFormula(f'"{law.label}" is a motion law or a curve, given piece by piece')
+            raise NoFormula(f'"{law.label}" is a motion law or a curve, given piece by piece')
 
     def _loop_rows(self, number: int, symbols: list[str]) -> Iterator[Row]:
         terms = self.traced.equations.loops[number].terms
-        sums = [_total(self._vector(term) for term in terms)]
+        sums = [_total(self.vector(term) for term in terms)]
         sums += [_total(self._slope(term, symbol) for term in terms) for symbol in symbols]
         count = len(self.traced.equations.loops)
         for axis in (0, 1):
@@ -210,7 +221,7 @@ class ClosureFormulas:
         try:
             slopes = [derivative(whole, symbol, self._angle.radians) for symbol in symbols]
         except ValueError as error:
-            raise _NoFormula(f'"{equation.label}": {error}') from None
+            raise NoFormula(f'"{equation.label}": {error}') from None
         return Row(
             name=name,
             formula=CellFormula(whole, self._angle),
@@ -225,7 +236,7 @@ class ClosureFormulas:
         for point, path in paths.items():
             if point not in order and all(path.parent != point for path in paths.values()):
                 continue
-            x, y = _total(self._vector(term) for term in path.terms)
+            x, y = _total(self.vector(term) for term in path.terms)
             if path.parent is not None:
                 x = LinearForm.named(coordinate_name(path.parent, "x")) + x
                 y = LinearForm.named(coordinate_name(path.parent, "y")) + y
@@ -246,8 +257,18 @@ class ClosureFormulas:
         return CellFormula(total.in_degrees if self._angle is AngleUnit.DEGREE else total.node)
 
 
-class _NoFormula(Exception):
-    """An equation without a cell formula."""
+class NoFormula(Exception):
+    """A quantity without a cell formula."""
+
+
+def check_length(*formulas: CellFormula) -> None:
+    """Raise :class:`NoFormula` for a formula that is too long for a cell."""
+    for formula in formulas:
+        length = 0
+        for part in _parts_of(formula.node):  # stops early: a derivative can have millions
+            length += len(part.name) + _PER_NODE if isinstance(part, Name) else _PER_PART
+            if length > _LONGEST:
+                raise NoFormula("its formula is too long for a cell")
 
 
 def _total(parts: Iterator[tuple[LinearForm, LinearForm]]) -> tuple[LinearForm, LinearForm]:

@@ -2,87 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
+from linkwork.equations.model import Variable
 from linkwork.export.workbook.book import (
-    CYCLE,
     FIRST,
     LINKWORK,
     NEWTON,
     Book,
     apart,
-    cached,
     column_name,
 )
-from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.workbook.cell_formula import cell_number
+from linkwork.export.workbook.cycle_columns import CycleColumns
 from linkwork.export.workbook.dimension_page import input_table
 from linkwork.export.workbook.newton_page import NewtonColumns
+from linkwork.export.workbook.page_layout import print_table
+from linkwork.export.workbook.status_formulas import StatusFormulas, statement
 from linkwork.foundation.names import canonical
 from linkwork.results.quantity import Kind
 
-__all__ = ["CycleColumns", "planned_cycle", "write_cycle"]
+__all__ = ["write_cycle"]
 
-_WIDTH = 13
-
-
-@dataclass(frozen=True, kw_only=True)
-class CycleColumns:
-    """The columns of the sheet; ``largest`` is the column of differences."""
-
-    of: dict[str, int]
-    equations: tuple[int, ...]
-    squares: int
-    largest: int
-    closes: int
-    status: int
-    groups: tuple[tuple[str, int, int], ...]
-
-
-def planned_cycle(book: Book) -> CycleColumns:
-    """Number the columns and name them."""
-    of: dict[str, int] = {}
-    groups: list[tuple[str, int, int]] = []
-    place = 1
-
-    def group(title: str, keys: list[str]) -> None:
-        nonlocal place
-        for key in keys:
-            of[key] = place
-            place += 1
-        if keys:
-            groups.append((title, place - len(keys), place - 1))
-
-    equations = book.model.equations
-    group("Input", [v.symbol for v in equations.inputs])
-    group("Unknowns", [v.symbol for v in equations.unknowns])
-    rows = sorted(
-        (row.name for block in book.closure.blocks for row in block.rows),
-        key=lambda name: int(name[1:]),
-    )
-    group("Equations, 0 where they close", [f"row {name}" for name in rows])
-    squares, place = place, place + (1 if rows else 0)
-    group("Links that turn with another link", [canonical(link) for link in book.closure.links])
-    group("Outputs", [f"output {name}" for name in book.closure.outputs])
-    points = book.closure.points
-    group("Points", [coordinate_name(point, axis) for point in points for axis in "xy"])
-    groups.append(("Check", place, place + 2))
-    for key, column in of.items():
-        if key in book.names.cells:
-            book.define(key, CYCLE, f"${column_name(column)}1")
-    return CycleColumns(
-        of=of,
-        equations=tuple(of[f"row {name}"] for name in rows),
-        squares=squares if rows else -1,
-        largest=place,
-        closes=place + 1,
-        status=place + 2,
-        groups=tuple(groups),
-    )
+_WIDTH, _STATUS = 13, 60
 
 
 def write_cycle(book: Book, sheet: Any, columns: CycleColumns, newton: NewtonColumns) -> None:
@@ -99,25 +45,25 @@ class _Page:
 
     def write(self) -> None:
         """Write the headings, then column by column."""
-        book, sheet, style = self.book, self.sheet, self.book.style
-        sheet.set_column(0, 0, 6)
-        sheet.set_column(1, self.columns.closes, _WIDTH)
-        sheet.set_column(self.columns.status, self.columns.status, 34)
-        sheet.write(0, 0, f"{book.model.description.name}: positions", style["title"])
-        for title, first, last in self.columns.groups:
-            if first == last:
-                sheet.write(FIRST - 3, first, title, style["group"])
-            else:
-                sheet.merge_range(FIRST - 3, first, FIRST - 3, last, title, style["group"])
-        book.head(self.sheet, 0, "row", "")
-        for k in range(book.count):
-            sheet.write_number(FIRST + k, 0, k + 1, style["count"])
+        book, sheet = self.book, self.sheet
+        self.status = StatusFormulas(book, self.columns)
+        said = (statement(book, int(row)) for row in book.iterations.rows)
+        widths = [6, *[_WIDTH] * self.columns.closes, min(max(map(len, said), default=0), _STATUS)]
+        repeated = 1 + len(book.model.equations.inputs)
+        print_table(sheet, widths, repeated, book.last - 1)
+        book.title(sheet, "positions")
+        sheet.write(
+            1, 0, "After a change, statuses follow: Linkwork's proofs are shown only for rows as "
+            "Linkwork solved them.", book.style["note"],
+        )  # fmt: skip
+        book.group_heads(sheet, self.columns.groups)
+        book.row_numbers(sheet)
         self._inputs()
         self._unknowns()
         self._equations()
         self._rest()
         self._check()
-        sheet.freeze_panes(FIRST, 1 + len(book.model.equations.inputs))
+        sheet.freeze_panes(FIRST, repeated)
 
     def _inputs(self) -> None:
         book = self.book
@@ -143,23 +89,26 @@ class _Page:
         for number, variable in enumerate(book.model.equations.unknowns):
             column = self.columns.of[variable.symbol]
             book.head(self.sheet, column, book.shown(variable), book.unit(variable.kind))
-            last = self.newton.last.get(number)
-            for k in np.flatnonzero(done.found).tolist():
-                value = float(done.values[-1][k, number])
-                if last is None or not done.live[k]:
-                    self.sheet.write_number(FIRST + k, column, value, book.style["value"])
-                    continue
-                formula = apart(f"={NEWTON}!{column_name(last)}{FIRST + k + 1}", FIRST + k)
-                self.sheet.write_formula(FIRST + k, column, formula, book.style["number"], value)
+            look = "number" if number in self.newton.last else "value"
+            for k, value in enumerate(done.values[-1][:, number].tolist()):
+                formula = apart(f"={self._unknown(number, variable, k)}", FIRST + k)
+                book.put(self.sheet, k, column, formula, look, value)
 
-    def _formulas(self, column: int, formula: CellFormula, look: str) -> Any:
-        """Write a formula in every row with a position; returns its values (R,)."""
-        book = self.book
-        shown = book.text(formula)
-        values = book.over_rows(formula.value(book.values))
-        for k in np.flatnonzero(book.iterations.found).tolist():
-            self.sheet.write_formula(FIRST + k, column, shown, book.style[look], cached(values[k]))
-        return values
+    def _unknown(self, number: int, variable: Variable, k: int) -> str:
+        """The formula of an unknown in one row: the last iterate, or Linkwork's value, or #N/A."""
+        book, done, row = self.book, self.book.iterations, FIRST + k + 1
+        own = "NA()"
+        if done.found[k] and variable.name in book.motion.unknowns:
+            letter = column_name(book.linkwork_columns[variable.name])
+            own = f"{LINKWORK}!{letter}{self.status.source(k)}"
+        elif done.found[k]:
+            own = cell_number(float(done.values[-1][k, number]))
+        last = self.newton.last.get(number)
+        if last is None:
+            # its cells do not solve: right for the inputs of the file only
+            return f"IF(AND({self.status.same_input(k)}),{own},NA())"
+        iterate = f'IF(converged="yes",{NEWTON}!{column_name(last)}{row},NA())'
+        return iterate if done.live[k] else f'IF(as_solved="yes",{own},{iterate})'
 
     def _equations(self) -> None:
         book = self.book
@@ -168,27 +117,17 @@ class _Page:
             for row in block.rows:
                 column = self.columns.of[f"row {row.name}"]
                 book.head(self.sheet, column, row.name, "")
-                squares = squares + self._formulas(column, row.formula, "small") ** 2
+                values = book.column(self.sheet, column, row.formula, "small")
+                squares = squares + values**2
         if not self.columns.equations:
             return
         book.head(self.sheet, self.columns.squares, "ΣF²", "")
         first = column_name(self.columns.equations[0])
         last = column_name(self.columns.equations[-1])
-        self._written(
-            self.columns.squares,
-            lambda row: f"=SUMSQ({first}{row}:{last}{row})",
-            squares,
-            "small",
-        )
-
-    def _written(self, column: int, formula: Callable[[int], str], values: Any, look: str) -> None:
-        """Write a formula of cells of the same row in every row with a position."""
-        book = self.book
-        for k in np.flatnonzero(book.iterations.found).tolist():
-            value = values[k] if isinstance(values[k], str) else cached(values[k])
-            self.sheet.write_formula(
-                FIRST + k, column, formula(FIRST + k + 1), book.style[look], value
-            )
+        for k, value in enumerate(squares.tolist()):
+            row_number = FIRST + k + 1
+            formula = f"=SUMSQ({first}{row_number}:{last}{row_number})"
+            book.put(self.sheet, k, self.columns.squares, formula, "small", value)
 
     def _rest(self) -> None:
         """Write points, links and outputs, each from preceding ones."""
@@ -198,65 +137,49 @@ class _Page:
                 key = coordinate_name(point, axis)
                 column = self.columns.of[key]
                 book.head(self.sheet, column, f"{point}.{axis}", book.unit("length"))
-                book.values[key] = self._formulas(column, formula, "number")
+                book.values[key] = book.column(self.sheet, column, formula, "number")
         for link, formula in closure.links.items():
             column = self.columns.of[canonical(link)]
             book.head(self.sheet, column, link, book.unit("angle"))
-            book.values[canonical(link)] = self._formulas(column, formula, "number")
+            book.values[canonical(link)] = book.column(self.sheet, column, formula, "number")
         kinds = {name: output.kind for name, output in book.model.equations.outputs.items()}
         for name, formula in closure.outputs.items():
             column = self.columns.of[f"output {name}"]
             book.head(self.sheet, column, name, book.model.units.of(Kind(kinds[name])))
-            book.values[f"output {name}"] = self._formulas(column, formula, "number")
+            book.values[f"output {name}"] = book.column(self.sheet, column, formula, "number")
 
     def _check(self) -> None:
         book, columns = self.book, self.columns
-        book.head(self.sheet, columns.largest, "difference", "from Linkwork")
+        book.head(self.sheet, columns.as_solved, "as solved", "by Linkwork")
+        book.head(self.sheet, columns.largest, "difference", "relative")
         book.head(self.sheet, columns.closes, "closes", "")
-        self.sheet.write(FIRST - 2, columns.status, "Linkwork's status", book.style["head_left"])
+        self.sheet.write(FIRST - 2, columns.status, "status", book.style["head_indented"])
         self.sheet.write(FIRST - 1, columns.status, "", book.style["unit"])
-        if columns.equations:
-            square = column_name(columns.squares)
-            self._written(
-                columns.closes,
-                lambda row: (
-                    f'=IF(ISNUMBER({square}{row}),IF({square}{row}<tolerance,"yes","NO"),"NO")'
-                ),
-                ["yes"] * book.count,
-                "general",
-            )
-            area = FIRST, columns.closes, FIRST + book.count - 1, columns.closes
-            look = {
-                "type": "cell",
-                "criteria": "==",
-                "value": '"NO"',
-                "format": book.style["wrong"],
-            }
-            self.sheet.conditional_format(*area, look)
-        self._written(columns.largest, self._difference, np.zeros(book.count), "small")
-        for k, row in enumerate(book.iterations.rows):
-            self.sheet.write(FIRST + k, columns.status, self._said(int(row), k))
+        status = self.status
+        for k, found in enumerate(book.iterations.found.tolist()):
+            closes = "yes" if found else "NO"
+            said = statement(book, int(book.iterations.rows[k]))
+            for column, formula, value, look in (
+                (columns.as_solved, status.as_solved(k), "yes", "right"),
+                (columns.largest, status.difference(k), 0.0 if found else "-", "relative"),
+                (columns.closes, status.closes(k), closes, "right"),
+                (columns.status, status.status(k), said, "status"),
+            ):
+                own = book.style[look]
+                self.sheet.write_formula(FIRST + k, column, f"={formula}", own, value)
+        self._highlight()
 
-    def _difference(self, row: int) -> str:
-        """The largest difference of a row's unknowns from Linkwork's values."""
-        book = self.book
-        parts = []
-        source = int(book.iterations.rows[row - FIRST - 1]) + FIRST + 1
-        for variable in book.model.equations.unknowns:
-            if variable.name in book.motion.unknowns:
-                own = column_name(self.columns.of[variable.symbol])
-                other = column_name(book.linkwork_columns[variable.name])
-                parts.append(f"ABS({own}{row}-{LINKWORK}!{other}{source})")
-        return f"=MAX({','.join(parts)})"
-
-    def _said(self, row: int, k: int) -> str:
-        motion, done = self.book.motion, self.book.iterations
-        status = motion.status[row]
-        if not status.ok:
-            return f"{status.name}: {status.value}"
-        said = motion.certification[row].name.lower().replace("_", " ")
-        if not done.live[k]:
-            return f"found, {said}; does not recalculate: Newton-Raphson does not converge here"
-        if done.above[k] < 0 and k > 0:
-            return f"found, {said}; starts from a separate estimate"
-        return f"found, {said}"
+    def _highlight(self) -> None:
+        """Colour the statuses, and fade cells without a value."""
+        book, columns = self.book, self.columns
+        last = book.last - 1
+        no = {"type": "cell", "criteria": "==", "value": '"NO"', "format": book.style["wrong"]}
+        self.sheet.conditional_format(FIRST, columns.closes, last, columns.closes, no)
+        for text, look in (("proved for", "good"), ("not proved", "doubtful"), ("no ", "lost")):
+            rule = {
+                "type": "text", "criteria": "begins with" if look != "doubtful" else "containing",
+                "value": text, "format": book.style[look],
+            }  # fmt: skip
+            self.sheet.conditional_format(FIRST, columns.status, last, columns.status, rule)
+        faded = {"type": "errors", "format": book.style["faded"]}
+        self.sheet.conditional_format(FIRST, 1, last, columns.closes, faded)

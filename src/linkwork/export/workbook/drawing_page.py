@@ -11,13 +11,14 @@ import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, cached, column_name
+from linkwork.export.workbook.page_layout import print_on_one_page
 
 __all__ = ["has_drawing", "write_drawing"]
 
 SHEET = "Drawing"
 _SIDE = 640  # size of the chart [pixels]
 _ROUND = 36  # points of a circle
-_CHART = "E2"
+_CHART, _CHART_ROWS, _CHART_COLUMNS = "E2", 32, 14  # corner, last row and column
 _COLOURS = (
     "#1f6fb4", "#c8553d", "#3a8f5d", "#7d5ba6", "#b8860b", "#2a9d9d", "#a23b72", "#5f6c7b",
 )  # fmt: skip
@@ -73,6 +74,7 @@ class _Page:
             row += 1
         self._points(row + 1)
         self._chart()
+        print_on_one_page(sheet, 0, 0, max(_CHART_ROWS, row + 2 + len(self.place)), _CHART_COLUMNS)
 
     def _picked(self, row: int, column: int, key: str) -> None:
         """A cell with a column's value in the displayed row."""

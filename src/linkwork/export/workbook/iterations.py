@@ -139,7 +139,9 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
 
 
 def _needed(model: Model, values: Array) -> int:
-    """The number of iterations until convergence."""
+    """The number of iterations until convergence, as many as possible if no row tells it."""
+    if not values.shape[1]:
+        return _MOST
     scale = _file_units(model) / _sizes(model)
     changes: AnyArray = np.abs(np.diff(values, axis=0) * scale).max(axis=(1, 2), initial=0.0)
     large = np.flatnonzero(changes > _DONE)

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from linkwork.export.workbook.book import FIRST, Book
+from linkwork.export.workbook.page_layout import PRINTED, print_table
+from linkwork.export.workbook.status_formulas import statement
 
 __all__ = ["write_linkwork"]
 
-_WIDEST = 24
+_WIDEST, _STATEMENT = 24, 40  # width of columns
 
 
 def write_linkwork(book: Book, sheet: Any) -> None:
@@ -17,18 +21,31 @@ def write_linkwork(book: Book, sheet: Any) -> None:
     motion, style = book.motion, book.style
     table = motion.table()
     further = motion.table(*book.further) if book.further else table
-    columns = {**table.columns, **further.columns}
-    units = {**table.units, **further.units}
-    sheet.write(0, 0, f"{book.model.description.name}: values by Linkwork", style["title"])
-    sheet.write(1, 0, "Numbers only; this sheet does not recalculate.", style["note"])
+    said = {"statement": np.array([statement(book, row) for row in range(len(motion))])}
+    columns = {**table.columns, **said, **further.columns}
+    units = {**table.units, "statement": "", **further.units}
+    book.title(sheet, "values by Linkwork")
+    sheet.write(
+        1, 0,
+        "Numbers only: this sheet does not recalculate. Its statements hold for the inputs in the "
+        "same row and the dimensions that Linkwork solved.", style["note"],
+    )  # fmt: skip
+    widths = [
+        _STATEMENT if name == "statement" else min(max(12, len(name) + 2), _WIDEST)
+        for name in columns
+    ]
+    last = min(len(motion), PRINTED)
+    repeated = len(book.model.equations.inputs)
+    print_table(sheet, widths, repeated, FIRST + last - 1)
+    if len(motion) > last:
+        sheet.write(2, 0, f"Printed: the first {last} rows.", style["note"])
     for column, (name, values) in enumerate(columns.items()):
         numeric = values.dtype.kind in "fiu"
-        sheet.set_column(column, column, min(max(12, len(name) + 2), _WIDEST))
-        sheet.write(FIRST - 2, column, name, style["head" if numeric else "head_left"])
-        sheet.write(FIRST - 1, column, units[name], style["unit"])
+        sheet.write_string(FIRST - 2, column, name, style["head" if numeric else "head_left"])
+        sheet.write_string(FIRST - 1, column, units[name], style["unit"])
         look = style["small"] if name in ("residual", "condition") else style["general"]
+        write = sheet.write_number if numeric else sheet.write
         for k, value in enumerate(values.tolist()):
-            if isinstance(value, float) and not math.isfinite(value):
-                continue
-            sheet.write(FIRST + k, column, value, look)
+            if not isinstance(value, float) or math.isfinite(value):
+                write(FIRST + k, column, value, look)
     sheet.freeze_panes(FIRST, 1)

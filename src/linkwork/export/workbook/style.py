@@ -13,7 +13,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "group": {
         "bold": True, "align": "center", "bg_color": "#d9e2ec", "border": 1, "border_color": _RULE,
     },
-    "head": {"bold": True, "align": "right", "bg_color": "#eef2f6"},
+    "head": {"bold": True, "align": "right", "shrink": True, "bg_color": "#eef2f6"},
     "head_left": {"bold": True, "align": "left", "valign": "top", "bg_color": "#eef2f6"},
     "unit": {
         "italic": True, "align": "right", "font_color": _FAINT, "bg_color": "#eef2f6", "bottom": 1,
@@ -42,6 +42,16 @@ _FORMATS: dict[str, dict[str, Any]] = {
         "italic": True, "font_color": _FAINT, "bg_color": "#eceff1", "border": 1,
         "border_color": _RULE,
     },
+    "right": {"align": "right"},
+    "status": {"indent": 1, "shrink": True},
+    "head_indented": {"bold": True, "align": "left", "indent": 1, "bg_color": "#eef2f6"},
+    "relative": {"num_format": "0.0E+00", "align": "right"},
+    "good": {"font_color": "#2d6a4f"},
+    "doubtful": {"font_color": "#8d6708"},
+    "lost": {"font_color": "#9c1c00"},
+    "faded": {"font_color": "#b8c1cc"},
+    "solved": {"font_color": _FAINT, "align": "right"},
+    "changed": {"bg_color": "#ffe2b8", "bold": True},
     "wrong": {"bg_color": "#ffd9d1", "font_color": "#9c1c00", "bold": True},
 }  # fmt: skip
 

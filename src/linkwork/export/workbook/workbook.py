@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
 from linkwork.export.workbook.about_page import notices, write_about
-from linkwork.export.workbook.book import CYCLE, FIRST, LINKWORK, NEWTON, Book
+from linkwork.export.workbook.book import (
+    CYCLE,
+    DIMENSIONS,
+    LINKWORK,
+    NEWTON,
+    VELOCITIES,
+    Book,
+)
 from linkwork.export.workbook.chart_page import write_charts
 from linkwork.export.workbook.closure_formulas import ClosureFormulas
-from linkwork.export.workbook.cycle_page import planned_cycle, write_cycle
+from linkwork.export.workbook.cycle_columns import planned_cycle
+from linkwork.export.workbook.cycle_page import write_cycle
 from linkwork.export.workbook.dimension_page import write_dimensions
-from linkwork.export.workbook.drawing_page import SHEET, has_drawing, write_drawing
+from linkwork.export.workbook.drawing_page import SHEET as DRAWING, has_drawing, write_drawing
+from linkwork.export.workbook.fast_cells import FastCells
 from linkwork.export.workbook.iterations import iterated
 from linkwork.export.workbook.linkwork_page import write_linkwork
 from linkwork.export.workbook.newton_page import planned_newton, write_newton
+from linkwork.export.workbook.page_layout import set_up_page
+from linkwork.export.workbook.rate_formulas import RateFormulas
 from linkwork.export.workbook.traced_equations import traced
+from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
@@ -26,7 +38,8 @@ from linkwork.results.motion import Motion
 __all__ = ["WrittenWorkbook", "workbook_of"]
 
 _MOST_ROWS = 20_000
-_A4 = 9
+_MOST_CELLS = 2_000_000
+_CYCLE, _NEWTON, _SHEETS = 0.1, 0.4, 0.55  # finished fractions after sheets; then the file
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +50,12 @@ class WrittenWorkbook:
     notices: tuple[str, ...]
 
 
-def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> WrittenWorkbook:
+def workbook_of(
+    model: Model,
+    motion: Motion,
+    further: Sequence[str] = (),
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> WrittenWorkbook:
     """Write a motion of a mechanism as a workbook that solves it again.
 
     Parameters
@@ -47,6 +65,8 @@ def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> Wr
         A sweep of this mechanism.
     further : sequence of str
         Further quantities, as values on the sheet Linkwork.
+    progress : callable
+        Called with the finished fraction.
 
     Raises
     ------
@@ -57,55 +77,80 @@ def workbook_of(model: Model, motion: Motion, further: Sequence[str] = ()) -> Wr
 
     Notes
     -----
-    Sheets: About, Dimensions, Cycle (a row for every position), Drawing, Charts, Newton (the
-    iterations), Linkwork (its values). Cells contain their results, for programs that do not
+    Sheets: About, Dimensions, Cycle (a row for every position), Velocities, Drawing, Charts, Newton
+    (the iterations), Linkwork (its values). Cells contain their results, for programs that do not
     calculate.
     """
     _check(model, motion)
     version = metadata.version("linkwork")
     buffer = io.BytesIO()
-    workbook = _new(buffer)
+    workbook, sheet_class = _new(buffer)
     description = model.description
     workbook.set_properties(
         {"title": description.name, "comments": f"Written by Linkwork {version}"}
     )
     formulas = ClosureFormulas(model, traced(description))
     done = iterated(model, motion, formulas)
-    book = Book(workbook, model, motion, formulas.traced, formulas, done, tuple(further))
-    about = workbook.add_worksheet("About")
-    write_dimensions(book)
-    cycle = workbook.add_worksheet(CYCLE)
-    drawing = workbook.add_worksheet(SHEET) if has_drawing(book) else None
-    charts = workbook.add_worksheet("Charts")
-    newton = workbook.add_worksheet(NEWTON)
-    own = workbook.add_worksheet(LINKWORK)
-    iterations = planned_newton(book)
-    columns = planned_cycle(book)
-    write_cycle(book, cycle, columns, iterations)
-    write_newton(book, newton, iterations, columns.of)
-    if drawing is not None:
-        write_drawing(book, drawing, columns.of)
-    write_charts(book, charts, columns.of)
-    write_linkwork(book, own)
-    write_about(book, about, columns, version)
-    cycle.repeat_rows(FIRST - 3, FIRST - 1)
-    for sheet in workbook.worksheets():
-        sheet.set_landscape()
-        sheet.set_paper(_A4)
-        if sheet.get_name() not in (CYCLE, NEWTON, LINKWORK):
-            sheet.fit_to_pages(1, 0)
+    rates = RateFormulas(formulas)
+    book = Book(workbook, model, motion, formulas.traced, formulas, rates, done, tuple(further))
+    names = ["About", DIMENSIONS, CYCLE, VELOCITIES, DRAWING, "Charts", NEWTON, LINKWORK]
+    if not has_drawing(book):
+        names.remove(DRAWING)
+    sheets = {name: workbook.add_worksheet(name, sheet_class) for name in names}
+    _write_sheets(book, sheets, version, progress)
+    large = [sheets[name] for name in (CYCLE, VELOCITIES, NEWTON, LINKWORK)]
+    for k, sheet in enumerate(large):
+        span = (1.0 - _SHEETS) / len(large)
+        sheet.follow(progress, _SHEETS + k * span, span / book.last)
+    for name, sheet in sheets.items():
+        set_up_page(sheet, name, description.name)
     workbook.close()
     return WrittenWorkbook(content=buffer.getvalue(), notices=tuple(notices(book)))
 
 
-def _new(buffer: io.BytesIO) -> Any:
+def _write_sheets(
+    book: Book, sheets: dict[str, Any], version: str, progress: Callable[[float], None]
+) -> None:
+    """Write all sheets, those that others refer to first."""
+    write_dimensions(book, sheets[DIMENSIONS])
+    newton, columns = planned_newton(book), planned_cycle(book)
+    velocities = planned_velocities(book)
+    _check_size(book.count, newton.end + columns.status + velocities.end)
+    write_cycle(book, sheets[CYCLE], columns, newton)
+    progress(_CYCLE)
+    span = _NEWTON - _CYCLE
+    write_newton(
+        book, sheets[NEWTON], newton, columns.of, lambda part: progress(_CYCLE + span * part)
+    )
+    write_velocities(book, sheets[VELOCITIES], velocities, newton)
+    if DRAWING in sheets:
+        write_drawing(book, sheets[DRAWING], columns.of)
+    write_charts(book, sheets["Charts"], columns.of)
+    write_linkwork(book, sheets[LINKWORK])
+    write_about(book, sheets["About"], columns, version)
+    progress(_SHEETS)
+
+
+def _new(buffer: io.BytesIO) -> tuple[Any, type]:
+    """A workbook, and the class of its sheets."""
     try:
         import xlsxwriter
+        from xlsxwriter.worksheet import Worksheet
     except ImportError:
         raise MissingPackageError(
             'workbooks need XlsxWriter: pip install "linkwork[tables]"'
         ) from None
-    return xlsxwriter.Workbook(buffer, {"in_memory": True})
+
+    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+    return xlsxwriter.Workbook(buffer, options), type("Sheet", (FastCells, Worksheet), {})
+
+
+def _check_size(rows: int, columns: int) -> None:
+    if rows * columns > _MOST_CELLS:
+        raise InputError(
+            f"{rows} rows of {columns} columns are too many cells for a workbook with formulas (at "
+            f"most {_MOST_CELLS}): take a larger step, or write CSV"
+        )
 
 
 def _check(model: Model, motion: Motion) -> None:
