@@ -142,7 +142,8 @@ def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> 
     sizes = []
     for row in functions:
         value, gradient = row.value_and_gradient(equations.start[None, :])
-        size = np.abs(gradient[0]) @ variables[list(row.variables)]
+        with np.errstate(over="ignore", invalid="ignore"):  # then the guess gives no scale
+            size = np.abs(gradient[0]) @ variables[list(row.variables)]
         size = max(float(size), abs(float(value[0])))
         sizes.append(size if np.isfinite(size) and size > 0.0 else 1.0)
     return np.array(sizes), variables

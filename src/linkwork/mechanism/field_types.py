@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["check_entries", "check_field_types", "made_of"]
+__all__ = ["check_entries", "check_field_types", "fields_of", "made_of"]
 
 T = TypeVar("T")
 
@@ -22,11 +22,16 @@ def made_of(kind: type[T], given: Mapping[str, Any]) -> T:
     UnknownNameError
         For a field that does not exist, with those that do.
     """
+    return kind(**fields_of(kind, given))
+
+
+def fields_of(kind: type, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The same fields by name, all of which exist; raises like :func:`made_of`."""
     names = [field.name for field in fields(cast(Any, kind)) if field.init]
     for name in given:
         if name not in names:
             raise UnknownNameError(f'there is no field "{name}" {choices("fields", names, name)}')
-    return kind(**given)
+    return given
 
 
 def check_field_types(description: Any) -> None:
