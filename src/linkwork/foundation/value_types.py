@@ -19,6 +19,8 @@ __all__ = ["check_class", "check_values"]
 def check_values(owner: Any) -> None:
     """Check that every field of a part, input or option has a value of its declared type.
 
+    Numbers that may be formulas are checked where they are evaluated.
+
     Raises
     ------
     InputError
@@ -55,7 +57,7 @@ def _fits(given: Any, kind: Any) -> bool:
     """Whether a value has a declared type; a number may be of any class of numbers."""
     parts = typing.get_args(kind)
     if isinstance(kind, types.UnionType):
-        return any(_fits(given, part) for part in parts)
+        return {float, str} <= {*parts} or any(_fits(given, part) for part in parts)
     if typing.get_origin(kind) is tuple:
         if not isinstance(given, tuple):
             return False

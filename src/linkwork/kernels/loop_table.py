@@ -160,7 +160,8 @@ class LoopTable:
         """Whether variables (N,) moved by this many whole turns each satisfy the same equations.
 
         Not so for a phase that they change by a fraction of a turn, nor for a linear row that they
-        change at all.
+        change at all. A length may gain 2π times its entry: in loops only along fixed directions
+        in which such gains cancel.
         """
         rows = self.loops
         each = rows.phase_weight * turns[rows.phase_variable]
@@ -168,12 +169,39 @@ class LoopTable:
             np.bincount(rows.phase_term, part, minlength=len(rows.row))
             for part in (each, np.abs(each))
         )
+        if not self._gains_cancel(turns):
+            return False
         moved, bulk = self._linear_matrix @ turns, np.abs(self._linear_matrix) @ np.abs(turns)
         return bool(
             (np.abs(phase - np.round(phase)) <= TURN_ROUNDING * size).all()
             and (np.abs(moved) <= TURN_ROUNDING * bulk).all()
             and all(row.repeats_after(turns[list(row.variables)]) for row in self.functions)
         )
+
+    def _gains_cancel(self, turns: Array) -> bool:
+        """Whether lengths that gain by ``turns`` (N,) leave every loop closed at all angles."""
+        rows = self.loops
+        gained = np.where(rows.length >= 0, turns[rows.length], 0.0)
+        if not gained.any():
+            return True
+        if gained[rows.phase_term].any():  # along a direction that may turn
+            return False
+        added = rows.coefficient * gained
+        for row in range(rows.rows):
+            mine = added[rows.row == row]
+            if abs(mine.sum()) > TURN_ROUNDING * np.abs(mine).sum():
+                return False
+        return True
+
+    @property
+    def straight_parts(self) -> Array:
+        """The weights of every equation that is linear in some variables, (rows, N)."""
+        parts = [self._linear_matrix]
+        for law in self._bounded:
+            weights = np.zeros((1, self.variables))
+            np.add.at(weights[0], list(law.variables), law.weights)
+            parts.append(weights)
+        return np.concatenate(parts)
 
     @property
     def has_curvature_bound(self) -> bool:

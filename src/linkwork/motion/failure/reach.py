@@ -28,7 +28,7 @@ _TRIES = 8  # input values around the circle from which an assembled position is
 _TURN = 2.0 * np.pi
 _FAST = 6.0  # where a variable moves this many times faster than the input, a dead point is near
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
-_MOST_LEGS = 200
+_MOST_LEGS = 24  # a circuit that closes has up to ten; these take about a second  # about a second
 _CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
 
 
