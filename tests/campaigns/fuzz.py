@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import resource
@@ -13,6 +14,7 @@ import sys
 import tempfile
 import warnings
 from collections import Counter
+from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -25,47 +27,38 @@ from tests.campaigns.fuzzing.witness import TooLongError, Witness
 __all__ = ["fuzz_campaign"]
 
 _MEMORY = 6 << 30  # bytes of address space of a process
-_STOPPED = 8.0  # seconds of processor time of one input
-_KILLED = 300.0  # seconds on the clock without an answer
+_STOPPED = 12.0  # seconds of processor time of one input
+_KILLED = 400.0  # seconds on the clock without an answer
 _AT_ONCE = 200  # inputs of one order
 
 
-def fuzz_campaign(count: int, first: int = 0) -> tuple[Counter[str], list[str]]:
-    """Counts and false claims of so many inputs."""
+def fuzz_campaign(
+    count: int, first: int = 0, workers: int | None = None, tell: Callable[[str], None] = len
+) -> tuple[Counter[str], list[str]]:
+    """Counts and false claims of so many inputs; ``tell`` is called with each of these."""
     counts: Counter[str] = Counter()
     false: list[str] = []
-    left = [
-        range(k, min(k + _AT_ONCE, first + count)) for k in range(first, first + count, _AT_ONCE)
-    ]
-    left.reverse()
-    crew = [_Worker() for _ in range(int(os.environ.get("LINKWORK_FUZZERS", os.cpu_count() or 1)))]
+    ends = range(first, first + count, _AT_ONCE)
+    left = [range(k, min(k + _AT_ONCE, first + count)) for k in ends][::-1]
+    crew = [_Worker() for _ in range(workers or os.cpu_count() or 1)]
     while left or any(worker.numbers for worker in crew):
         for worker in crew:
             if not worker.numbers and left:
                 worker.order(left.pop())
-        busy = {worker.connection: worker for worker in crew if worker.numbers}
-        ready = wait([*busy], _KILLED)
-        for connection in ready or [*busy]:
-            worker = busy[connection]
+        for worker in _ready([worker for worker in crew if worker.numbers]):
             number = worker.numbers[0]
-            answer = worker.answer() if ready else None
-            if answer is None:
-                counts["processes that did not answer"] += 1
-                false.append(f"{number}: no answer")
-                rest = worker.numbers[1:]
-                worker.replace()
-                if rest:
-                    worker.order(rest)
-                continue
-            worker.numbers = worker.numbers[1:]
-            counts += answer[0]
+            found, wrong = worker.answer() or _NO_ANSWER
+            counts += found
             counts["inputs"] += 1
-            false += [f"{number}: {what}" for what in answer[1]]
-            for what in answer[1] if os.environ.get("LINKWORK_FUZZERS") else ():
-                print(f"{number}: {what}", flush=True)
+            for what in wrong:
+                false.append(f"{number}: {what}")
+                tell(false[-1])
     for worker in crew:
         worker.end()
     return counts, false
+
+
+_NO_ANSWER = Counter({"processes that did not answer": 1}), ["no answer"]
 
 
 class _Worker:
@@ -90,24 +83,31 @@ class _Worker:
         self.connection.send(numbers)
 
     def answer(self) -> tuple[Counter[str], list[str]] | None:
-        """The outcome of the next input; ``None`` if the process has ended."""
-        try:
-            answer: tuple[Counter[str], list[str]] = self.connection.recv()
-        except EOFError:
-            return None
+        """The outcome of the next input; without one the process is replaced by another."""
+        left = self.numbers[1:]
+        answer: tuple[Counter[str], list[str]] | None = None
+        if self.connection.poll():
+            with contextlib.suppress(EOFError):
+                answer = self.connection.recv()
+        self.numbers = left
+        if answer is None:
+            self.end()
+            self._start()
+            if left:
+                self.order(left)
         return answer
-
-    def replace(self) -> None:
-        """End the process and start another."""
-        self.end()
-        self.numbers = range(0)
-        self._start()
 
     def end(self) -> None:
         """End the process."""
         self._process.kill()
         self._process.join()
         self.connection.close()
+
+
+def _ready(busy: Sequence[_Worker]) -> list[_Worker]:
+    """Those that have answered or ended; after a long time all of them."""
+    ready = wait([worker.connection for worker in busy], _KILLED)
+    return [worker for worker in busy if worker.connection in ready or not ready]
 
 
 def _work(connection: Connection) -> None:
@@ -147,9 +147,15 @@ def _tried(number: int, folder: Path) -> Witness:
         signal.setitimer(signal.ITIMER_PROF, 0)
 
 
-if __name__ == "__main__":
+def main(numbers: list[str]) -> None:
+    """Repeat inputs by their numbers and print what is false."""
     _guard()
     with tempfile.TemporaryDirectory() as folder:
-        for number in sys.argv[1:]:
+        for number in numbers:
             outcome = _tried(int(number), Path(folder))
-            print(number, dict(outcome.counts), *outcome.false, sep="\n  ")
+            lines = [number, *map(str, outcome.counts.items()), *outcome.false]
+            sys.stdout.write("\n  ".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -30,6 +30,7 @@ from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_edges
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import as_names
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -174,6 +175,7 @@ def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """
     if wanted is None:
         return pose.skeleton.traced if pose.paths else ()
+    wanted = as_names("traces", wanted)
     for name in wanted:
         if name not in pose.points:
             raise UnknownNameError(

@@ -64,11 +64,12 @@ class PointTable:
 
     def jet(self, v: Array, first: Array, second: Array) -> tuple[ComplexArray, ...]:
         """Positions x + iy with first and second derivatives along a path, (B, points) each."""
-        parts = self.rows.jet(v, first, second)
-        for child, parent in self.levels:
-            for part in parts:
-                # level by level: the parents are complete
-                part[:, child] += part[:, parent]
+        with np.errstate(all="ignore"):  # too far away or too fast for floats
+            parts = self.rows.jet(v, first, second)
+            for child, parent in self.levels:
+                for part in parts:
+                    # level by level: the parents are complete
+                    part[:, child] += part[:, parent]
         return parts
 
 

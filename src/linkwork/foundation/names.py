@@ -6,6 +6,8 @@ import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
 
+import numpy as np
+
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
@@ -13,6 +15,7 @@ __all__ = [
     "GREEK",
     "GROUND",
     "as_name",
+    "as_names",
     "canonical",
     "find_spelling",
     "free_name",
@@ -45,6 +48,22 @@ def as_name(name: object) -> str:
     if not isinstance(name, str):
         raise InputError(f"a name must be a text, got {as_told(name)}")
     return name
+
+
+def as_names(what: str, given: object) -> tuple[str, ...]:
+    """The names in a list; a text alone is one name.
+
+    Raises
+    ------
+    InputError
+        If it is not a list of texts; ``what`` names it in the message.
+    """
+    if isinstance(given, str):
+        return (given,)
+    names = given.tolist() if isinstance(given, np.ndarray) else given
+    if not isinstance(names, Iterable):
+        raise InputError(f"{what} must be a list of names, got {as_told(given)}")
+    return tuple(map(as_name, names))
 
 
 def canonical(name: str) -> str:

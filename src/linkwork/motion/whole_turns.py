@@ -19,6 +19,7 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["Lap", "lap_of"]
 
 _FAR = 3.0  # turns up to which the motion is simply followed
+_MOST_COUNTED = 1e15  # turns: of more, the rounding of a number is more than a turn
 _MOST_FOLLOWED = 10_000  # turns of a motion that does not repeat itself
 _MOST_TURNS = 60  # of the input, after which a motion counts as one that never repeats itself
 
@@ -114,6 +115,11 @@ def lap_of(drive: Drive, begin: Node, t: Array) -> Lap | None:
     asked = max(np.ptp(t), np.abs(t - begin.t).max()) / FULL_TURN
     if not asked > _FAR:
         return None
+    if asked > _MOST_COUNTED:
+        raise InputError(
+            f"{inputs[0].name} is asked for {asked:.4g} turns from the guess: beyond 1e15 turns a "
+            "number says nothing about the angle; leave out whole turns"
+        )
     here = begin
     for turns in range(1, int(min(asked, _MOST_TURNS)) + 1):
         nodes, end = follow(drive.solver, drive.path, here, begin.t + turns * FULL_TURN)

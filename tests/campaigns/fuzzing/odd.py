@@ -48,7 +48,7 @@ OBJECTS: tuple[Any, ...] = (
     b"A", bytearray(b"x"), [], [1], ["A"], [None], [[]], [1, "A"], (), (1, 2), ("A", "B"), {}, {"A": 1},
     {"A": None}, {1: 2}, {"O2 A": [1, 2]}, {"O2 A": 40}, {"O2 A": []}, {"O2 A": "x"}, {"a": (1, 2)},
     {"theta2": 40}, {None: None}, set(), {1, 2}, frozenset({"A"}), range(3), range(0), object, object(), int,
-    len, lambda: 1, lambda x: x, slice(None), Ellipsis, NotImplemented, Path("nowhere.toml"), Path(),
+    len, lambda: 1, lambda x: x, slice(None), Ellipsis, Path("nowhere.toml"), Path(),
     Path("/"), np.float64(2), np.int32(3), np.array([]), np.array([1.0, 2.0]), np.array([[1.0]]),
     np.array("A"), np.array([None]), np.array(1.0), np.datetime64("2020-01-01"), iter([1, 2]),
     (x for x in "AB"), memoryview(b"A"), ValueError("x"), type("Odd", (), {})(), [float("nan")] * 3,

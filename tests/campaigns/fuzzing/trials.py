@@ -35,8 +35,9 @@ __all__ = ["KINDS", "trial"]
 
 _MOST_ROWS = 40  # of sweeps tried
 _MOST_DESIGNS = 40
+_RANGES = ((0, 30), (0, 30), (1e6, 10), (-1e9, 60), (1e300, 1), (0, 1e-9), (3, 1))
 #: Calls that may take longer because they show progress.
-_SHOWS_PROGRESS = 20.0
+_SHOWS_PROGRESS = 30.0
 
 
 def _file(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
@@ -73,6 +74,7 @@ def _solved(rng: np.random.Generator, witness: Witness, mechanism: lw.Mechanism)
     call(
         f"sweep from {first}",
         lambda: mechanism.sweep(start=first, stop=first + 6 * step, step=step),
+        _SHOWS_PROGRESS,
     )
     if rng.random() < 0.3:
         call("check", lambda: repr(mechanism.check()))

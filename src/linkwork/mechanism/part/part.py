@@ -341,3 +341,7 @@ class PartChecks:
             elif not step <= _MOST_UNEVEN * least_step:
                 times = f"{_MOST_UNEVEN:,.0f} times as far from the point before as the nearest two"
                 self.add(f"is more than {times} points are from each other", field, k)
+        if all(step <= _MOST_UNEVEN * least_step for step in steps):
+            for k, place in enumerate(places):
+                if max(abs(place.real), abs(place.imag)) > _LARGEST:
+                    self.add(f"is too far from the origin: at most {_LARGEST:g}", field, k)
