@@ -5,11 +5,11 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
-
-import numpy as np
+from typing import cast
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.value_types import is_listed
 
 __all__ = [
     "GREEK",
@@ -60,10 +60,9 @@ def as_names(what: str, given: object) -> tuple[str, ...]:
     """
     if isinstance(given, str):
         return (given,)
-    names = given.tolist() if isinstance(given, np.ndarray) else given
-    if not isinstance(names, Iterable):
+    if not is_listed(given):
         raise InputError(f"{what} must be a list of names, got {as_told(given)}")
-    return tuple(map(as_name, names))
+    return tuple(map(as_name, cast(Iterable[object], given)))
 
 
 def canonical(name: str) -> str:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from functools import cache
 from numbers import Integral
 from typing import Any, cast
 
+import numpy as np
+
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["check_class", "check_values"]
+__all__ = ["check_class", "check_values", "is_listed"]
 
 
 def check_values(owner: Any) -> None:
@@ -44,6 +46,13 @@ def check_class(name: str, given: Any, kind: type) -> None:
     """
     if not isinstance(given, kind):
         raise InputError(f"{name} must be a {kind.__name__}, got {as_told(given)}")
+
+
+def is_listed(given: object) -> bool:
+    """Whether something has entries; a text, a dictionary and an array of no axes are one thing."""
+    if isinstance(given, str | bytes | Mapping) or not isinstance(given, Iterable):
+        return False
+    return not isinstance(given, np.ndarray) or given.ndim > 0
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import as_told, plain_number
+from linkwork.foundation.value_types import is_listed
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.nearest_assembling import open_ends
@@ -97,11 +98,10 @@ def pulled_guess(
     names, unknowns = model.compiled.points.names, model.equations.unknowns
     if as_name(point) not in names:
         raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
-    numbers = [plain_number(each) for each in place] if isinstance(place, Iterable) else []
+    numbers = [plain_number(each) for each in place] if is_listed(place) else []
     if len(numbers) != 2 or not all(n is not None and math.isfinite(n) for n in numbers):
-        raise InputError(
-            f"the coordinates of {point} must be two finite numbers, got {as_told(place)}"
-        )
+        told = as_told(place)
+        raise InputError(f"the coordinates of {point} must be two finite numbers, got {told}")
     v = model.equations.start.copy()
     v[len(unknowns) :] = target_values(model, at) * model.input_scale
     wanted = complex(*place)
