@@ -224,7 +224,17 @@ def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
     labels = equations.labels
     table = "equations" if equations.real else "loops"
     found = []
-    if form.missing:
+    if form.missing and not equations.inputs and not equations.real:
+        free = ", ".join(names[k] for k in form.underdetermined)
+        plural = "s" if form.missing > 1 else ""
+        found.append(
+            Problem(
+                key=("input",),
+                message=f'is missing: name the driven variable, variable = "{names[0]}" '
+                f"({form.missing} unknown{plural} more than equations; not determined: {free})",
+            )
+        )
+    elif form.missing:
         free = ", ".join(names[k] for k in form.underdetermined)
         found.append(
             Problem(

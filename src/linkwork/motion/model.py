@@ -143,7 +143,8 @@ class Model:
         """The table's input values, internal units, (rows, p)."""
         if not self.description.inputs:
             raise InputError(
-                f'mechanism "{self.description.name}" has no input: add [input] to sweep it'
+                f'mechanism "{self.description.name}" has no input: it has positions '
+                "(solve, configurations); add [input] to sweep it"
             )
         return self.rows_in_file_units * self.input_scale
 

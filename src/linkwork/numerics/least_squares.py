@@ -81,9 +81,9 @@ def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
         try:
             # only a positive definite Hessian leads downhill, and then to a minimum
             np.linalg.cholesky(hessian)
+            change = -np.linalg.solve(hessian, gradient)
         except np.linalg.LinAlgError:
             break
-        change = -np.linalg.solve(hessian, gradient)
         trial = v.copy()
         trial[0, :n] += change * weights
         f_trial = system.residual(trial)
