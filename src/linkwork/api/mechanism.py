@@ -11,6 +11,7 @@ from linkwork import drawing, export, motion, textfile, viewer
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.value_types import given_or
 from linkwork.results.force import Force
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ class Mechanism(SolvableMechanism):
         'crank = 60°'
         """
         position = self.solve(at, configuration=configuration, throw=True)
-        chosen = options or drawing.SceneOptions()
+        chosen = given_or(drawing.SceneOptions(), "options", options)
         if vectors:
             chosen = replace(chosen, vectors=motion.vector_loops(self.model, position))
         if not self.description.inputs:

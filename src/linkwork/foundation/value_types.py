@@ -8,14 +8,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from functools import cache
 from numbers import Integral
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["check_class", "check_values", "is_listed"]
+__all__ = ["check_class", "check_values", "given_or", "is_listed"]
+
+T = TypeVar("T")
 
 
 def check_values(owner: Any) -> None:
@@ -46,6 +48,14 @@ def check_class(name: str, given: Any, kind: type) -> None:
     """
     if not isinstance(given, kind):
         raise InputError(f"{name} must be a {kind.__name__}, got {as_told(given)}")
+
+
+def given_or(default: T, name: str, given: T | None) -> T:
+    """The given argument, of the class of the default; the default in place of ``None``."""
+    if given is None:
+        return default
+    check_class(name, given, type(default))
+    return given
 
 
 def is_listed(given: object) -> bool:

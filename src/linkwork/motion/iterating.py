@@ -11,7 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import as_told, plain_number
-from linkwork.foundation.value_types import is_listed
+from linkwork.foundation.value_types import given_or, is_listed
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.nearest_assembling import open_ends
@@ -49,7 +49,7 @@ def iterates(
     UnknownNameError, InputError
         For names that are no unknowns, and values that are no numbers.
     """
-    options = options or NewtonOptions()
+    options = given_or(NewtonOptions(), "options", options)
     model = model.with_guess({} if guess is None else guess)
     position = solve(model, at, from_guess=True, options=options)
     solver = model.compiled.solver

@@ -14,6 +14,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
+from linkwork.foundation.value_types import given_or
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.circuit_sweep import further_branches
 from linkwork.motion.crossing import beyond_change_point, ends_passed
@@ -88,7 +89,7 @@ def sweep(
     policy = ChangePointPolicy.of(change_points)
     _ = model.rows  # without an input there is nothing to sweep: an error
     quantities = check_quantities(model, limits_of)
-    opt = options or NewtonOptions()
+    opt = given_or(NewtonOptions(), "options", options)
     work = _begin_sweep(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)

@@ -20,6 +20,7 @@ from linkwork.export.workbook.linkwork_page import write_linkwork
 from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.traced_equations import traced
 from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.value_types import check_class
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
@@ -109,6 +110,7 @@ def _new(buffer: io.BytesIO) -> Any:
 
 
 def _check(model: Model, motion: Motion) -> None:
+    check_class("the motion", motion, Motion)
     names = [v.name for v in model.equations.inputs]
     if motion.mechanism != model.description.name or list(motion.inputs) != names:
         raise InputError(
