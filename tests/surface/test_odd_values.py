@@ -45,6 +45,10 @@ BAR = lw.example("four-bar")
         (lambda: BAR.sweep(step=90).quantity([1]), "a name must be a text, got [1]"),  # type: ignore[arg-type]
         (lambda: BAR.scene(60, traces=3), "traces must be a list of names, got 3"),  # type: ignore[arg-type]
         (lambda: BAR.pulled_guess("A", "no"), "the coordinates of A must be two finite numbers"),  # type: ignore[arg-type]
+        (lambda: BAR.circuits(certify=[]), "certify must be True or False, got []"),  # type: ignore[arg-type]
+        (lambda: BAR.solve(throw="no"), "throw must be True or False, got 'no'"),  # type: ignore[arg-type]
+        (lambda: BAR.sweep(progress=3), "progress must be a function of the fraction, got 3"),  # type: ignore[arg-type]
+        (lambda: BAR.sweep(options=3), "options must be a NewtonOptions, got 3"),  # type: ignore[arg-type]
         (lambda: lw.load("x" * 5000), "cannot be read: File name too long"),
         (lambda: lw.linkage(**PARTS | {"inputs": np.array(1.0)}), "inputs must be a list, got 1.0"),
     ],

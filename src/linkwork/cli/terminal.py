@@ -187,14 +187,14 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
     def say() -> None:
         with lock:
             if not shown:
-                click.echo(f"{label} …", err=True, nl=False)
+                click.echo(f"{label} …", file=sys.stderr, nl=False)
 
     def tell(fraction: float) -> None:
         nonlocal shown
         with lock:
             if not shown and time.monotonic() - began > _PATIENCE:
                 shown = True
-                click.echo(_CLEAR_LINE, err=True, nl=False)
+                click.echo(_CLEAR_LINE, file=sys.stderr, nl=False)
                 bar.__enter__()
             if shown:
                 # branches report in any order: the bar must not move backwards
@@ -211,4 +211,4 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         if shown:
             bar.__exit__(None, None, None)
         elif time.monotonic() - began > _PATIENCE:
-            click.echo(_CLEAR_LINE, err=True, nl=False)
+            click.echo(_CLEAR_LINE, file=sys.stderr, nl=False)

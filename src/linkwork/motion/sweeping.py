@@ -14,7 +14,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
-from linkwork.foundation.value_types import given_or
+from linkwork.foundation.value_types import check_flags, check_progress, given_or
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.circuit_sweep import further_branches
 from linkwork.motion.crossing import beyond_change_point, ends_passed
@@ -87,6 +87,8 @@ def sweep(
         For a policy or a quantity that does not exist.
     """
     policy = ChangePointPolicy.of(change_points)
+    check_flags(certify=certify, through=through)
+    check_progress(progress)
     _ = model.rows  # without an input there is nothing to sweep: an error
     quantities = check_quantities(model, limits_of)
     opt = given_or(NewtonOptions(), "options", options)
