@@ -16,23 +16,26 @@ class _Terminal(io.StringIO):
         return True
 
 
-@pytest.fixture
-def shown(monkeypatch: pytest.MonkeyPatch) -> _Terminal:
-    """The error stream, a terminal, with progress after a hundredth of a second."""
+def terminal_of(monkeypatch: pytest.MonkeyPatch, patience: float = 0.01) -> _Terminal:
+    """The error stream from now on, a terminal, with progress after so many seconds."""
     stream = _Terminal()
     monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setattr(terminal, "_PATIENCE", 0.01)
+    monkeypatch.setattr(terminal, "_PATIENCE", patience)
     return stream
 
 
-def test_a_task_without_fractions_shows_its_label_and_removes_it(shown: _Terminal) -> None:
+def test_a_task_without_fractions_shows_its_label_and_removes_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shown = terminal_of(monkeypatch)
     with terminal.progress("listing"):
         time.sleep(0.1)
         assert shown.getvalue() == "listing …"
     assert shown.getvalue() == "listing …\r\x1b[K"
 
 
-def test_a_bar_takes_the_place_of_the_label(shown: _Terminal) -> None:
+def test_a_bar_takes_the_place_of_the_label(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = terminal_of(monkeypatch)
     with terminal.progress("sweeping") as tell:
         time.sleep(0.1)
         tell(0.5)
@@ -40,8 +43,8 @@ def test_a_bar_takes_the_place_of_the_label(shown: _Terminal) -> None:
     assert "50%" in shown.getvalue()
 
 
-def test_a_quick_task_shows_nothing(shown: _Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(terminal, "_PATIENCE", 60.0)
+def test_a_quick_task_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = terminal_of(monkeypatch, 60.0)
     with terminal.progress("solving") as tell:
         tell(0.5)
     assert shown.getvalue() == ""

@@ -30,11 +30,12 @@ def check_values(owner: Any) -> None:
     InputError
         With the field, the type it must have, and what was given.
     """
-    for name, kind in _declared(type(owner)).items():
+    owner_type: type = type(owner)
+    for name, kind in _declared(owner_type).items():
         given = getattr(owner, name)
         if not _fits(given, kind):
             raise InputError(
-                f"{name} of lw.{type(owner).__name__} must be {_wanted(kind)}, got {as_told(given)}"
+                f"{name} of lw.{owner_type.__name__} must be {_wanted(kind)}, got {as_told(given)}"
             )
 
 
