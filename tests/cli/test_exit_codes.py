@@ -164,13 +164,13 @@ def test_what_cannot_be_done_is_said_with_what_to_do(
 
 
 def test_problems_of_a_file_are_json_too(run: Run) -> None:
-    done = run("solve", "-", "--json", input='format = 1\n[equations]\nF = "x"\n[guess]\nx = 1\n')
+    done = run("solve", "-", "--json", stdin='format = 1\n[equations]\nF = "x"\n[guess]\nx = 1\n')
     assert done.exit_code == 2
     assert json.loads(done.stdout)["problems"] == [
         {
             "line": 3,
             "key": "equations.F",
-            "message": 'column 2: expected "=", got the end of the formula\n    x\n     ^',
+            "message": 'column 2: an equation needs "=": write "… = 0"\n    x\n     ^',
         }
     ]
 

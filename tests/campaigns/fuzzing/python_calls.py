@@ -35,9 +35,12 @@ _PLAIN: Mapping[str, Any] = MappingProxyType({
     "equations": {"circle": "x^2 + y^2 = 25", "line": "y = x + 1"}, "guess": {"x": 2, "y": 3}
 })  # fmt: skip
 _FIELDS = (
-    "name", "length", "angle", "source", "family", "configuration", "dimensions", "outputs", "inputs",
-    "trace", "points", "links", "lengths", "angles", "sketch", "sliders", "slots", "cylinders", "gears",
-    "belts", "racks", "rolling", "cams", "curves", "springs", "welds", "noncircular_gears", "loops", "guess",
+    "name", "length", "angle", "source", "family", "configuration", "dimensions", "outputs",
+    "inputs",
+    "trace", "points", "links", "lengths", "angles", "sketch", "sliders", "slots", "cylinders",
+    "gears",
+    "belts", "racks", "rolling", "cams", "curves", "springs", "welds", "noncircular_gears",
+    "loops", "guess",
     "equations", "ground",
 )  # fmt: skip
 _PARTS = (
@@ -45,12 +48,15 @@ _PARTS = (
     lw.NoncircularGear, lw.Rack, lw.Rolling, lw.Segment, lw.Slider, lw.Slot, lw.Spring, lw.Weld,
 )  # fmt: skip
 _FUNCTIONS: tuple[Callable[..., Any], ...] = (
-    lw.load, lw.loads, lw.example, lw.example_text, batch.from_table, batch.grid, batch.latin_hypercube,
+    lw.load, lw.loads, lw.example, lw.example_text, batch.from_table, batch.grid,
+    batch.latin_hypercube,
     batch.random, batch.read_plan, batch.summary_of, batch.verify_store, batch.designs_of,
 )  # fmt: skip
 _METHODS = (
-    "solve", "sweep", "configurations", "circuits", "family", "with_dimensions", "changed", "inversion",
-    "driven_by", "iterates", "nearest_assembly", "pulled_guess", "approximate_sweep", "moving_loops", "scene",
+    "solve", "sweep", "configurations", "circuits", "family", "with_dimensions", "changed",
+    "inversion",
+    "driven_by", "iterates", "nearest_assembly", "pulled_guess", "approximate_sweep",
+    "moving_loops", "scene",
 )  # fmt: skip
 _MOTION = ("__getitem__", "trace", "value", "series", "place", "quantity", "table")
 
@@ -159,12 +165,27 @@ def _odd(
                 continue
         elif parameter.kind is not parameter.KEYWORD_ONLY:
             break
-    what = f"{name}({', '.join([*map(repr, positional), *(f'{k}={v!r}' for k, v in keywords.items())])})"
+
+
+
+
+
+
+
+
+                            what = f"{name}({',
+    '.join([*map(repr,
+    positional),
+    *(f'{k}={v!r}' for k,
+    v in keywords.items())])})"
     return witness.call(what[:300], lambda: function(*positional, **keywords))
 
 
 def _plausible(rng: np.random.Generator, name: str) -> Any:
-    known = {"start": 0, "stop": 60, "step": 30, "at": 60, "dimensions": {"O2 A": [38.0, 40.0]}, "of": {"a": (1, 2)},
-             "ranges": {"a": (1, 2)}, "levels": {"a": [1, 2]}, "count": 3, "seed": 1, "mechanism": _mechanism(),
-             "configuration": "open", "guess": {"theta3": 20.0}, "cycle": _motion(), "neighbour": _motion()}  # fmt: skip
+    known = {"start": 0, "stop": 60, "step": 30, "at": 60, "dimensions": {"O2 A": [38.0, 40.0]},
+    "of": {"a": (1, 2)},
+             "ranges": {"a": (1, 2)}, "levels": {"a": [1, 2]}, "count": 3, "seed": 1,
+             "mechanism": _mechanism(),
+             "configuration": "open", "guess": {"theta3": 20.0}, "cycle": _motion(),
+             "neighbour": _motion()}  # fmt: skip
     return known.get(name, pick(rng, ["A", "crank", "coupler", 1, (1, 2), True]))

@@ -168,7 +168,8 @@ def _request(rng: np.random.Generator, kind: type) -> dict[str, Any]:
     return data
 
 
-_BENCH_NAMES = ("O2", "A", "B", "O4", "P", "crank", "coupler", "rocker", "ground", "a", "O2 A", "A B",
+_BENCH_NAMES = ("O2", "A", "B", "O4", "P", "crank", "coupler", "rocker", "ground", "a", "O2 A",
+    "A B",
                 "B A P", "O4.x", "link", "sliders", "gears", "cams", "racks", "s")  # fmt: skip
 _BENCH_NUMBERS = (0.0, -0.0, 1.0, -5.0, 30.0, 60.0, 1e-9, 1e-300, 1e6, 1e12, 1e23, -1e300, 1e308)
 _BENCH_TEXTS = (*FORMULAS, "40", "a", "a/2", "300 rpm", *NUMBERS)
@@ -214,11 +215,15 @@ def _sent(rng: np.random.Generator, kind: Any) -> Any:
     return None if kind is type(None) else _request(rng, kind)
 
 
-_COMMANDS = ("check", "equations", "solve", "solve", "quantities", "sweep", "sweep", "configurations", "circuits",
+_COMMANDS = ("check", "equations", "solve", "solve", "quantities", "sweep", "sweep",
+    "configurations", "circuits",
              "draw", "plot", "animate", "study", "examples", "schema", "nothing")  # fmt: skip
-_SOURCES = ("four-bar", "four-bar", "slider-crank", "newton-another-root", "rapier-drive", "crank-shaper", "scotch-yoke",
-            "belt-drive", "nowhere.toml", "", ".", "-", "changed.toml", "bench.toml", "plan.toml")  # fmt: skip
-_OUTPUTS = ("x.png", "x.svg", "x.pdf", "x.csv", "x.html", "x.gif", "x", ".", "/nowhere/x.png", "", "-", "x.zarr",
+_SOURCES = ("four-bar", "four-bar", "slider-crank", "newton-another-root", "rapier-drive",
+    "crank-shaper", "scotch-yoke",
+            "belt-drive", "nowhere.toml", "", ".", "-", "changed.toml", "bench.toml",
+            "plan.toml")  # fmt: skip
+_OUTPUTS = ("x.png", "x.svg", "x.pdf", "x.csv", "x.html", "x.gif", "x", ".", "/nowhere/x.png",
+    "", "-", "x.zarr",
             "x.toml", "x.exe")  # fmt: skip
 
 

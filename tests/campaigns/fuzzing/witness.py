@@ -16,8 +16,8 @@ __all__ = ["LIMIT", "TooLongError", "Witness"]
 LIMIT = 2.0  # seconds of processor time of one call
 #: What no message may contain: paths of the package, and Python's own words.
 _INTERNAL = re.compile(
-    r"src/linkwork/|site-packages|Traceback|RuntimeWarning|\w+\(\) (got|takes|missing)|has no attribute|"
-    r"not subscriptable|dtype"
+    r"src/linkwork/|site-packages|Traceback|RuntimeWarning|"
+    r"\w+\(\) (got|takes|missing)|has no attribute|not subscriptable|dtype"
 )
 
 T = TypeVar("T")
