@@ -165,19 +165,8 @@ def _odd(
                 continue
         elif parameter.kind is not parameter.KEYWORD_ONLY:
             break
-
-
-
-
-
-
-
-
-                            what = f"{name}({',
-    '.join([*map(repr,
-    positional),
-    *(f'{k}={v!r}' for k,
-    v in keywords.items())])})"
+    given = [*map(repr, positional), *(f"{key}={entry!r}" for key, entry in keywords.items())]
+    what = f"{name}({', '.join(given)})"
     return witness.call(what[:300], lambda: function(*positional, **keywords))
 
 
