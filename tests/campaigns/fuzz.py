@@ -33,7 +33,7 @@ _AT_ONCE = 200  # inputs of one order
 
 
 def fuzz_campaign(
-    count: int, first: int = 0, workers: int | None = None, tell: Callable[[str], None] = len
+    count: int, first: int = 0, workers: int | None = None, tell: Callable[[str], object] = len
 ) -> tuple[Counter[str], list[str]]:
     """Counts and false claims of so many inputs; ``tell`` is called with each of these."""
     counts: Counter[str] = Counter()

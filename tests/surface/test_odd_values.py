@@ -38,7 +38,7 @@ BAR = lw.example("four-bar")
         (lambda: BAR.changed(joint=3), 'there is no field "joint" (fields: '),
         (lambda: BAR.approximate_sweep(3), "the neighbour must be a Motion, got 3"),  # type: ignore[arg-type]
         (lambda: BAR.moving_loops({}), "the cycle must be a Motion, got {}"),  # type: ignore[arg-type]
-        (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got None"),  # type: ignore[arg-type]
+        (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]
         (lambda: BAR.sweep(step=90).place("Z"), 'there is no point "Z" (points: '),
@@ -84,6 +84,10 @@ HUGE_CAM = re.sub(
         (
             changed("rapier-drive", '"-d1 - i*a1"', '"1e308*10"'),
             "column 6: a coefficient here is not a finite number",
+        ),
+        (
+            changed("scotch-yoke", "V = [34.641, 50]", "V = [34.641, 0.0]"),
+            "C and V are sketched at the same place: draw them apart",
         ),
         (HUGE_CAM, "is too far from the origin: at most 1e+100"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -167,8 +167,9 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     >>> designs.problem.tolist(), designs.loops.shape[0]
     ([0, 0, 1], 3)
     """
-    model = mechanism if isinstance(mechanism, Model) else getattr(mechanism, "model", None)
-    check_class("the mechanism of a family", model, Model)
+    found: object = getattr(mechanism, "model", mechanism)
+    check_class("the mechanism of a family", found, Model)
+    model = cast(Model, found)
     if not isinstance(dimensions, Mapping):
         raise InputError(
             "a family needs a mapping of names and their values, as in "

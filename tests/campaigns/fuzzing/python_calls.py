@@ -143,7 +143,8 @@ def _odd(
 ) -> Any:
     """Call a function with one or two odd arguments and plausible others."""
     signature = inspect.signature(function)
-    positional, keywords = [], {}
+    positional: list[Any] = []
+    keywords: dict[str, Any] = {}
     for parameter in signature.parameters.values():
         needed = parameter.default is parameter.empty
         if parameter.kind is parameter.VAR_POSITIONAL:

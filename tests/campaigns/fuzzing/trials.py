@@ -7,6 +7,7 @@ import json
 import typing
 from collections.abc import Callable
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from click.testing import CliRunner
 import linkwork as lw
 from linkwork.batch.study import read_plan, run_study
 from linkwork.cli.main import linkwork as program
+from linkwork.viewer.live.events import ProblemsFound, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.messages import decoded, encoded, kind_of
 from linkwork.viewer.live.requests import REQUESTS
@@ -138,15 +140,20 @@ def _messages(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
     path.write_text(_BENCH, encoding="utf-8")
     bench = witness.call("workbench", lambda: Workbench(MechanismFile(path), lw.loads))
     for _ in range(int(rng.integers(1, 5))):
-        text = _message(rng)
-        asked = witness.call(f"decoded {text[:200]}", lambda text=text: decoded(text))
-        if asked is None or bench is None:
-            continue
-        events = witness.call(f"handle {text[:200]}", lambda asked=asked: bench.handle(asked[0]))
-        for event in events or ():
-            told = witness.call("encoded", lambda event=event: encoded(event))
-            if told and event.__class__.__name__ in ("Refused", "ProblemsFound"):
-                witness.judge_message(f"answer to {text[:200]}", told)
+        if bench is not None:
+            _asked(witness, bench, _message(rng))
+
+
+def _asked(witness: Witness, bench: Workbench, text: str) -> None:
+    """Send a message and judge the events that answer it."""
+    asked = witness.call(f"decoded {text[:200]}", lambda: decoded(text))
+    if asked is None:
+        return
+    events = witness.call(f"handle {text[:200]}", lambda: bench.handle(asked[0]))
+    for event in events or ():
+        told = witness.call("encoded", partial(encoded, event))
+        if told and isinstance(event, Refused | ProblemsFound):
+            witness.judge_message(f"answer to {text[:200]}", told)
 
 
 def _message(rng: np.random.Generator) -> str:
@@ -159,7 +166,7 @@ def _message(rng: np.random.Generator) -> str:
 
 def _request(rng: np.random.Generator, kind: type) -> dict[str, Any]:
     types = typing.get_type_hints(kind)
-    data = {"kind": kind_of(kind)}
+    data: dict[str, Any] = {"kind": kind_of(kind)}
     for field in fields(kind):
         if rng.random() < 0.93:
             data[field.name] = _sent(rng, types[field.name])
