@@ -15,7 +15,7 @@ import numpy as np
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["check_class", "check_flags", "check_progress", "check_values", "given_or", "is_listed"]
+__all__ = ["check_class", "check_flags", "check_values", "given_or", "is_listed"]
 
 T = TypeVar("T")
 
@@ -51,8 +51,8 @@ def check_class(name: str, given: Any, kind: type) -> None:
         raise InputError(f"{name} must be a {kind.__name__}, got {as_told(given)}")
 
 
-def check_flags(**flags: object) -> None:
-    """Check that arguments are True or False.
+def check_flags(progress: object = None, /, **flags: object) -> None:
+    """Check that arguments are True or False, and that progress is told to a function.
 
     Raises
     ------
@@ -62,18 +62,8 @@ def check_flags(**flags: object) -> None:
     for name, given in flags.items():
         if not isinstance(given, int | np.bool_):
             raise InputError(f"{name} must be True or False, got {as_told(given)}")
-
-
-def check_progress(given: object) -> None:
-    """Check that progress is told to a function.
-
-    Raises
-    ------
-    InputError
-        With what was given.
-    """
-    if given is not None and not callable(given):
-        raise InputError(f"progress must be a function of the fraction, got {as_told(given)}")
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of the fraction, got {as_told(progress)}")
 
 
 def given_or(default: T, name: str, given: T | None) -> T:

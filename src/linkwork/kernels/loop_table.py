@@ -169,10 +169,8 @@ class LoopTable:
             np.bincount(rows.phase_term, part, minlength=len(rows.row))
             for part in (each, np.abs(each))
         )
-        if not self._gains_cancel(turns):
-            return False
         moved, bulk = self._linear_matrix @ turns, np.abs(self._linear_matrix) @ np.abs(turns)
-        return bool(
+        return self._gains_cancel(turns) and bool(
             (np.abs(phase - np.round(phase)) <= TURN_ROUNDING * size).all()
             and (np.abs(moved) <= TURN_ROUNDING * bulk).all()
             and all(row.repeats_after(turns[list(row.variables)]) for row in self.functions)
@@ -182,26 +180,18 @@ class LoopTable:
         """Whether lengths that gain by ``turns`` (N,) leave every loop closed at all angles."""
         rows = self.loops
         gained = np.where(rows.length >= 0, turns[rows.length], 0.0)
-        if not gained.any():
-            return True
-        if gained[rows.phase_term].any():  # along a direction that may turn
-            return False
-        added = rows.coefficient * gained
-        for row in range(rows.rows):
-            mine = added[rows.row == row]
-            if abs(mine.sum()) > TURN_ROUNDING * np.abs(mine).sum():
-                return False
-        return True
+        if not gained.any() or gained[rows.phase_term].any():  # along a direction that may turn
+            return not gained.any()
+        added = [(rows.coefficient * gained)[rows.row == row] for row in range(rows.rows)]
+        return all(abs(sum(each)) <= TURN_ROUNDING * np.abs(each).sum() for each in added)
 
     @property
     def straight_parts(self) -> Array:
         """The weights of every equation that is linear in some variables, (rows, N)."""
-        parts = [self._linear_matrix]
-        for law in self._bounded:
-            weights = np.zeros((1, self.variables))
-            np.add.at(weights[0], list(law.variables), law.weights)
-            parts.append(weights)
-        return np.concatenate(parts)
+        laws = np.zeros((len(self._bounded), self.variables))
+        for weights, law in zip(laws, self._bounded, strict=True):
+            np.add.at(weights, list(law.variables), law.weights)
+        return np.concatenate([self._linear_matrix, laws])
 
     @property
     def has_curvature_bound(self) -> bool:
