@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
