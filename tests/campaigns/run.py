@@ -18,6 +18,7 @@ from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.families import family_campaign
+from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.motion import sweep_campaign
@@ -107,6 +108,7 @@ WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = 
     "families": (family_campaign, 1_000_000),
     "study": (study_campaign, 1_000_000),
     "workbooks": (workbook_campaign, 100),
+    "fuzz": (fuzz_campaign, 100_000),
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -90,7 +91,8 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("sweep", "cubic.toml"),
-            'Error: mechanism "A cubic" has no input: add [input] to sweep it\n',
+            'Error: mechanism "A cubic" has no input: it has positions (solve,\n'
+            "  configurations); add [input] to sweep it\n",
         ),
         (
             ("solve", "four-bar.toml", "--set", "b=3"),
@@ -154,7 +156,23 @@ def test_what_cannot_be_done_is_said_with_what_to_do(
     run: Run, words: tuple[str, ...], message: str
 ) -> None:
     done = run(*words)
-    assert (done.exit_code, done.stdout, done.stderr) == (2, "", message)
+    assert (done.exit_code, done.stderr) == (2, message)
+    if "--json" in words:
+        assert json.loads(done.stdout) == {"schema": 1, "error": message[7:-1]}
+    else:
+        assert done.stdout == ""
+
+
+def test_problems_of_a_file_are_json_too(run: Run) -> None:
+    done = run("solve", "-", "--json", stdin='format = 1\n[equations]\nF = "x"\n[guess]\nx = 1\n')
+    assert done.exit_code == 2
+    assert json.loads(done.stdout)["problems"] == [
+        {
+            "line": 3,
+            "key": "equations.F",
+            "message": 'column 2: an equation needs "=": write "… = 0"\n    x\n     ^',
+        }
+    ]
 
 
 @pytest.mark.parametrize(

@@ -136,13 +136,29 @@ def test_colour_appears_on_a_terminal_only_and_not_if_unwelcome(
     assert b"\x1b" not in start("solve", "four-bar.toml").stdout
 
 
+NEVER = """\
+format = 1
+[loops]
+L = "4*e^(i*2^0.5*p) + 10*e^(i*p) = s*e^(i*q)"
+[guess]
+p = 0
+q = 0
+s = 14
+[input]
+variable = "p"
+"""
+
+
 def test_progress_is_shown_on_a_terminal_after_a_second_only(
-    start: Start, environment: dict[str, str]
+    start: Start, folder: Path, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
     # 500 turns of a motion that does not repeat itself
-    slow = ["sweep", "rolling-wheel", "--from", "0", "--to", "180000", "--step", "300"]
-    assert b"sweeping  [" in _in_terminal(slow, terminal)
+    (folder / "never.toml").write_text(NEVER, encoding="utf-8")
+    slow = ["sweep", "never.toml", "--from", "0", "--to", "180000", "--step", "300"]
+    shown = _in_terminal(slow, terminal)
+    assert b"sweeping  [" in shown
+    assert b"sweeping  [" not in shown.split(b"\x1b[?25h")[-1]  # the bar is gone at the end
     assert b"sweeping" not in _in_terminal(["sweep", "four-bar.toml"], terminal)
     assert start(*slow).stderr == b""
 

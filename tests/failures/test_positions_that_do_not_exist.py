@@ -168,7 +168,7 @@ def test_inputs_that_do_not_fit_are_errors() -> None:
         lw.example("newton-convergence").sweep()
     assert str(nothing.value) == (
         'mechanism "Newton-Raphson, the usual case: quadratic convergence" has no input: '
-        "add [input] to sweep it"
+        "it has positions (solve, configurations); add [input] to sweep it"
     )
 
 

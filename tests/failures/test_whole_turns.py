@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 
+import numpy as np
 import pytest
 
 import linkwork as lw
@@ -69,3 +70,45 @@ def test_a_far_length_is_followed_and_not_wrapped() -> None:
     position = mechanism.solve(at=1e6)
     assert position.status is lw.Status.OUT_OF_REACH
     assert position[name] == 1e6
+
+
+def test_a_wheel_rolls_on_by_the_same_length_with_every_turn() -> None:
+    wheel = lw.example("rolling-wheel")
+    begin = wheel.solve(at=-90)["x"]
+    motion = wheel.sweep(start=0, stop=360e6, step=72e6 + 30)
+    expected = begin - 40 * (np.radians(motion.inputs["wheel"]) + math.pi / 2)
+    np.testing.assert_allclose(motion["x"], expected, rtol=1e-14)
+    assert motion.certified.all()
+
+
+def test_turns_beyond_counting_are_refused() -> None:
+    with pytest.raises(lw.InputError) as refused:
+        lw.example("four-bar").sweep(start=1e300, stop=1e300, step=1)
+    assert str(refused.value) == (
+        "crank is asked for 2.778e+297 turns from the guess: beyond 1e15 turns a number says "
+        "nothing about the angle; leave out whole turns"
+    )
+
+
+def test_a_motion_that_never_repeats_is_followed_over_so_many_turns() -> None:
+    never = lw.loops(
+        loops={"L": "4*e^(i*2^0.5*φ) + 10*e^(i*φ) = s*e^(i*θ)"},
+        guess={"φ": 0, "θ": 0, "s": 14},
+        inputs=lw.Input(variable="φ"),
+    )
+    with pytest.raises(lw.InputError) as refused:
+        never.solve(at=360e6)
+    assert "does not repeat itself within 60 turns: at most 10,000 turns" in str(refused.value)
+
+
+def test_a_table_far_from_the_guess_of_a_plain_number_is_reached_in_few_steps() -> None:
+    cubic = lw.plain_equations(
+        equations={"F": "x^3 - 3*x + t = 0"},
+        guess={"x": 2, "t": 1},
+        inputs=lw.Input(variable="t", start=-1e9, stop=-1e9 + 10, step=10),
+    )
+    began = time.monotonic()
+    motion = cubic.sweep()
+    assert time.monotonic() - began < 5  # in steps of the table alone this takes days
+    x, t = motion["x"], motion.inputs["t"]
+    np.testing.assert_allclose(x**3 - 3 * x, -t, rtol=1e-12)

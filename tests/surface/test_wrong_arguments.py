@@ -36,7 +36,7 @@ def family() -> Any:
         (lambda: draw(5, {"a": (1, 2)}, seed=True), "seed must be a whole number, 0 or more"),
         (lambda: BAR.sweep(configuration=3), NO_NAME),
         (lambda: BAR.solve(configuration=3), NO_NAME),
-        (lambda: BAR.sweep(limits_of=3), "quantities must be a name or several, got 3"),
+        (lambda: BAR.sweep(limits_of=3), "the quantities must be a list of names, got 3"),
         (lambda: BAR.sweep(limits_of=[3]), NO_NAME),
         (lambda: BAR.sweep(change_points=3), '"3" is not a policy at a change point'),
         (lambda: BAR.sweep(step=90)[3], NO_NAME),

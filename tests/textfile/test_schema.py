@@ -30,7 +30,6 @@ STRUCTURAL = [
     "unit of angles unknown",
     "angle key of two points",
     "length key of one point",
-    "loops without input",
     "loops that are not text",
     "equations with a trace",
     "coordinate missing",

@@ -12,6 +12,7 @@ from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.field_types import fields_of, made_of
 from linkwork.mechanism.varied_number import numbers_named, with_numbers
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ class DescribedMechanism:
         >>> round(longer.solve(at=60)["rocker"], 3)
         63.482
         """
-        return type(self)(replace(self.description, **parts))
+        return type(self)(replace(self.description, **fields_of(type(self.description), parts)))
 
     def inversion(self, link: str, *, input: Input | None = None) -> Self:
         """The same kinematic chain with another link as ground; the old ground becomes ``frame``.
@@ -174,7 +175,7 @@ class DescribedMechanism:
         >>> lw.example("four-bar").driven_by(link="rocker")
         <Mechanism "Four-bar linkage, open": 1 equation for crank, coupler; driven by rocker>
         """
-        return type(self)(motion.driven_otherwise(self.model, Input(**what)))
+        return type(self)(motion.driven_otherwise(self.model, made_of(Input, what)))
 
     def check(self) -> CheckReport:
         """How the mechanism was read: equations, unknowns, blocks, mobility, start.

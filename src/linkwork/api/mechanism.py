@@ -11,6 +11,7 @@ from linkwork import drawing, export, motion, textfile, viewer
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.value_types import given_or
 from linkwork.results.force import Force
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ class Mechanism(SolvableMechanism):
         'crank = 60°'
         """
         position = self.solve(at, configuration=configuration, throw=True)
-        chosen, found = options or drawing.SceneOptions(), None
+        chosen = given_or(drawing.SceneOptions(), "options", options)
+        found = None
         if self.description.inputs:
             model = self.model if configuration is None else self.model.from_position(position)
             cycle = motion.sweep(model, progress=progress)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray,
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.value_types import check_class
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import VariedNumber, number_named, with_numbers
 from linkwork.motion.model import Model
@@ -166,7 +167,9 @@ def designs_of(mechanism: Model | _HasModel, dimensions: Mapping[str, object]) -
     >>> designs.problem.tolist(), designs.loops.shape[0]
     ([0, 0, 1], 3)
     """
-    model = mechanism if isinstance(mechanism, Model) else mechanism.model
+    found: object = getattr(mechanism, "model", mechanism)
+    check_class("the mechanism of a family", found, Model)
+    model = cast(Model, found)
     if not isinstance(dimensions, Mapping):
         raise InputError(
             "a family needs a mapping of names and their values, as in "

@@ -16,6 +16,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
+from linkwork.foundation.value_types import check_flags
 from linkwork.kernels.gpu.compiling import graphics_card
 from linkwork.kernels.program.execution import Execution
 from linkwork.motion.model import Model
@@ -99,6 +100,7 @@ class Family:
         MissingPackageError
             If ``gpu`` is not installed.
         """
+        check_flags(certify=certify)
         execution = self._execution(specialised, device)
         return self._sweep(certify, _workers(threads), execution)
 

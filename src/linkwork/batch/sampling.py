@@ -274,7 +274,7 @@ def from_table(table: object, columns: Sequence[str] | None = None) -> Plan:
     UnknownNameError
         If a column does not exist.
     """
-    found = read_columns(table, columns)
+    found = {name: np.atleast_1d(values) for name, values in read_columns(table, columns).items()}
     lengths = {name: len(values) for name, values in _some(found).items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name}: {length}" for name, length in lengths.items())

@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.plain_numbers import as_told
 
 __all__ = ["numbers", "read_columns"]
 
@@ -39,7 +40,7 @@ def numbers(name: str, cells: object) -> Array:
     """Values of one name as an array of at most one axis."""
     array = np.asarray(cells)
     if array.dtype.kind not in "iuf" or array.ndim > 1:
-        raise InputError(f'"{name}" needs numbers, got {array.dtype} of {array.ndim} axes')
+        raise InputError(f'"{name}" needs a row of numbers, got {as_told(cells)}')
     return array.astype(np.float64)
 
 

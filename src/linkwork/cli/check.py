@@ -10,7 +10,16 @@ from linkwork.cli.classification import classification_fields
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.position_page import redundant_lines
-from linkwork.cli.terminal import bad, fields, good, print_json, print_lines, sentence, title_lines
+from linkwork.cli.terminal import (
+    bad,
+    fields,
+    good,
+    print_json,
+    print_lines,
+    progress,
+    sentence,
+    title_lines,
+)
 from linkwork.cli.text_table import Column, lengths, short, significant, table_lines
 from linkwork.results.check import BlockSummary, CheckReport
 
@@ -31,7 +40,8 @@ def check(context: click.Context, file: str, changes: tuple[str, ...], as_json: 
       linkwork check rapier.toml --set a2=260
     """
     mechanism = read_mechanism(file, changes)
-    report = mechanism.check()
+    with progress("checking"):
+        report = mechanism.check()
     if as_json:
         print_json(report.to_dict())
     else:

@@ -101,7 +101,8 @@ def _drawn(mechanism: Mechanism, found: Circuits, names: tuple[str, ...], draw: 
     """Draw all circuits, if there are any; returns a line about the file."""
     if not len(found):
         return f"Did not write {draw}: there is nothing to draw."
-    picture.write(circuit_chart(found, names), draw)
+    with progress("drawing"):
+        picture.write(circuit_chart(found, names), draw)
     every = len(mechanism.loop_equations.unknowns)
     if names or every <= MOST_PANELS:
         return f"Wrote {draw}."

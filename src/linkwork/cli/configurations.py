@@ -25,6 +25,7 @@ from linkwork.cli.terminal import (
     good,
     print_json,
     print_lines,
+    progress,
     sentence,
     title_lines,
     wrapped,
@@ -70,9 +71,12 @@ def configurations(
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
-    found = mechanism.configurations(input_values(mechanism, at))
+    values = input_values(mechanism, at)
+    with progress("listing configurations"):
+        found = mechanism.configurations(values)
     if draw is not None and len(found):
-        picture.write(configuration_sheet(found), draw)
+        with progress("drawing"):
+            picture.write(configuration_sheet(found), draw)
     if as_json:
         print_json(found.to_dict())
     else:

@@ -105,5 +105,6 @@ def draw(
             options=options,
             progress=tell,
         )
-    picture.write(scene, output, theme=THEMES[theme])
+    with progress("drawing"):
+        picture.write(scene, output, theme=THEMES[theme])
     print_written(output, as_json)

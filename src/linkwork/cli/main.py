@@ -7,9 +7,9 @@ from importlib import import_module
 
 import click
 
-from linkwork.cli.options import DEBUG, debug_option
-from linkwork.cli.problems import problem_lines
-from linkwork.cli.terminal import abandon_output, print_lines, ready_streams
+from linkwork.cli.options import DEBUG, JSON, debug_option
+from linkwork.cli.problems import problem_data, problem_lines
+from linkwork.cli.terminal import abandon_output, print_json, print_lines, ready_streams
 from linkwork.foundation.errors import LinkworkError
 
 __all__ = ["linkwork", "main"]
@@ -61,6 +61,8 @@ class _Program(click.Group):
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except (Exception, KeyboardInterrupt) as error:
+            if ctx.meta.get(JSON, False) and isinstance(error, LinkworkError):
+                print_json(problem_data(error))
             ctx.exit(_ended_by(error, ctx.meta.get(DEBUG, False)))
 
 

@@ -15,6 +15,7 @@ from linkwork.results.force import Force, check_forces
 
 __all__ = [
     "DEBUG",
+    "JSON",
     "NUMBER",
     "at_option",
     "change_points_option",
@@ -34,6 +35,8 @@ __all__ = [
 
 #: Key of ``click.Context.meta`` that stores ``--debug``.
 DEBUG = "linkwork.debug"
+#: Key that stores ``--json``.
+JSON = "linkwork.json"
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -75,7 +78,15 @@ debug_option: Decorator = click.option(
 
 file_argument: Decorator = click.argument("file", metavar="FILE")
 
-json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+def _note_json(context: click.Context, _: click.Parameter, wanted: bool) -> bool:
+    context.meta[JSON] = wanted
+    return wanted
+
+
+json_option: Decorator = click.option(
+    "--json", "as_json", is_flag=True, is_eager=True, callback=_note_json, help="Print JSON."
+)
 
 set_option: Decorator = click.option(
     "--set",

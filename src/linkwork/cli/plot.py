@@ -104,14 +104,16 @@ def plot(
     colours = theme_named(theme, THEMES)
     if kind in [which.value for which in CIRCUIT_KINDS]:
         found = _circuits(mechanism, kind, {"against": against, "wrapped": wrapped, **sweeping})
-        picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)
+        with progress("drawing"):
+            picture.write(circuits_plot(found, names, kind=kind), output, theme=colours)
         print_written(output, as_json)
         return
     with progress("sweeping") as tell:
         motion = mechanism.sweep(progress=tell, **sweeping)
     if motion.found.any():
-        chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
-        picture.write(chart, output, theme=colours)
+        with progress("drawing"):
+            chart = motion_plot(motion, names, kind=kind, against=against, wrapped=wrapped)
+            picture.write(chart, output, theme=colours)
         print_written(output, as_json)
     if not motion.found.all():
         print_lines(failure_line(motion), err=True)

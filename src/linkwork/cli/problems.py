@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from linkwork.cli.terminal import wrapped
 from linkwork.foundation.errors import LinkworkError, MechanismError, Problem, key_text
 
-__all__ = ["problem_lines"]
+__all__ = ["problem_data", "problem_lines"]
 
 _WIDEST_KEY = 28  # longer keys are printed on a separate line
 _FORMULA = "    "  # lines with this indent are formulas with a caret below, never wrapped
@@ -18,6 +20,16 @@ def problem_lines(error: LinkworkError) -> list[str]:
     if isinstance(error, MechanismError):
         return [*lines, *_listed(error.problems)]
     return lines + [line for text in rest for line in _wrapped_or_formula(text, "  ")]
+
+
+def problem_data(error: LinkworkError) -> dict[str, Any]:
+    """The message of an error for JSON; every problem of a file with its line and key."""
+    if not isinstance(error, MechanismError):
+        return {"error": str(error)}
+    problems = [
+        {"line": p.line, "key": key_text(p.key), "message": p.message} for p in error.problems
+    ]
+    return {"error": str(error), "problems": problems}
 
 
 def _listed(problems: tuple[Problem, ...]) -> list[str]:

@@ -18,7 +18,7 @@ from linkwork.cli.options import (
     set_option,
 )
 from linkwork.cli.position_page import position_lines
-from linkwork.cli.terminal import print_json, print_lines
+from linkwork.cli.terminal import print_json, print_lines, progress
 from linkwork.foundation.errors import InputError
 from linkwork.numerics.newton import NewtonOptions
 
@@ -116,13 +116,14 @@ def solve(
         largest_turn=math.inf if full_steps else _DEFAULT.largest_turn,
     )
     values = input_values(mechanism, at)
-    position = mechanism.solve(
-        values,
-        configuration=configuration,
-        from_guess=from_guess,
-        options=options,
-        with_steps=show_steps,
-    )
+    with progress("solving"):
+        position = mechanism.solve(
+            values,
+            configuration=configuration,
+            from_guess=from_guess,
+            options=options,
+            with_steps=show_steps,
+        )
     if as_json:
         print_json(position.to_dict())
     else:

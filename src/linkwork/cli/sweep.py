@@ -115,7 +115,8 @@ def sweep(
             certify=not no_certificates,
             progress=tell,
         )
-    page = None if draw is None else _scene(mechanism, motion, configuration)
+    with progress("drawing"):
+        page = None if draw is None else _scene(mechanism, motion, configuration)
     table = table_of(motion, *columns)
     written = _written(motion, table, page, csv, draw)
     if plot is not None:
@@ -166,7 +167,8 @@ def _written(
         write_text(csv, csv_lines(table))
         said.append(f"Wrote {csv}: {len(motion)} rows.")
     if draw is not None and page is not None:
-        picture.write(page, draw)
+        with progress("drawing"):
+            picture.write(page, draw)
         moving = ", and the motion faintly" if motion.found.any() else ""
         said.append(f"Wrote {draw}: the start position{moving}.")
     elif draw is not None:
@@ -178,7 +180,8 @@ def _plotted(motion: Motion, columns: list[str], path: str) -> str:
     """Plot columns, or unknowns and outputs, if there are positions; returns a line about it."""
     if not motion.found.any():
         return f"Did not write {path}: there is no position to plot."
-    picture.write(motion_plot(motion, columns), path)
+    with progress("drawing"):
+        picture.write(motion_plot(motion, columns), path)
     return f"Wrote {path}: {', '.join(columns) or 'unknowns and outputs'} over the input."
 
 

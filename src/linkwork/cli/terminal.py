@@ -8,6 +8,7 @@ import math
 import os
 import sys
 import textwrap
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -38,6 +39,7 @@ JSON_SCHEMA = 1  # increases when a key of the JSON output changes its meaning
 
 _PATIENCE = 1.0  # seconds before a progress bar appears
 _BAR_STEPS = 1000
+_CLEAR_LINE = "\r\x1b[K"
 
 
 def ready_streams() -> None:
@@ -168,6 +170,8 @@ def fields(
 def progress(label: str) -> Iterator[Callable[[float], None]]:
     """A progress bar for tasks over one second, on the error stream of a terminal only.
 
+    Until the task tells a fraction, the label alone is shown.
+
     Yields
     ------
     callable
@@ -178,19 +182,33 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         return
     began = time.monotonic()
     bar = click.progressbar(length=_BAR_STEPS, label=label, file=sys.stderr)
-    shown = False
+    shown, lock = False, threading.Lock()
+
+    def say() -> None:
+        with lock:
+            if not shown:
+                click.echo(f"{label} …", file=sys.stderr, nl=False)
 
     def tell(fraction: float) -> None:
         nonlocal shown
-        if not shown and time.monotonic() - began > _PATIENCE:
-            shown = True
-            bar.__enter__()
-        if shown:
-            # branches report in any order: the bar must not move backwards
-            bar.update(max(int(_BAR_STEPS * fraction) - bar.pos, 0))
+        with lock:
+            if not shown and time.monotonic() - began > _PATIENCE:
+                shown = True
+                click.echo(_CLEAR_LINE, file=sys.stderr, nl=False)
+                bar.__enter__()
+            if shown:
+                # branches report in any order: the bar must not move backwards
+                bar.update(max(int(_BAR_STEPS * fraction) - bar.pos, 0))
 
+    timer = threading.Timer(_PATIENCE, say)
+    timer.daemon = True
+    timer.start()
     try:
         yield tell
     finally:
+        timer.cancel()
+        timer.join()
         if shown:
             bar.__exit__(None, None, None)
+        elif time.monotonic() - began > _PATIENCE:
+            click.echo(_CLEAR_LINE, file=sys.stderr, nl=False)

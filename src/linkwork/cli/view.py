@@ -10,7 +10,7 @@ import click
 
 from linkwork.api import example_text, examples, loads
 from linkwork.cli.options import debug_option, file_argument, json_option
-from linkwork.cli.terminal import print_json, print_lines, title_lines
+from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.server import LiveServer
@@ -66,7 +66,8 @@ def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
     if file == "-":
         raise InputError("standard input cannot be edited and saved: give the name of a file")
     opened = _opened(file)
-    workbench = Workbench(opened, loads)
+    with progress("opening"):
+        workbench = Workbench(opened, loads)
     server = LiveServer(workbench, port)
 
     def tell() -> None:

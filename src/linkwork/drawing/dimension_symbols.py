@@ -21,6 +21,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, Text, text_width, xy
+from linkwork.foundation.elementwise import phase
 from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.skeleton import DrivenPart
 from linkwork.results.position import Position
@@ -142,7 +143,7 @@ def _angle(
     centre = pose.points[bar.points[0]]
     if part.name not in pose.angles and part.pivot is not None and part.pivot != bar.points[0]:
         centre, reach = pose.points[part.pivot], -reach
-    here = pose.angles.get(part.name, cmath.phase(reach))
+    here = pose.angles.get(part.name, phase(reach))
     # keeps the sign of the input, unlike %
     sweep = math.fmod(value, math.tau)
     radius = min(_ARC * measures.pin, 0.75 * abs(reach))

@@ -22,6 +22,7 @@ from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
 from linkwork.drawing.wheel_symbols import outer_radius
+from linkwork.foundation.elementwise import phase
 from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.skeleton import Bar, DrivenPart
@@ -143,7 +144,7 @@ def _around_pivot(
     discs = [d for d in pose.skeleton.of(Disc) if (d.link, d.center) == (bar.name, name)]
     if discs:
         radius = _around_wheel(discs, measures)
-    usual = cmath.phase(reach) + math.radians(75) * turn
+    usual = phase(reach) + math.radians(75) * turn
     plate = len(others) > 1 and not in_line(convex_outline([pivot, *(pivot + z for z in others)]))
     turns = np.linspace(0.0, math.tau, 24, endpoint=False).tolist()
     for away, wider in product(turns, _AROUND_PLATE if plate else _WIDER):

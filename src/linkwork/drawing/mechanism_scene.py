@@ -31,6 +31,8 @@ from linkwork.drawing.vector_polygon import Edge
 from linkwork.drawing.vector_symbols import vector_edges
 from linkwork.drawing.wheel_symbols import wheel_symbols
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import as_names
+from linkwork.foundation.value_types import given_or
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
@@ -75,7 +77,7 @@ def scene_of(
     -----
     Writers choose colours and fonts, see :mod:`linkwork.drawing.theme`.
     """
-    chosen = options or SceneOptions()
+    chosen = given_or(SceneOptions(), "options", options)
     pose = Pose.of(position, motion, bare=bool(chosen.vectors))
     names = traced(pose, traces)
     _check_motion(chosen, names, motion)
@@ -176,6 +178,7 @@ def traced(pose: Pose, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """
     if wanted is None:
         return pose.skeleton.traced if pose.paths else ()
+    wanted = as_names("traces", wanted)
     for name in wanted:
         if name not in pose.points:
             raise UnknownNameError(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 
 import numpy as np
 
 from linkwork.drawing.pose import Pose
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import phase as phase_of
 from linkwork.mechanism.figures import Disc, Mesh
 
 __all__ = ["ADDENDUM", "DEDENDUM", "tooth_outline", "tooth_phases"]
@@ -82,7 +82,7 @@ def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
     """The phase of a wheel in mesh with one of known phase."""
     assert one.teeth is not None
     assert other.teeth is not None
-    line = cmath.phase(pose.points[other.center] - pose.points[one.center])
+    line = phase_of(pose.points[other.center] - pose.points[one.center])
     if one.ring or other.ring:
         # The point of contact lies beyond the smaller wheel; its teeth are in the ring's gaps.
         line = line if one.ring else line + math.pi

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass
 
@@ -11,6 +10,7 @@ import numpy as np
 from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import phase
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cam import Cam, follower_frame
@@ -133,7 +133,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
         )
     pivot, center, tip = (linkage.sketched(q) for q in (cam.pivot, cam.center, cam.point))
     sign = math.copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag)
-    line = cmath.phase(ground)
+    line = phase(ground)
 
     def place(s: Array, s1: Array, s2: Array) -> tuple[ComplexArray, ...]:
         way = np.exp(1j * (line + sign * (low + s)))
@@ -149,7 +149,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     return Follower(
         path=FollowerPath(motion=motion, place=place, roller=roller, flat=flat),
         frame=frame,
-        constant=cmath.phase(arm) - line - sign * low,
+        constant=phase(arm) - line - sign * low,
         sign=sign,
         angles=((cam.link, 1.0), (frame, -1.0)),
     )

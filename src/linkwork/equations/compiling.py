@@ -64,11 +64,12 @@ class PointTable:
 
     def jet(self, v: Array, first: Array, second: Array) -> tuple[ComplexArray, ...]:
         """Positions x + iy with first and second derivatives along a path, (B, points) each."""
-        parts = self.rows.jet(v, first, second)
-        for child, parent in self.levels:
-            for part in parts:
-                # level by level: the parents are complete
-                part[:, child] += part[:, parent]
+        with np.errstate(all="ignore"):  # too far away or too fast for floats
+            parts = self.rows.jet(v, first, second)
+            for child, parent in self.levels:
+                for part in parts:
+                    # level by level: the parents are complete
+                    part[:, child] += part[:, parent]
         return parts
 
 
@@ -142,7 +143,8 @@ def _plain_scales(equations: LoopEquations, functions: Sequence[FormulaRow]) -> 
     sizes = []
     for row in functions:
         value, gradient = row.value_and_gradient(equations.start[None, :])
-        size = np.abs(gradient[0]) @ variables[list(row.variables)]
+        with np.errstate(over="ignore", invalid="ignore"):  # then the guess gives no scale
+            size = np.abs(gradient[0]) @ variables[list(row.variables)]
         size = max(float(size), abs(float(value[0])))
         sizes.append(size if np.isfinite(size) and size > 0.0 else 1.0)
     return np.array(sizes), variables
@@ -222,7 +224,17 @@ def _mismatch(equations: LoopEquations, form: BlockForm) -> list[Problem]:
     labels = equations.labels
     table = "equations" if equations.real else "loops"
     found = []
-    if form.missing:
+    if form.missing and not equations.inputs and not equations.real:
+        free = ", ".join(names[k] for k in form.underdetermined)
+        plural = "s" if form.missing > 1 else ""
+        found.append(
+            Problem(
+                key=("input",),
+                message=f'is missing: name the driven variable, variable = "{names[0]}" '
+                f"({form.missing} unknown{plural} more than equations; not determined: {free})",
+            )
+        )
+    elif form.missing:
         free = ", ".join(names[k] for k in form.underdetermined)
         found.append(
             Problem(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass
 
@@ -16,6 +15,7 @@ from linkwork.equations.directions import (
 )
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.elementwise import phase
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
@@ -194,7 +194,7 @@ def _poles(form: DirectionForm, closures: ComplexArray, own: list[int]) -> tuple
         # one along the input, one along a fixed line: parallel twice per turn
         turning = along.index(0)
         ratio = complex(columns[0, 1 - turning] / columns[0, turning])
-        angle = cmath.phase(ratio)
+        angle = phase(ratio)
         shift = float((form.angles @ np.array([angle]))[-1] + form.shift[-1, -1])
         return (shift, shift + math.pi)
     return None

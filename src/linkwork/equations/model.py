@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -11,7 +10,7 @@ import numpy as np
 from linkwork.expression.tree import Node
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.elementwise import display_value
+from linkwork.foundation.elementwise import display_value, phase as phase_of
 from linkwork.foundation.errors import Problem
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.kernels.piecewise import Piecewise
@@ -85,10 +84,10 @@ class Term:
     ) -> Term:
         """A fixed vector in a rotating frame: modulus displayed as ``shown``, direction as turn."""
         seen = display_value(z)
-        turn = cmath.phase(seen) if seen else 0.0
+        turn = phase_of(seen) if seen else 0.0
         sign = 1
         if turn > np.pi / 2 + 1e-12 or turn < -np.pi / 2 + 1e-12:
-            sign, turn = -1, cmath.phase(-seen)
+            sign, turn = -1, phase_of(-seen)
         if abs(turn) < 1e-15:
             turn = 0.0
         return cls(value=z, magnitude=shown, sign=sign, turn=turn, length=length, phase=phase)

@@ -14,7 +14,14 @@ from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import value
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.elementwise import cis, display_value, exponential, uniform_value, vector
+from linkwork.foundation.elementwise import (
+    cis,
+    display_value,
+    exponential,
+    finite,
+    uniform_value,
+    vector,
+)
 from linkwork.foundation.errors import ExpressionError, choices
 
 __all__ = ["Monomial", "PhasorReader"]
@@ -89,7 +96,10 @@ class PhasorReader:
             If the formula does not have this form; with the column.
         """
         self.text = text
-        return _join_like_terms(self._sum(node))
+        terms = _join_like_terms(self._sum(node))
+        if not all(finite(m.value.real) and finite(m.value.imag) for m in terms):
+            raise self._error(node, "a coefficient here is not a finite number")
+        return terms
 
     def _error(self, node: Node, message: str) -> ExpressionError:
         return ExpressionError(f"column {node.column}: {message}", self.text, node.column)

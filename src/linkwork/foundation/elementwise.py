@@ -73,7 +73,12 @@ def with_parts(x: Array, y: Array) -> ComplexArray:
 
 def phase(z: complex) -> float:
     """The direction of a vector, in (-π, π]."""
-    return cast(float, _apply(np.angle, cmath.phase, z))
+    return cast(float, _apply(np.angle, _phase, z))
+
+
+def _phase(z: complex) -> float:
+    # cmath.phase fails where the direction of a vector is too small for a float
+    return math.atan2(z.imag, z.real)
 
 
 def cis(angle: float) -> complex:

@@ -5,14 +5,17 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import cast
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.value_types import is_listed
 
 __all__ = [
     "GREEK",
     "GROUND",
     "as_name",
+    "as_names",
     "canonical",
     "find_spelling",
     "free_name",
@@ -45,6 +48,21 @@ def as_name(name: object) -> str:
     if not isinstance(name, str):
         raise InputError(f"a name must be a text, got {as_told(name)}")
     return name
+
+
+def as_names(what: str, given: object) -> tuple[str, ...]:
+    """The names in a list; a text alone is one name.
+
+    Raises
+    ------
+    InputError
+        If it is not a list of texts; ``what`` names it in the message.
+    """
+    if isinstance(given, str):
+        return (given,)
+    if not is_listed(given):
+        raise InputError(f"{what} must be a list of names, got {as_told(given)}")
+    return tuple(map(as_name, cast(Iterable[object], given)))
 
 
 def canonical(name: str) -> str:

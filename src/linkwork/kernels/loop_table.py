@@ -174,7 +174,8 @@ class LoopTable:
         """Whether variables (N,) moved by this many whole turns each satisfy the same equations.
 
         Not so for a phase that they change by a fraction of a turn, nor for a linear row that they
-        change at all.
+        change at all. A length may gain 2π times its entry: in loops only along fixed directions
+        in which such gains cancel.
         """
         rows = self.loops
         each = rows.phase_weight * turns[rows.phase_variable]
@@ -183,11 +184,28 @@ class LoopTable:
             for part in (each, np.abs(each))
         )
         moved, bulk = self._linear_matrix @ turns, np.abs(self._linear_matrix) @ np.abs(turns)
-        return bool(
+        return self._gains_cancel(turns) and bool(
             (np.abs(phase - np.round(phase)) <= TURN_ROUNDING * size).all()
             and (np.abs(moved) <= TURN_ROUNDING * bulk).all()
             and all(row.repeats_after(turns[list(row.variables)]) for row in self.functions)
         )
+
+    def _gains_cancel(self, turns: Array) -> bool:
+        """Whether lengths that gain by ``turns`` (N,) leave every loop closed at all angles."""
+        rows = self.loops
+        gained = np.where(rows.length >= 0, turns[rows.length], 0.0)
+        if not gained.any() or gained[rows.phase_term].any():  # along a direction that may turn
+            return not gained.any()
+        added = [(rows.coefficient * gained)[rows.row == row] for row in range(rows.rows)]
+        return all(abs(sum(each)) <= TURN_ROUNDING * np.abs(each).sum() for each in added)
+
+    @property
+    def straight_parts(self) -> Array:
+        """The weights of every equation that is linear in some variables, (rows, N)."""
+        laws = np.zeros((len(self._bounded), self.variables))
+        for weights, law in zip(laws, self._bounded, strict=True):
+            np.add.at(weights, list(law.variables), law.weights)
+        return np.concatenate([self._linear_matrix, laws])
 
     @property
     def has_curvature_bound(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.dimensions import Number
 
 __all__ = ["Input"]
@@ -53,6 +54,9 @@ class Input:
     stop: Number | None = None
     step: Number | None = None
     speed: Number | None = None
+
+    def __post_init__(self) -> None:
+        check_values(self)
 
     @property
     def drives(self) -> tuple[str, str]:

@@ -8,8 +8,9 @@ from typing import Any, TypeVar, cast
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.value_types import is_listed
 
-__all__ = ["check_entries", "check_field_types", "made_of"]
+__all__ = ["check_entries", "check_field_types", "fields_of", "made_of"]
 
 T = TypeVar("T")
 
@@ -22,11 +23,16 @@ def made_of(kind: type[T], given: Mapping[str, Any]) -> T:
     UnknownNameError
         For a field that does not exist, with those that do.
     """
+    return kind(**fields_of(kind, given))
+
+
+def fields_of(kind: type, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The same fields by name, all of which exist; raises like :func:`made_of`."""
     names = [field.name for field in fields(cast(Any, kind)) if field.init]
     for name in given:
         if name not in names:
             raise UnknownNameError(f'there is no field "{name}" {choices("fields", names, name)}')
-    return kind(**given)
+    return given
 
 
 def check_field_types(description: Any) -> None:
@@ -44,7 +50,7 @@ def check_field_types(description: Any) -> None:
         if isinstance(field.default, Mapping):
             _check_mapping(name, str(field.type), given)
         elif isinstance(field.default, tuple):
-            if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+            if not is_listed(given):
                 raise _wrong(name, "a list", given)
         elif isinstance(field.default, bool | str) and not isinstance(given, type(field.default)):
             wanted = "a text" if isinstance(field.default, str) else "True or False"
@@ -73,7 +79,7 @@ def _check_mapping(name: str, kind: str, given: Any) -> None:
     for key, entry in given.items():
         if not isinstance(key, str):
             raise InputError(f"the names in {name} must be texts, got {as_told(key)}")
-        if lists and (isinstance(entry, str) or not isinstance(entry, Iterable)):
+        if lists and not is_listed(entry):
             raise _wrong(f'{name}["{key}"]', f"a list of {wanted}", entry)
         if texts and not isinstance(entry, str):
             raise _wrong(f'{name}["{key}"]', "a text", entry)

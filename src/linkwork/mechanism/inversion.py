@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.names import GROUND, canonical, free_name
+from linkwork.foundation.names import GROUND, as_name, canonical, free_name
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.directed import named_in
 from linkwork.mechanism.driven_input import Input
@@ -78,7 +78,7 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
     InputError
         If the inversion cannot be written with points and links.
     """
-    if link not in linkage.links:
+    if as_name(link) not in linkage.links:
         cylinder = any(link == c.name for c in linkage.of(Cylinder))
         if cylinder:
             raise InputError(
@@ -130,7 +130,7 @@ class _Inverting:
         self.fixed = list(linkage.links[self.link])
         fixed, (origin, second) = linkage.shapes.local[GROUND], linkage.links[GROUND][:2]
         # angles on the frame are measured from its first two points, on ground from the x axis
-        self.turn = cmath.phase(fixed[second] - fixed[origin])
+        self.turn = phase(fixed[second] - fixed[origin])
 
     def _axis(self) -> complex:
         """The direction of the new ground's x axis in the old one's coordinates."""
@@ -280,4 +280,4 @@ def _angle(linkage: Linkage, a: str, vertex: str, b: str) -> Number:
         (ax, ay), (vx, vy), (bx, by) = _texts(linkage, a, vertex, b)
         return f"atan2({by} - {vy}, {bx} - {vx}) - atan2({ay} - {vy}, {ax} - {vx})"
     start, end = (linkage.sketched(point) - linkage.sketched(vertex) for point in (a, b))
-    return linkage.angle.from_radians(cmath.phase(end * start.conjugate()))
+    return linkage.angle.from_radians(phase(end * start.conjugate()))

@@ -91,8 +91,6 @@ class Loops(_Equations):
         self._check_guess(problems)
         if not self.loops:
             problems.add(("loops",), "is empty: write at least one loop equation")
-        if not self.inputs:
-            problems.add(("input",), "is missing: name the variable that is driven")
         for link, points in self.links.items():
             for point in points:
                 if point not in self.points:

@@ -18,6 +18,7 @@ from linkwork.foundation.names import canonical
 from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
+from linkwork.foundation.value_types import check_flags
 from linkwork.motion import failure as why
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
 from linkwork.motion.circuit.seeding import Seeding
@@ -59,6 +60,7 @@ def circuits(
     InputError
         If the mechanism has no input.
     """
+    check_flags(progress, certify=certify)
     work = _Circuits(model, certify)
     work.seeding.look(progress)
     return work.result()

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.names import as_names
 from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.drive import Drive
@@ -34,9 +34,7 @@ def check_quantities(model: Model, names: str | Iterable[str]) -> tuple[str, ...
     InputError
         For values that are no names.
     """
-    if not isinstance(names, Iterable):
-        raise InputError(f"quantities must be a name or several, got {as_told(names)}")
-    names = (names,) if isinstance(names, str) else tuple(names)
+    names = as_names("the quantities", names)
     for name in names:
         asked = model.quantities.find(name)
         if asked.rate or asked.group is Group.EVIDENCE or asked.needs:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
@@ -85,8 +86,12 @@ def _add(parts: Iterable[tuple[int, _Sum]]) -> _Sum:
     for sign, part in parts:
         for key, value in part.items():
             total[key] = total.get(key, 0j) + sign * value
-            largest = max(largest, abs(value))
-    return {key: value for key, value in total.items() if abs(value) > _LEAST * largest}
+            largest = max(largest, math.hypot(value.real, value.imag))
+    return {
+        key: value
+        for key, value in total.items()
+        if math.hypot(value.real, value.imag) > _LEAST * largest
+    }
 
 
 def _ways(place: _Sum, loops: list[_Sum]) -> Iterator[_Sum]:

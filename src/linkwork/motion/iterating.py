@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import as_name
+from linkwork.foundation.plain_numbers import as_told, plain_number
+from linkwork.foundation.value_types import given_or, is_listed
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import Named, name_series
 from linkwork.motion.nearest_assembling import open_ends
@@ -45,8 +49,8 @@ def iterates(
     UnknownNameError, InputError
         For names that are no unknowns, and values that are no numbers.
     """
-    options = options or NewtonOptions()
-    model = model.with_guess(guess or {})
+    options = given_or(NewtonOptions(), "options", options)
+    model = model.with_guess({} if guess is None else guess)
     position = solve(model, at, from_guess=True, options=options)
     solver = model.compiled.solver
     v = model.equations.start.copy()
@@ -90,12 +94,14 @@ def pulled_guess(
     UnknownNameError, InputError
         For names that are no unknowns or no points, and values that are no numbers.
     """
-    model = model.with_guess(guess or {})
+    model = model.with_guess({} if guess is None else guess)
     names, unknowns = model.compiled.points.names, model.equations.unknowns
-    if point not in names:
+    if as_name(point) not in names:
         raise UnknownNameError(f'there is no point "{point}" {choices("points", names, point)}')
-    if not np.isfinite(place).all():
-        raise InputError(f"the coordinates of {point} must be two finite numbers, got {place}")
+    numbers = [plain_number(each) for each in place] if is_listed(place) else []
+    if len(numbers) != 2 or not all(n is not None and math.isfinite(n) for n in numbers):
+        told = as_told(place)
+        raise InputError(f"the coordinates of {point} must be two finite numbers, got {told}")
     v = model.equations.start.copy()
     v[len(unknowns) :] = target_values(model, at) * model.input_scale
     wanted = complex(*place)

@@ -22,7 +22,7 @@ from linkwork.foundation.errors import (
     choices,
 )
 from linkwork.foundation.names import GROUND, canonical
-from linkwork.foundation.plain_numbers import finite_number
+from linkwork.foundation.plain_numbers import as_told, finite_number
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
@@ -73,6 +73,8 @@ class Model:
         UnknownNameError, InputError
             For a name that is no unknown, or a value that is no finite number.
         """
+        if not isinstance(values, Mapping):
+            raise InputError(f'a guess is given by name, as {{"θ3": 20}}, got {as_told(values)}')
         unknowns = self.equations.unknowns
         number = {canonical(u.name): k for k, u in enumerate(unknowns)}
         start = self.equations.start.copy()
@@ -141,7 +143,8 @@ class Model:
         """The table's input values, internal units, (rows, p)."""
         if not self.description.inputs:
             raise InputError(
-                f'mechanism "{self.description.name}" has no input: add [input] to sweep it'
+                f'mechanism "{self.description.name}" has no input: it has positions '
+                "(solve, configurations); add [input] to sweep it"
             )
         return self.rows_in_file_units * self.input_scale
 

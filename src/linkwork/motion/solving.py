@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import NotConvergedError
 from linkwork.foundation.status import Status
+from linkwork.foundation.value_types import check_flags, given_or
 from linkwork.motion import failure as why, following
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
@@ -69,7 +70,8 @@ def solve(
     NotConvergedError
         Only with ``throw``.
     """
-    options = options or NewtonOptions()
+    check_flags(certify=certify, from_guess=from_guess, with_steps=with_steps, throw=throw)
+    options = given_or(NewtonOptions(), "options", options)
     target = target_values(model, at)
     inputs = target * model.input_scale
     start = first_position(model, inputs if from_guess else model.start_inputs, options, with_steps)

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
+from linkwork.foundation.value_types import check_flags, given_or
 from linkwork.motion.branch_rows import Asked, BranchRows, Report, rows_of_branch
 from linkwork.motion.circuit_sweep import further_branches
 from linkwork.motion.crossing import beyond_change_point, ends_passed
@@ -86,9 +87,10 @@ def sweep(
         For a policy or a quantity that does not exist.
     """
     policy = ChangePointPolicy.of(change_points)
+    check_flags(progress, certify=certify, through=through)
     _ = model.rows  # without an input there is nothing to sweep: an error
     quantities = check_quantities(model, limits_of)
-    opt = options or NewtonOptions()
+    opt = given_or(NewtonOptions(), "options", options)
     work = _begin_sweep(model, certify, opt, policy, progress, explained=explained)
     if isinstance(work, Start):
         return _without_start(model, work)
@@ -134,14 +136,12 @@ def _begin_sweep(
     if entry is None:
         message = "no row of the table can be reached from the input values of the guess"
         return replace(start, message=message)
-    work = _Sweep(drive, certify, Report(progress, entry[0].t, *_span(asked.t)))
+    work = _Sweep(
+        drive, certify, Report(progress, entry[0].t, float(asked.t.min()), float(asked.t.max()))
+    )
     work.message = start.message
     work.run(*entry, asked, policy)
     return work
-
-
-def _span(t: Array) -> tuple[float, float]:
-    return float(t.min()), float(t.max())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -177,7 +177,7 @@ class _Sweep:
         # no row of the path is graded higher than the way onto it
         standing = Certification.CERTIFIED if entered else Certification.MOTION_NOT_PROVED
         found = self._branch(anchor, asked, self.model.branch, standing)
-        span = _span(asked.t)
+        span = float(asked.t.min()), float(asked.t.max())
         period = found.lap.width if found.lap else FULL_TURN if self.drive.free else math.inf
         table = SweepTable(self.drive, asked, found, (span, span), period)
         self.tables.append(table)
@@ -269,7 +269,7 @@ class _Sweep:
         for branch in around.branches:
             found, name = branch.found, branch.name
             found = replace(found, rows=found.rows.set(found.converged, branch=name))
-            windows = (branch.window, _span(asked.t))
+            windows = (branch.window, (float(asked.t.min()), float(asked.t.max())))
             table = SweepTable(self.drive, branch.asked, found, windows, math.inf)
             self.tables.append(table)
             self._keep(table, found, name, branch.standing, found.here)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array
-from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LoopTable
 from linkwork.motion.model import Model
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import (
@@ -24,12 +21,12 @@ __all__ = ["leading_scale", "track_to", "turns_freely"]
 
 def leading_scale(model: Model, lead: int) -> float:
     """The natural size of a step of the leading input: a radian, the longest link, or for a plain
-    number a tenth of its table.
+    number a tenth of the way over its table and its guess.
     """
     solver = model.compiled.solver
     if model.equations.inputs[lead].kind == "number":
-        span = float(np.ptp(model.rows[:, lead]))
-        # a plain number has no natural size, and a table of one row no span
+        # a plain number has no natural size, and a table of one row at the guess no span
+        span = float(np.ptp([*model.rows[:, lead], model.start_inputs[lead]]))
         return span / 10.0 or float(solver.variable_scale[solver.unknowns + lead])
     return float(solver.variable_scale[solver.unknowns + lead])
 
@@ -45,7 +42,7 @@ def turns_freely(model: Model) -> bool:
     turns[lead] = 1.0
     given = np.zeros(table.variables, dtype=bool)
     given[lead] = True
-    for weights in _straight_parts(table):
+    for weights in table.straight_parts:
         left = float(weights @ turns)
         if not left:
             continue
@@ -58,20 +55,6 @@ def turns_freely(model: Model) -> bool:
         # later rows must not turn these angles otherwise
         given[weights != 0.0] = True
     return table.repeats_after(turns)
-
-
-def _straight_parts(table: LoopTable) -> Iterator[Array]:
-    """The weights (N,) of every equation that is linear in some variables."""
-    for row in range(len(table.linear.constant)):
-        weights = np.zeros(table.variables)
-        mine = table.linear.row == row
-        np.add.at(weights, table.linear.variable[mine], table.linear.weight[mine])
-        yield weights
-    for law in table.functions:
-        if isinstance(law, LawRow):
-            weights = np.zeros(table.variables)
-            np.add.at(weights, list(law.variables), law.weights)
-            yield weights
 
 
 def track_to(

@@ -12,6 +12,7 @@ from linkwork.equations.notation import PlainText
 from linkwork.expression.tree import Number
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.value_types import check_class
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -44,6 +45,7 @@ def moving_loops(model: Model, motion: Motion) -> tuple[MovingLoop, ...]:
     """Every loop equation over the rows of a motion of the mechanism, term by term; none if it is
     not written in loops.
     """
+    check_class("the cycle", motion, Motion)
     inputs = [motion.inputs[v.name] for v in model.equations.inputs]
     v = np.column_stack([motion.q, *inputs])
     v[:, motion.q.shape[1] :] *= model.input_scale

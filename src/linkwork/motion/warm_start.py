@@ -12,6 +12,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, StatusArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
+from linkwork.foundation.value_types import check_class
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
 from linkwork.motion.positions import input_rate
@@ -48,6 +49,7 @@ def warm_started(model: Model, before: Motion) -> Motion | None:
         ``None`` where the branch has to be followed anew: the neighbour's cycle has another
         table or ends at more than dead points, rows move far, or dead points do.
     """
+    check_class("the neighbour", before, Motion)
     asked = before.asked
     q, found = before.q[asked], before.found[asked]
     rows, solver = model.rows, model.compiled.solver

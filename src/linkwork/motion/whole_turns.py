@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.rounding import EPSILON, UNIT_ROUNDOFF
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import Node, follow
@@ -18,6 +19,8 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["Lap", "lap_of"]
 
 _FAR = 3.0  # turns up to which the motion is simply followed
+_MOST_COUNTED = 1e15  # turns: of more, the rounding of a number is more than a turn
+_MOST_FOLLOWED = 10_000  # turns of a motion that does not repeat itself
 _MOST_TURNS = 60  # of the input, after which a motion counts as one that never repeats itself
 
 
@@ -26,7 +29,7 @@ class Lap:
     """The way of a motion from a position back to it, while the input turns on.
 
     ``begin``, ``end``: of the input, internal units. ``turns``: of the input in a lap. ``gained``
-    (N,): whole turns of every variable in a lap.
+    (N,): whole turns of every angle in a lap; what every length gains, in units of 2π.
     """
 
     drive: Drive
@@ -67,8 +70,8 @@ class Lap:
         leads, begin, end = self.drive.leads, self.begin.v, closing.v[0]
         return bool(
             closing.certification[0] == Certification.CERTIFIED.code
-            and np.array_equal(whole_turns(leads, begin, end), self.gained)
-            and same_position(leads, begin, end)
+            and np.array_equal(_gained(self.drive, begin, end), self.gained)
+            and same_position(leads, begin, end, self.gained)
         )
 
     def after(self, rows: SolvedRows, number: Array, proved: bool) -> SolvedRows:
@@ -78,7 +81,8 @@ class Lap:
         """
         v = rows.v + np.multiply.outer(number * FULL_TURN, self.gained)
         weights = self.drive.solver.variable_scale
-        off = (2.0 * EPSILON * np.abs(v) * (v != rows.v) / weights).max(axis=1)
+        roundings = np.where(self.drive.leads.is_angle, 2.0, 4.0) * EPSILON
+        off = (roundings * np.abs(v) * (v != rows.v) / weights).max(axis=1)
         radius, room = rows.radius + off, rows.uniqueness_radius - off
         certified = rows.certification == Certification.CERTIFIED.code
         lost = certified & ~(radius < room)
@@ -94,6 +98,11 @@ def lap_of(drive: Drive, begin: Node, t: Array) -> Lap | None:
     """The lap of a motion, if inputs ``t`` (B,) far from each other or from its beginning are
     asked for.
 
+    Raises
+    ------
+    InputError
+        If so many turns are asked for that a motion which never comes back cannot be followed.
+
     Returns
     -------
     Lap or None
@@ -106,13 +115,45 @@ def lap_of(drive: Drive, begin: Node, t: Array) -> Lap | None:
     asked = max(np.ptp(t), np.abs(t - begin.t).max()) / FULL_TURN
     if not asked > _FAR:
         return None
+    if asked > _MOST_COUNTED:
+        raise InputError(
+            f"{inputs[0].name} is asked for {asked:.4g} turns from the guess: beyond 1e15 turns a "
+            "number says nothing about the angle; leave out whole turns"
+        )
     here = begin
     for turns in range(1, int(min(asked, _MOST_TURNS)) + 1):
         nodes, end = follow(drive.solver, drive.path, here, begin.t + turns * FULL_TURN)
         if end is not None:
             return None
+        if not nodes:  # a turn is less than the rounding of this angle
+            break
         here = nodes[-1]
-        if same_position(drive.leads, begin.v, here.v):
-            gained = whole_turns(drive.leads, begin.v, here.v)
+        gained = _gained(drive, begin.v, here.v)
+        if same_position(drive.leads, begin.v, here.v, gained):
             return Lap(drive=drive, begin=begin, end=here, turns=turns, gained=gained)
+    if asked > _MOST_FOLLOWED:
+        raise InputError(
+            f"{inputs[0].name} is asked for {asked:.4g} turns from the guess, and the motion does "
+            f"not repeat itself within {_MOST_TURNS} turns: at most {_MOST_FOLLOWED:,} turns are "
+            "followed; start from a guess nearer to the values asked for"
+        )
     return None
+
+
+def _gained(drive: Drive, begin: Array, end: Array) -> Array:
+    """Whole turns of angles (N,) on the way between two positions, and what lengths gain by them.
+
+    A wheel that rolls on gains the same length with every turn: a straight equation says how much,
+    in units of 2π.
+    """
+    leads = drive.leads
+    gained = whole_turns(leads, begin, end)
+    known = leads.is_angle.copy()
+    straight = leads.table.straight_parts
+    for _ in straight:  # a length may follow from another one
+        for weights in straight:
+            free = np.flatnonzero((weights != 0.0) & ~known)
+            if len(free) == 1:
+                gained[free] = -(weights @ gained) / weights[free]
+                known[free] = True
+    return gained

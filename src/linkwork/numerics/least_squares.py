@@ -44,7 +44,11 @@ def nearest_miss(system: System, start: Array, steps: int = 200) -> tuple[Array,
         if not np.isfinite(gradient).all() or np.abs(gradient).max(initial=0.0) < 1e-15:
             break
         normal = j.T @ j
-        change = -np.linalg.solve(normal + damping * np.eye(n), gradient)  # eq. (9)
+        try:
+            change = -np.linalg.solve(normal + damping * np.eye(n), gradient)  # eq. (9)
+        except np.linalg.LinAlgError:  # so little damping is lost to rounding
+            damping *= 5.0
+            continue
         trial = v.copy()
         trial[0, :n] += change * weights
         f_trial, j_trial = system.residual_and_jacobian(trial)
@@ -77,9 +81,9 @@ def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
         try:
             # only a positive definite Hessian leads downhill, and then to a minimum
             np.linalg.cholesky(hessian)
+            change = -np.linalg.solve(hessian, gradient)
         except np.linalg.LinAlgError:
             break
-        change = -np.linalg.solve(hessian, gradient)
         trial = v.copy()
         trial[0, :n] += change * weights
         f_trial = system.residual(trial)

@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.status import CONVERGED, Status
+from linkwork.foundation.value_types import check_values
 from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.system import System
 
@@ -46,6 +47,9 @@ class NewtonOptions:
     solution_tolerance: float = 1e-9
     max_steps: int = 50
     largest_turn: float = math.radians(40.0)
+
+    def __post_init__(self) -> None:
+        check_values(self)
 
 
 Watch = Callable[[int, Array, Array, Array | None], None]

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.value_types import check_values
 
 __all__ = ["Force", "check_forces", "force_unit"]
 
@@ -42,6 +43,7 @@ class Force:
     unit: str = ""
 
     def __post_init__(self) -> None:
+        check_values(self)
         if not (math.isfinite(self.x) and math.isfinite(self.y)):
             raise InputError(f"the force at {self.at} is not finite: {self.x:g}, {self.y:g}")
 

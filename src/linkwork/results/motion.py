@@ -18,7 +18,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
-from linkwork.foundation.names import find_spelling
+from linkwork.foundation.names import as_name, find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -255,6 +255,10 @@ class Motion:
 
     def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""
+        if as_name(point) not in self.points:
+            raise UnknownNameError(
+                f'there is no point "{point}" {choices("points", self.points, point)}'
+            )
         x, y = self.points[point]
         return Jet(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
 

@@ -161,8 +161,7 @@ LOOPS = Form(
         Key(
             "input",
             Tables(_VARIABLE, single=True),
-            'The driven variable: variable = "theta2"',
-            required=True,
+            'The driven variable: variable = "theta2"; without it the loops describe a structure',
         ),
         Key(
             "points",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwork.foundation.errors import UnknownNameError, choices
+from linkwork.foundation.names import as_name
 
 __all__ = ["example_text", "examples"]
 
@@ -52,6 +53,6 @@ def example_text(name: str) -> str:
     name   = "Four-bar linkage, open"
     """
     known = examples()
-    if name not in known:
+    if as_name(name) not in known:
         raise UnknownNameError(f'there is no example "{name}" {choices("examples", known, name)}')
     return (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")

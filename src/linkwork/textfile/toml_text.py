@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from pathlib import Path
@@ -48,7 +49,7 @@ def bytes_of(path: Path, name: str) -> bytes:
     except IsADirectoryError:
         _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
     except (OSError, ValueError) as error:
-        if path.is_dir():  # opening a folder is a PermissionError on Windows
+        if os.path.isdir(path):  # opening a folder is a PermissionError on Windows
             _refuse(name, f"is a folder: name one file in it {_files_beside(path / 'x')}")
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         _refuse(name, f"cannot be read: {reason}")

@@ -15,6 +15,7 @@ from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.value_types import given_or
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
@@ -67,7 +68,7 @@ def check_animation(path: str | Path, options: FilmOptions | None = None) -> str
     MissingPackageError
         If the package that writes the format is not installed.
     """
-    chosen = options or FilmOptions()
+    chosen = given_or(FilmOptions(), "options", options)
     kind = as_path(path).suffix.lower().removeprefix(".")
     if kind not in ANIMATION_FORMATS:
         known = ", ".join(f".{name}" for name in ANIMATION_FORMATS)
@@ -123,7 +124,7 @@ def animation(
     motion = next((motion for motion in motions.values() if motion.found.any()), None)
     if motion is None:
         raise InputError("there is no motion to show: no position was found")
-    return _film(motion, kind, options or FilmOptions(), progress)
+    return _film(motion, kind, given_or(FilmOptions(), "options", options), progress)
 
 
 def animate_motion(

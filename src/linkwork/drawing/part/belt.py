@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Arc, Polyline, Primitive, Role, xy
+from linkwork.foundation.elementwise import phase
 from linkwork.mechanism.part.belt import BeltRun
 
 __all__ = ["symbols"]
@@ -24,7 +25,7 @@ def symbols(belt: BeltRun, pose: Pose, measures: Measures) -> Iterator[Primitive
     first, second = belt.radii
     if belt.crossed:
         second = -second
-    along = cmath.phase(other - one)
+    along = phase(other - one)
     beta = math.acos((first - second) / abs(other - one))
     for side in (1, -1):
         way = cmath.exp(1j * (along + side * beta))

@@ -10,6 +10,7 @@ from linkwork.drawing.link_symbols import pin_radius
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Polygon, Primitive, Role, xy
+from linkwork.foundation.elementwise import phase
 from linkwork.mechanism.part.weld import RigidJoint
 
 __all__ = ["symbols"]
@@ -23,7 +24,7 @@ def symbols(joint: RigidJoint, pose: Pose, measures: Measures) -> Iterator[Primi
     """The filled corner between the two links, or over both if they are in line."""
     points = {bar.name: bar.points for bar in pose.skeleton.bars}
     ways = [_direction(pose, name, points.get(name, ()), joint.point) for name in joint.links]
-    turn = cmath.phase(ways[1] / ways[0])
+    turn = phase(ways[1] / ways[0])
     if turn <= -math.pi + 1e-9:
         turn = math.pi  # collinear: always on the same side
     middle = ways[0] * cmath.exp(0.5j * turn)

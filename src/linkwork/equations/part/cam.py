@@ -15,7 +15,7 @@ from linkwork.equations.outline import Outline
 from linkwork.equations.part.curve import add_law, on_outline
 from linkwork.equations.part_rows import PartRows
 from linkwork.expression.tree import Name
-from linkwork.foundation.elementwise import uniform_value
+from linkwork.foundation.elementwise import phase as phase_of, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Key
 from linkwork.mechanism.part.cam import Cam
@@ -150,7 +150,7 @@ def _beside(
     radius = frames.linkage.numbers(cam.radius)
     u = np.array([frames.start[cam.name]])
     along = complex(float(outline.x.slope()(u)[0]), float(outline.y.slope()(u)[0]))
-    normal = rows.unknown(f"{cam.name}_normal", "angle", cmath.phase(along / 1j))
+    normal = rows.unknown(f"{cam.name}_normal", "angle", phase_of(along / 1j))
     speed = canonical(f"{cam.name}_speed")
     tangent = Term(value=1j, turn=math.pi / 2, length=speed, phase=((normal, 1.0),))
     _direction(rows, cam.name, outline, tangent)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,7 +15,7 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.elementwise import leader_value, uniform_value
+from linkwork.foundation.elementwise import leader_value, phase, uniform_value
 from linkwork.foundation.names import canonical
 from linkwork.foundation.rounding import EPSILON
 from linkwork.kernels.piecewise import Piecewise
@@ -184,7 +183,7 @@ def _rolled(gear: NoncircularGear, phi: Array, linkage: Bodies) -> Jet:
     ]
     outline = Outline.through(points, closed=True)
     way = _line_of_centres(gear, linkage, uniform_value)
-    distance, line = abs(way), cmath.phase(way)
+    distance, line = abs(way), phase(way)
     u = outline.samples(64 * len(points) + 1)
     z = outline.at(u)
     around = np.unwrap(np.angle(z))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice, product
@@ -16,6 +15,7 @@ from linkwork.equations.reading.names import PartNames
 from linkwork.equations.reading.poses import Poses
 from linkwork.equations.reading.walk import phase_of, walks
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.elementwise import phase as direction_of
 from linkwork.foundation.errors import MechanismError
 from linkwork.foundation.names import free_name
 from linkwork.mechanism.dimensions import Number
@@ -228,7 +228,7 @@ class _Drawing:
         if len(own) < 2:
             return rail
         start, end = (guide[name] for name in rail.line)
-        return replace(rail, angle=self._in_file_units(_direction(own) - cmath.phase(end - start)))
+        return replace(rail, angle=self._in_file_units(_direction(own) - direction_of(end - start)))
 
     def _sketch(self) -> dict[str, tuple[Number, Number]]:
         found: dict[str, tuple[Number, Number]] = {}
@@ -251,7 +251,7 @@ class _Drawing:
         for second, first, others in self._moving():
             for name, vector in others.items():
                 if name != second:
-                    angle = cmath.phase(vector / others[second])
+                    angle = direction_of(vector / others[second])
                     yield f"{second} {first} {name}", self._in_file_units(angle)
 
     def _moving(self) -> Iterator[tuple[str, str, dict[str, complex]]]:
@@ -292,4 +292,4 @@ def _direction(own: Mapping[str, complex]) -> float:
     if len(own) < 2:
         raise NotRead("the input turns a block, which has one point and no direction")
     first, second, *_ = own.values()
-    return cmath.phase(second - first)
+    return direction_of(second - first)

@@ -32,6 +32,7 @@ from linkwork.export.workbook.rate_formulas import RateFormulas
 from linkwork.export.workbook.traced_equations import traced
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
 from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.value_types import check_class
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
@@ -154,6 +155,7 @@ def _check_size(rows: int, columns: int) -> None:
 
 
 def _check(model: Model, motion: Motion) -> None:
+    check_class("the motion", motion, Motion)
     names = [v.name for v in model.equations.inputs]
     if motion.mechanism != model.description.name or list(motion.inputs) != names:
         raise InputError(

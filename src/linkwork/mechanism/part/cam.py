@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key, Number as NumberKey, Tables, Text
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Contour, Disc, Figure, Outlines
@@ -86,6 +87,9 @@ class Segment:
     law: str
     over: Number
     lift: Number = 0
+
+    def __post_init__(self) -> None:
+        check_values(self)
 
 
 @dataclass(frozen=True, kw_only=True)

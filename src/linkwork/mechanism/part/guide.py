@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.mechanism.bodies import Bodies
-from linkwork.mechanism.part.part import NamedPart
+from linkwork.mechanism.part.part import NamedPart, PartChecks
 
 __all__ = ["GuidePart", "guide_named"]
 
@@ -25,6 +25,14 @@ class GuidePart(NamedPart):
     def point_on_line(self) -> str:
         """The guided point."""
         raise NotImplementedError
+
+    def check_shapes(self, checks: PartChecks) -> None:
+        """Check that the sketch shows the direction of the line."""
+        first, second = self.line
+        if checks.linkage.sketched(first) == checks.linkage.sketched(second):
+            checks.add(
+                f"{first} and {second} are sketched at the same place: draw them apart", "line"
+            )
 
 
 def guide_named(linkage: Bodies, name: str | None) -> GuidePart | None:

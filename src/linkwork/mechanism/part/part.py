@@ -8,10 +8,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
+import numpy as np
+
 from linkwork.foundation.elementwise import vector
 from linkwork.foundation.errors import choices
 from linkwork.foundation.file_keys import Key as FileKey, ListOf, Number as NumberKey, Text
 from linkwork.foundation.names import free_name
+from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.dimensions import Number
@@ -48,10 +51,11 @@ class Part:
     holders: ClassVar[str] = "joints"  # parts that may contradict an angle it fixes
 
     def __post_init__(self) -> None:
-        """Convert lists to tuples, so that parts are comparable and immutable."""
+        """Convert lists to tuples, so that parts are comparable and immutable; check all types."""
         for field, entry in vars(self).items():
             # the class is frozen: fields can only be set this way
             object.__setattr__(self, field, _frozen(entry))
+        check_values(self)
 
     @classmethod
     def of_table(cls, table: Mapping[str, Any]) -> Self:
@@ -166,6 +170,8 @@ class NamedPart(Part):
 
 
 def _frozen(entry: object) -> object:
+    if isinstance(entry, np.ndarray):
+        entry = entry.tolist()
     return tuple(map(_frozen, entry)) if isinstance(entry, list | tuple) else entry
 
 
@@ -335,3 +341,7 @@ class PartChecks:
             elif not step <= _MOST_UNEVEN * least_step:
                 times = f"{_MOST_UNEVEN:,.0f} times as far from the point before as the nearest two"
                 self.add(f"is more than {times} points are from each other", field, k)
+        if all(step <= _MOST_UNEVEN * least_step for step in steps):
+            for k, place in enumerate(places):
+                if max(abs(place.real), abs(place.imag)) > _LARGEST:
+                    self.add(f"is too far from the origin: at most {_LARGEST:g}", field, k)

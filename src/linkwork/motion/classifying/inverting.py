@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.names import GROUND
+from linkwork.foundation.names import GROUND, as_name
 from linkwork.mechanism.chain import Chain
 from linkwork.mechanism.chain_graph import orbits
 from linkwork.mechanism.description import Description
@@ -40,7 +40,7 @@ def inversion(model: Model, link: str, which: Input | None = None) -> Linkage:
             f"{' and '.join(seen.loose)} they are joined: write it as points and links to invert it"
         )
     linkage = seen.linkage
-    if link != GROUND:
+    if as_name(link) != GROUND:
         linkage = directed(linkage)
     return inverted(linkage, link, _places(seen.model, linkage), which)
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.elementwise import phase
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.numerics.block_solver import Block
 
@@ -120,7 +121,7 @@ def _two_links(known: complex, first: complex, second: complex) -> Dyad:
     for side in (1.0, -1.0) if swing not in (0.0, math.pi) else (1.0,):
         one = -known / d * cmath.exp(1j * side * swing) * a
         other = -known - one
-        roots.append((cmath.phase(one / first), cmath.phase(other / second)))
+        roots.append((phase(one / first), phase(other / second)))
     return _dyad("RRR", gap, size, roots)
 
 
@@ -134,7 +135,7 @@ def _on_a_line(known: complex, link: complex, along: complex) -> Dyad | None:
     roots = []
     for side in (1.0, -1.0) if half else (1.0,):
         s = (middle + side * half) / u
-        roots.append((cmath.phase(-(known + s * along) / link), s))
+        roots.append((phase(-(known + s * along) / link), s))
     return _dyad("RRP", abs(beside) - a, max(a, abs(known)), roots)
 
 
@@ -150,7 +151,7 @@ def _turning_line(known: complex, arm: complex, along: complex) -> Dyad | None:
         s = (middle + side * half) / u
         reach = arm + s * along
         if reach != 0:
-            roots.append((cmath.phase(-known / reach), s))
+            roots.append((phase(-known / reach), s))
     found = _dyad("RPR", abs(beside) - d, max(d, abs(arm)), roots)
     return replace(found, all_roots=bool(roots) or found.gap > 0.0)
 

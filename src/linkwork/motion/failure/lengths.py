@@ -41,7 +41,13 @@ def model_with(length: ChangeableLength, value: float) -> Model | None:
 
 
 def lengths_of(description: Description) -> list[ChangeableLength]:
-    """Named dimensions that are lengths, given and measured lengths, offsets, ground distances."""
+    """Named dimensions that are lengths, given and measured lengths, offsets, ground distances.
+
+    The changed descriptions have loops only, without points and outputs that follow from them.
+    """
+    description = replace(description, trace=(), outputs={})
+    if isinstance(description, Loops):
+        description = replace(description, points={}, links={})
     match description:
         case Linkage():
             return [

@@ -125,7 +125,8 @@ def root_beside_guess(block: Block, guess: Array, found: Array) -> Array | None:
     weights, scale = block.system.variable_scale[:n], block.system.equation_scale
     slopes = block.system.jacobian(ends)[:, :, :n] * weights / scale[:, None]
     # divided by the size of J, so that the limit of flatness has no unit
-    signs = np.linalg.det(slopes) / np.linalg.norm(slopes, axis=(1, 2)) ** n
+    with np.errstate(all="ignore"):  # J may vanish or overflow: then it has no sign
+        signs = np.linalg.det(slopes) / np.linalg.norm(slopes, axis=(1, 2)) ** n
     if not (np.abs(signs) > _FLAT).all() or signs[0] * signs[1] > 0.0:
         return None
     others, _ = block_positions(block, guess)

@@ -28,7 +28,8 @@ _TRIES = 8  # input values around the circle from which an assembled position is
 _TURN = 2.0 * np.pi
 _FAST = 6.0  # where a variable moves this many times faster than the input, a dead point is near
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
-_MOST_LEGS = 200
+_MOST_LEGS = 24  # a circuit that closes has up to ten; these take about a second  # about a second
+_MOST_PROVED = 300  # steps of one: proofs that need more would take seconds
 _CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
 
 
@@ -176,7 +177,7 @@ def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -
     if not curve.legs:
         return TracedCurve(curve=curve, proof=None, turns=())
     turns = tuple(turning_points(leads, curve))
-    return TracedCurve(curve=curve, proof=prove_curve(leads, curve), turns=turns)
+    return TracedCurve(curve=curve, proof=prove_curve(leads, curve, _MOST_PROVED), turns=turns)
 
 
 def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> TracedCurve | None:

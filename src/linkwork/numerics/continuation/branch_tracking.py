@@ -205,7 +205,8 @@ def follow(
     if not (start.nearness <= opt.largest_condition and np.isfinite(start.second).all()):
         return [], End(reached=start.t, failed=start.t, status=Status.START_SINGULAR)
     trial = _Trial(solver, path, opt)
-    nodes, stop = march(trial, start, goal, opt.bounds(path.size), watch)
+    with np.errstate(all="ignore"):  # a step too far for floats is refused
+        nodes, stop = march(trial, start, goal, opt.bounds(path.size), watch)
     if stop is None:
         return nodes, None
     lost = stop.exhausted

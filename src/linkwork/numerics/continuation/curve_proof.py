@@ -42,18 +42,18 @@ class ProvenCurve:
         return bool(self.legs.all() and self.junctions.all())
 
 
-def prove_curve(leads: Parametrizations, curve: Curve) -> ProvenCurve:
-    """Prove every step of a curve; of very many steps only the first ones."""
+def prove_curve(leads: Parametrizations, curve: Curve, most: int = _MOST_STEPS) -> ProvenCurve:
+    """Prove every step of a curve; of very many steps only the ``most`` first ones."""
     legs = np.zeros(len(curve.legs), dtype=bool)
     junctions = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     steps = 0
     if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
-            proof = _proof_of(leg, max(_MOST_STEPS - steps, 0))
+            proof = _proof_of(leg, max(most - steps, 0))
             # from its first position, which the previous leg has proved
             legs[k] = proof.connected_to(0).all()
             steps += int(proof.pieces.sum())
-            if steps > _MOST_STEPS or proof.given_up.any():
+            if steps > most or proof.given_up.any():
                 break
         for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
             last = leg.v[-1]

@@ -168,7 +168,7 @@ def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | Non
         return None
     # solutions have to exist on the side that leads away from the present length
     towards = np.sign(p - begin) or 1.0
-    ratio = -2.0 * float(here.w @ here.f_p) / here.bend(here.z)  # eq. (44)
+    ratio = -2.0 * np.float64(here.w @ here.f_p) / here.bend(here.z)  # eq. (44)
     if not np.isfinite(ratio) or ratio * towards <= 0.0:
         return None
     further = towards * _FURTHER * family.size

@@ -115,13 +115,15 @@ def coincide(leads: Parametrizations, a: Array, b: Array) -> bool:
     return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _COINCIDE)
 
 
-def same_position(leads: Parametrizations, a: Array, b: Array) -> bool:
+def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | None = None) -> bool:
     """Whether two positions at one value of the parameter are one, modulo whole turns.
+
+    ``gained`` (N,): turns from a to b, and what lengths have gained in units of 2π.
 
     Both are iterated down to rounding with the parameter in the lead. Then it is a matter of proof:
     one lies where only the other is. Where nothing is proved, they agree if they do to rounding.
     """
-    turns, p = whole_turns(leads, a, b), leads.parameter
+    turns, p = whole_turns(leads, a, b) if gained is None else gained, leads.parameter
     # the equations are the same whole turns away, but the numbers have to agree
     near = np.stack([a, b - FULL_TURN * turns])
     gap = np.abs(near[1] - near[0]) / leads.scale

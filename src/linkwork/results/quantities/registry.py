@@ -127,8 +127,8 @@ class Quantities:
         UnknownNameError
             With the nearest names, and the command that lists all.
         """
-        if name not in self._known:
-            self._known[as_name(name)] = self._find(name)
+        if as_name(name) not in self._known:
+            self._known[name] = self._find(name)
         return self._known[name]
 
     def _find(self, name: str) -> Asked:

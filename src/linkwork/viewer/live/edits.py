@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import singledispatch
 
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
@@ -159,7 +159,7 @@ def _measure(key: str, places: Mapping[str, complex], linkage: Linkage) -> float
             return _rounded(abs(places[b] - places[a]))
         case [a, vertex, b]:
             rays = (places[b] - places[vertex]) * (places[a] - places[vertex]).conjugate()
-            return _rounded(linkage.angle.from_radians(cmath.phase(rays)))
+            return _rounded(linkage.angle.from_radians(phase(rays)))
     raise ValueError(f"{key} names neither two nor three points")
 
 
