@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 import linkwork as lw
-from linkwork.kernels.loop_table import LinearRows, LoopTable
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.kernels.real_rows import LinearRows
 
 __all__ = ["Placed", "closed", "library_positions", "random_position"]
 

@@ -8,9 +8,9 @@ import linkwork as lw
 
 
 def unlisted(name: str) -> str:
-    """A file of the library without the line of its family."""
+    """A file of the library without the lines of its family and its purpose."""
     lines = lw.example_text(name).splitlines(keepends=True)
-    return "".join(line for line in lines if not line.startswith("family"))
+    return "".join(line for line in lines if not line.startswith(("family", "purpose")))
 
 
 RAPIER = unlisted("rapier-drive")

@@ -15,8 +15,9 @@ import numpy.typing as npt
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.grammar import parse_equation
 from linkwork.foundation.angles import AngleUnit
-from linkwork.kernels.loop_table import LinearRows, LoopTable
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.kernels.real_rows import LinearRows
 
 __all__ = ["Example", "random_example"]
 

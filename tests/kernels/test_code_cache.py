@@ -30,7 +30,7 @@ PLACES = 5
 
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path / "kernels"))
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
     before = set(sys.modules)
     yield
     for name in set(sys.modules) - before:
@@ -163,7 +163,7 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     with pytest.raises(lw.InputError) as told:
         kernel().choose_execution(Execution(specialised=True))
     assert str(told.value) == (
-        f"compiled code cannot be stored in {taken} ({os.strerror(17)}): "
+        f"compiled code cannot be stored in {taken / 'kernels'} ({os.strerror(20)}): "
         "name another folder in LINKWORK_CACHE, or use specialised=False"
     )
     mine = kernel()

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import linkwork as lw
-from linkwork.kernels.loop_table import LinearRows
+from linkwork.kernels.real_rows import LinearRows
 from linkwork.motion.assembly.turned_slides import turned_slides
 
 

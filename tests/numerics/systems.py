@@ -9,8 +9,9 @@ from typing import NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from linkwork.kernels.loop_table import LinearRows, LoopTable
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.kernels.real_rows import LinearRows
 from linkwork.numerics.block_solver import Block, BlockSolver
 from tests.oracles.four_bar import FourBar
 

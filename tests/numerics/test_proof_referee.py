@@ -15,8 +15,9 @@ from flint import arb
 import linkwork as lw
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
-from linkwork.kernels.loop_table import LinearRows, LoopTable
+from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.kernels.real_rows import LinearRows
 from linkwork.motion.proving import prove_rows
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation import path_proof

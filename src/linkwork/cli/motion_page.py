@@ -164,7 +164,9 @@ def _certified(motion: Motion) -> Iterator[tuple[str, str]]:
 
 def _worst(motion: Motion, values: Array, measure: str) -> str:
     name, inputs = _lead(motion)
-    row = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))  # ∞ at limits
+    finite = np.where(np.isfinite(values), values, -np.inf)  # ∞ at limits
+    # the first of those that are equal but for rounding
+    row = int(np.argmax(finite >= (1.0 - _EQUAL) * finite.max()))
     size = f"{values[row]:.2g}{measure}"
     return f"{size}, at {name} = {short(inputs[row])} {motion.input_units[name]}".rstrip()
 
@@ -175,6 +177,7 @@ class _Range:
     value: Array
 
 
+_EQUAL = 1e-9  # relative difference of values that are equal but for rounding
 _STILL = 1e-10  # relative range below which a value counts as constant, without located extremes
 
 

@@ -14,8 +14,9 @@ from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
 from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
+from linkwork.kernels.real_rows import LinearRows
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.decomposition import BlockForm, block_form
 

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.kernels.loop_table import LinearRows, LoopTable, TableSplitter
+from linkwork.kernels.loop_table import LoopTable, TableSplitter
+from linkwork.kernels.real_rows import LinearRows
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.local_parametrization import Parametrization
