@@ -13,8 +13,8 @@ __all__ = ["measure"]
 def measure(repeats: int = 5) -> bool:
     """Limit: time per dyad of 1,000 dyads at most 1.5 × that of 100.
 
-    The proof of a motion has no limit: the intervals of all earlier dyads accumulate along a chain,
-    so its steps become smaller with the length.
+    The proof of a motion has no limit: its number of steps grows linearly with the chain, as
+    ``docs/benchmarks.md`` derives.
     """
     print("chain of dyads: ms per dyad (build, solve and prove, follow by 10°, the same proved)")
     per_dyad: dict[int, list[list[float]]] = {}
