@@ -359,7 +359,12 @@ def test_coefficients_beyond_every_number_are_a_problem() -> None:
     )
     designs = designs_of(loops, {"a": [2.0, 1e200], "b": [4.0, 1e200]})
     assert designs.message(0) == ""
-    assert designs.message(1) == "its equations have no finite coefficients"
+    assert designs.message(1) == (
+        '1 problem in mechanism "mechanism"\n'
+        "  loops.one  column 13: a coefficient here is not a finite number\n"
+        "        a*b*e^(i*t) + 9*e^(i*u) = s\n"
+        "                    ^"
+    )
     assert np.isnan(designs.loops[1]).all()
 
 

@@ -166,7 +166,7 @@ def test_an_empty_plan_has_no_chunks() -> None:
     [  # what types refuse is refused without them, too
         (lambda: grid({}), "this plan varies no numbers: give a dimension and its values"),
         (lambda: grid({"a": []}), '"a" needs at least one value'),
-        (lambda: grid({"a": ["x"]}), '"a" needs numbers'),
+        (lambda: grid({"a": ["x"]}), '"a" needs a row of numbers, got'),
         (lambda: random(-1, RANGES, 1), "count must be a whole number, 0 or more, got -1"),
         (lambda: random(1.5, RANGES, 1), "count must be a whole number"),  # type: ignore[arg-type]
         (lambda: random(True, RANGES, 1), "count must be a whole number"),
@@ -181,7 +181,7 @@ def test_an_empty_plan_has_no_chunks() -> None:
         (lambda: from_table({"a": [1.0], "b": [1.0, 2.0]}), "equal lengths, got a: 1, b: 2"),
         (lambda: from_table({}), "this plan varies no numbers: give a dimension and its values"),
         (lambda: from_table(5), "a table is a DataFrame"),
-        (lambda: from_table({"a": ["x"]}), '"a" needs numbers'),
+        (lambda: from_table({"a": ["x"]}), '"a" needs a row of numbers, got'),
         (lambda: from_table("no such file.csv"), "cannot be read: No such file"),
     ],
 )  # fmt: skip
