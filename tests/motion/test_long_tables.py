@@ -96,7 +96,8 @@ def assert_same(plain: lw.Motion, quick: lw.Motion, mechanism: lw.Mechanism) -> 
     own, other = quick.radius[plain.certified], plain.radius[plain.certified]
     # two proofs of one root from two guesses: 0.24 to 3.1 times each other over the whole library
     assert (own >= 0.2 * other - 1e-15).all()
-    assert (own <= 4.0 * other + 4e-15).all()
+    # where the equations are linear, NumPy knows a position exactly and the kernels to rounding
+    assert (own <= 4.0 * other + 1e-14).all()
     assert quick.worst <= 1e-13
     fair = found & (plain.condition < 1e4)
     np.testing.assert_allclose(quick.unique_within[fair], plain.unique_within[fair], rtol=1e-6)
