@@ -41,6 +41,7 @@ __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 # Up to so many designs are solved one at a time with their rows side by side. Side by side
 # themselves they would leave three quarters of the 64 lanes idle.
 _FEW = LANES // 4
+_FEWER = 4  # both ways of so many fill the lanes that a processor computes at once
 _ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
 
 
@@ -289,7 +290,11 @@ class SweepKernel:
             return done
         space, none = self.workspace(steps), np.zeros(0, np.int64)
         node, begun = self.start_nodes(family, space, given)
-        march_in_turn(family, space, node, begun & ~done, table, found, none)
+        left = begun & ~done
+        if np.count_nonzero(left) > _FEWER:
+            _march_part(family, space, node, left, table, found)
+        else:
+            march_in_turn(family, space, node, left, table, found, none)
         return done | begun
 
     def prepare_single(
