@@ -102,7 +102,8 @@ def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEn
     for end, side in ((track.below, -1.0), (track.above, 1.0)):
         if end is not None:
             nodes = track.nodes if side > 0 else track.nodes[::-1]
-            found.append(_end(drive, nodes, end, side, certify))
+            with np.errstate(all="ignore"):  # rates and conditions may be infinite there
+                found.append(_end(drive, nodes, end, side, certify))
     return tuple(found)
 
 

@@ -283,8 +283,9 @@ def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> 
     weights = solver.variable_scale
     # at a dead point rates are infinite; the last node shows it by rates far above those of the
     # start
-    fast = scale * float(np.abs(here.first / weights).max())
-    usual = scale * float(np.abs(start.first / weights).max())
+    with np.errstate(over="ignore"):
+        fast = scale * float(np.abs(here.first / weights).max())
+        usual = scale * float(np.abs(start.first / weights).max())
     return Status.OUT_OF_REACH if fast > 1e3 * max(usual, 1.0) else Status.LOST
 
 
