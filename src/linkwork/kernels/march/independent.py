@@ -36,10 +36,13 @@ from linkwork.kernels.march.work_arrays import (
 )
 from linkwork.kernels.program.compiling import compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.kernel_cache import say_that_it_compiles
 from linkwork.kernels.program.program import ROLES
 from linkwork.marching.step_size import HALF
 
 __all__ = ["march"]
+
+say_that_it_compiles("independent")
 
 _NO_TASK_YET, _NO_TASK_LEFT = -2, -1
 _VECTOR = 8  # lanes that a processor computes at once

@@ -39,9 +39,12 @@ from linkwork.kernels.program.compiling import (
     types,
 )
 from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.kernel_cache import say_that_it_compiles
 from linkwork.kernels.program.program import ROLES
 
 __all__ = ["in_step"]
+
+say_that_it_compiles("lockstep")
 
 _LINE = 64  # bytes of a cache line
 _LARGEST = 0.5  # of the largest step: further apart, rows have nodes between them

@@ -33,11 +33,14 @@ from linkwork.kernels.march.step_trial import (
 from linkwork.kernels.march.work_arrays import INPUT_TABLE, MARCH_RESULT, InputTable, MarchResult
 from linkwork.kernels.program.compiling import compiled, compiled_for, njit_no_refcount, types
 from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.kernel_cache import say_that_it_compiles
 from linkwork.kernels.program.program import ROLES
 from linkwork.marching.prediction import SAME
 from linkwork.marching.step_size import HALF
 
 __all__ = ["DONE", "LEFT", "NOT_NEAR", "by_rows"]
+
+say_that_it_compiles("rowwise")
 
 DONE, LEFT, NOT_NEAR = 1, 0, -1
 

@@ -13,22 +13,10 @@ from typing import Any
 
 from linkwork.foundation.cache_folder import CACHE_VARIABLE, cache_folder
 from linkwork.foundation.errors import InputError
+from linkwork.kernels.program.kernel_cache import sources_digest
 
 __all__ = ["is_cached", "load_compiled"]
 
-#: Modules that written ones are compiled with.
-_WITH = (
-    "kernels/gpu/compiling.py",
-    "kernels/gpu/march.py",
-    "kernels/march/step_control.py",
-    "kernels/march/step_trial.py",
-    "kernels/march/work_arrays.py",
-    "kernels/program/compiling.py",
-    "kernels/program/sine.py",
-    "marching/prediction.py",
-    "marching/step_size.py",
-)
-_LINKWORK = Path(__file__).parents[2]
 _ONE_AT_A_TIME = RLock()  # a module is among the known ones before it is whole
 
 
@@ -65,10 +53,8 @@ def _folder() -> Path:
 
 
 def _name(source: str) -> str:
-    """The name of a module: a digest of its text and of the modules it is compiled with."""
-    digest = hashlib.sha256(source.encode())
-    for module in _WITH:
-        digest.update((_LINKWORK / module).read_bytes())
+    """The name of a module: a digest of its text and of all sources it is compiled with."""
+    digest = hashlib.sha256(source.encode() + sources_digest())
     return f"linkwork_kernel_{digest.hexdigest()[:24]}"
 
 

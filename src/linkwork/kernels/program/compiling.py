@@ -9,9 +9,11 @@ import numba  # noqa: TID253 - this module is loaded when a family is solved
 from llvmlite import binding, ir
 from numba import types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253
+from numba.core.caching import FunctionCache  # noqa: TID253
+from numba.core.ccallback import CFunc  # noqa: TID253
 from numba.extending import intrinsic  # noqa: TID253
 
-from linkwork.kernels.program.kernel_cache import say_that_it_compiles
+from linkwork.kernels.program.kernel_cache import say_that_it_compiles, sources_digest
 
 if TYPE_CHECKING:
     from numba.core.base import BaseContext
@@ -35,9 +37,10 @@ __all__ = [
     "types",
 ]
 
-_numba: Any = numba  # whose types do not know of the option ``_nrt``
+_numba: Any = numba  # whose types do not know of all options
 #: An array at a pointer, with a shape; in compiled code.
 carray: Any = _numba.carray
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 _P = ParamSpec("_P")
 _R_co = TypeVar("_R_co", covariant=True)
 
@@ -57,23 +60,43 @@ class Compiling(Protocol):
     def __call__(self, function: Callable[_P, _R_co], /) -> Compiled[_P, _R_co]: ...
 
 
+class _SourcesCache(FunctionCache):
+    """A function's compiled code on disk, valid as long as no source of the kernels changes.
+
+    Numba compares the function's own file only, but compiled code contains, or calls, functions of
+    other files.
+    """
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        file = self._cache_file
+        file._source_stamp = (file._source_stamp, sources_digest())
+
+
+def _compiling(signature: object, **options: object) -> Compiling:
+    def compile_function(function: Any, /) -> Any:
+        made = _numba.njit(nogil=True, **_OPTIONS, **options)(function)
+        made._cache = _SourcesCache(function)
+        if signature is not None:
+            made.compile(signature)
+            made.disable_compile()
+        return made
+
+    return compile_function
+
+
 def compiled_for(signature: object) -> Compiling:
     """Compiled when the module is loaded, for arrays of the signature; ``None``: at the first
     call, for the arrays that are met.
     """
-    compiling: Compiling = _numba.njit(
-        signature, cache=True, error_model="numpy", fastmath={"contract"}, nogil=True
-    )
-    return compiling
+    return _compiling(signature)
 
 
 compiled = compiled_for(None)
 
 #: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.
-njit_no_refcount: Compiling = _numba.njit(
-    cache=True, error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
-)
+njit_no_refcount: Compiling = _compiling(None, _nrt=False)
 say_that_it_compiles()
 
 
@@ -93,7 +116,8 @@ def trial_at(function: Any) -> Any:
     """
     numbers = types.CPointer(types.float64)
     signature = types.void(*[numbers] * _BLOCKS, types.int64)
-    return numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(function)
+    # its file has a name that depends on all sources
+    return _numba.cfunc(signature, cache=True, **_OPTIONS)(function)
 
 
 def _call(
@@ -140,9 +164,9 @@ def called_by_name(name: str, *kinds: types.Type) -> Callable[[Any], Callable[..
     signature = types.int64(*kinds)
 
     def compile_apart(function: Any) -> Callable[..., int]:
-        made = numba.cfunc(signature, cache=True, error_model="numpy", fastmath={"contract"})(
-            function
-        )
+        made: Any = CFunc(function, (signature.args, signature.return_type), {}, _OPTIONS)
+        made._cache = _SourcesCache(function)
+        made.compile()
         _NAMED.append(made)
         binding.add_symbol(name, made.address)
 

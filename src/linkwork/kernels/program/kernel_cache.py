@@ -12,11 +12,19 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-__all__ = ["LOOPS", "is_compiled", "is_loaded", "loop_serves", "say_that_it_compiles"]
+__all__ = [
+    "LOOPS",
+    "is_compiled",
+    "is_loaded",
+    "loop_serves",
+    "say_that_it_compiles",
+    "sources_digest",
+]
 
 #: The loops over lanes, by module, with the function that takes long to compile.
 LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
 _FOLDER = Path(__file__).parents[1] / "march"
+_COMPILED = ("kernels/gpu", "kernels/march", "kernels/program", "marching")
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
@@ -29,8 +37,19 @@ def is_compiled(loop: str) -> bool:
     """Whether an earlier process has left a loop compiled: next to its source, in the user's cache
     where that cannot be written to, or in the folder named by ``NUMBA_CACHE_DIR``.
     """
-    source = _FOLDER / f"{loop}.py"
-    return any(_is_of_source(index, source) for index in _indices(loop))
+    digest = sources_digest()
+    return any(digest in index.read_bytes() for index in _indices(loop))
+
+
+@cache
+def sources_digest() -> bytes:
+    """A digest of all sources that are compiled; code compiled from others is out of date."""
+    package = Path(__file__).parents[2]
+    digest = hashlib.sha256()
+    for folder in _COMPILED:
+        for path in sorted(package.joinpath(folder).glob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.digest()
 
 
 def loop_serves(loop: str, positions: int) -> bool:
@@ -55,19 +74,18 @@ def _indices(loop: str) -> Iterator[Path]:
         yield from folder.glob(f"{loop}.{LOOPS[loop]}-*.nbi")
 
 
-def _is_of_source(index: Path, source: Path) -> bool:
-    """Whether an index belongs to a source: by its digest, since copied files have new times; by
-    the times before numba 0.68, which keeps no digest.
+def say_that_it_compiles(loop: str = "") -> None:
+    """Warn once in the log ``linkwork`` that compiling takes time, if it will.
+
+    Without a loop: whether what all of them share was compiled, with any of them.
     """
-    if hashlib.sha256(source.read_bytes()).digest() in index.read_bytes():
-        return True
-    return index.stat().st_mtime >= source.stat().st_mtime
+    if not any(map(is_compiled, (loop,) if loop else LOOPS)):
+        _warn_that_it_compiles()
 
 
-def say_that_it_compiles() -> None:
-    """Warn in the log ``linkwork`` that compiling takes time, if it will."""
-    if not any(map(is_compiled, LOOPS)):
-        logging.getLogger("linkwork").warning(
-            "compiling Linkwork's kernels, once after an installation: up to half a minute "
-            '("linkwork compile" compiles all of them beforehand)'
-        )
+@cache
+def _warn_that_it_compiles() -> None:
+    logging.getLogger("linkwork").warning(
+        "compiling Linkwork's kernels, once after an installation: up to half a minute "
+        '("linkwork compile" compiles all of them beforehand)'
+    )
