@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,7 +19,11 @@ import linkwork as lw
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.march import position_programs
 from linkwork.kernels.program import kernel_cache
-from linkwork.kernels.program.kernel_cache import is_compiled, say_that_it_compiles
+from linkwork.kernels.program.kernel_cache import (
+    is_compiled,
+    say_that_it_compiles,
+    sources_digest,
+)
 from linkwork.motion import by_kernels
 from linkwork.motion.by_kernels import rows as rows_module
 from linkwork.motion.drive import Drive
@@ -272,38 +276,69 @@ def test_many_small_tables_count_like_a_long_one() -> None:
     assert done.stdout.split() == ["8", "False", "True"]
 
 
+@pytest.fixture
+def _nothing_said() -> None:
+    kernel_cache._warn_that_it_compiles.cache_clear()
+
+
 @pytest.mark.parametrize("loop", ["independent", "lockstep", "rowwise"])
-def test_compiled_code_counts_if_it_is_that_of_its_source(
+@pytest.mark.usefixtures("_nothing_said")
+def test_compiled_code_counts_if_it_is_that_of_all_sources(
     loop: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    function = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}[loop]
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert not is_compiled(loop)
+    left = tmp_path / "march_0a1b" / f"{loop}.{kernel_cache.LOOPS[loop]}-336.py311.nbi"
+    left.parent.mkdir()
+    left.write_bytes(b"an index with " + sources_digest() + b" in it")
+    assert is_compiled(loop)
     say_that_it_compiles()
+    say_that_it_compiles(loop)
+    assert not caplog.records
+    left.write_bytes(b"an index of another version")
+    assert not is_compiled(loop)
+    say_that_it_compiles(loop)
+    say_that_it_compiles()  # once is enough
     (told,) = caplog.records
     assert "once after an installation" in told.getMessage()
-    left = tmp_path / "march_0a1b" / f"{loop}.{function}-336.py311.nbi"
-    left.parent.mkdir()
-    left.write_bytes(b"")
-    assert is_compiled(loop)
-    say_that_it_compiles()
-    assert len(caplog.records) == 1
-    os.utime(left, (1.0, 1.0))  # older than the source: that of another one
-    assert not is_compiled(loop)
-    source = Path(kernel_cache.__file__).parents[1] / "march" / f"{loop}.py"
-    left.write_bytes(b"an index with " + hashlib.sha256(source.read_bytes()).digest() + b" in it")
-    os.utime(left, (1.0, 1.0))  # but in a copy times tell nothing
-    assert is_compiled(loop)
+
+
+def test_every_source_that_is_compiled_has_a_part_in_the_digest(tmp_path: Path) -> None:
+    package = Path(lw.__file__).parent
+    changed = tmp_path / "linkwork"
+    shutil.copytree(package, changed, ignore=shutil.ignore_patterns("__pycache__", "*.npz"))
+    code = (
+        "import sys; from linkwork.kernels.program.kernel_cache import sources_digest as d; "
+        "print(d().hex())"
+    )
+
+    def digest() -> str:
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+        return done.stdout.strip()
+
+    assert digest() == sources_digest().hex()
+    for name in ("march/step_trial.py", "program/interpreter.py"):
+        with (changed / "kernels" / name).open("a", encoding="utf-8") as file:
+            file.write("# another version\n")
+        assert digest() != sources_digest().hex()
+        shutil.copy(package / "kernels" / name, changed / "kernels" / name)
 
 
 def test_numba_keeps_the_digest_by_which_compiled_code_is_known() -> None:
-    numba = import_module("numba")
-    if tuple(map(int, numba.__version__.split(".")[:2])) < (0, 68):
-        pytest.skip("this version goes by the times of files")
-    loop = import_module("linkwork.kernels.march.independent")
-    digest = hashlib.sha256(Path(str(loop.__file__)).read_bytes()).digest()
-    indices = kernel_cache._indices("independent")
-    assert any(digest in index.read_bytes() for index in indices)
+    import_module("linkwork.kernels.march.independent")
+    indices = [index.read_bytes() for index in kernel_cache._indices("independent")]
+    assert any(sources_digest() in index for index in indices)
+
+
+def test_extremes_and_circuits_have_a_track(both: Sweep, used: list[SolvedRows | None]) -> None:
+    mechanism = fine(lw.example("four-bar"))
+    for options in ({"limits_of": "rocker"}, {"through": True}):
+        plain, quick = both(mechanism, **options)
+        assert_same(plain, quick, mechanism)
+        assert quick.output_limits == plain.output_limits
+        assert len(quick) == len(plain)
+    assert None not in used

@@ -155,7 +155,7 @@ def test_sets_that_are_not_shipped_are_solved_once_and_kept(
     assert kept.stat().st_size < 4096
 
 
-@pytest.mark.parametrize("damage", ["cut", "noise", "wrong", "twice"])
+@pytest.mark.parametrize("damage", ["cut", "noise", "wrong", "twice", "narrow", "other"])
 def test_damaged_sets_are_solved_again(
     damage: str, four_bar: DeadPointFamily, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -168,8 +168,13 @@ def test_damaged_sets_are_solved_again(
         path.write_bytes(b"no archive at all")
     else:
         (kept,) = read_sets(four_bar.topology)
-        x = kept.x[[0, 0, 1, 2]] if damage == "twice" else kept.x * np.nan
-        write_set(replace(kept, x=x))
+        changed = {
+            "twice": replace(kept, x=kept.x[[0, 0, 1, 2]]),
+            "wrong": replace(kept, x=kept.x * np.nan),
+            "narrow": replace(kept, x=kept.x[:, :-1]),
+            "other": replace(kept, left=kept.left[:, :-1]),
+        }
+        write_set(changed[damage])
     monkeypatch.setattr(isolated_roots, "_KNOWN", {})
     found = random_member(four_bar)
     np.testing.assert_allclose(found.x, right.x, rtol=1e-12)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -41,16 +40,22 @@ _CHUNK = 4096  # rows solved together: large enough to amortise NumPy calls, sma
 class Asked:
     """Rows that are asked for: values ``t`` (B,) of the path, the inputs in internal units (B, p)
     and as they are named (B, p).
+
+    ``with_track``: whether the track along them is wanted, too.
     """
 
     t: Array
     inputs: Array
     in_file_units: Array
+    with_track: bool = False
 
     def take(self, where: IndexArray) -> Asked:
         """Some of them."""
-        return Asked(
-            t=self.t[where], inputs=self.inputs[where], in_file_units=self.in_file_units[where]
+        return replace(
+            self,
+            t=self.t[where],
+            inputs=self.inputs[where],
+            in_file_units=self.in_file_units[where],
         )
 
 
@@ -58,23 +63,24 @@ class Asked:
 class BranchRows:
     """The rows asked for, those that lie on the branch filled; the branch's track and its ends.
 
-    ``follow``: gives the track. ``placed`` (B,): where on the track each row lies, or laps earlier,
-    NaN if nowhere. ``lap``: if the motion repeats itself and laps were left out; ``lap_proved``:
-    whether a lap leads back.
+    ``followed``: the track, unless the kernels found all rows without one. ``placed`` (B,): where
+    on the track each row lies, or laps earlier, NaN if nowhere. ``lap``: if the motion repeats
+    itself and laps were left out; ``lap_proved``: whether a lap leads back.
     """
 
     rows: SolvedRows
-    follow: Callable[[], Track]
+    followed: Track | None
     placed: Array
     ends: tuple[BranchEnd, ...]
     proved_to_ends: bool
     lap: Lap | None = None
     lap_proved: bool = False
 
-    @cached_property
+    @property
     def track(self) -> Track:
-        """The branch over the rows' values, with its ends; kernels solve rows without it."""
-        return self.follow()
+        """The track of rows that were asked for ``with_track``."""
+        assert self.followed is not None
+        return self.followed
 
     @property
     def here(self) -> BoolArray:
@@ -138,7 +144,8 @@ def _rows_of_laps(lap: Lap, asked: Asked, report: Report, certify: bool) -> Bran
     number = lap.number_of(asked.in_file_units[:, 0])
     nearer = lap.nearer(asked.in_file_units[:, 0], number)
     t = np.append(nearer * drive.unit, lap.end.t)  # the last row closes the lap
-    once = Asked(
+    once = replace(
+        asked,
         t=t,
         inputs=np.append(lap.intended(nearer), lap.end.t)[:, None],
         in_file_units=np.append(nearer, np.nan)[:, None],
@@ -165,10 +172,11 @@ def _rows_followed(
     Compiled kernels need no track where they find all rows.
     """
     quickly = by_kernels.kernels_pay(drive.model, len(asked.t))
-    found = _by_kernels(drive, anchor, asked, certify) if quickly and passage is None else None
-    if found is not None:
-        report.proved(1.0)
-        return found
+    if quickly and passage is None and not asked.with_track:
+        found = _by_kernels(drive, anchor, asked, certify)
+        if found is not None:
+            report.proved(1.0)
+            return found
     provable = all(block.system.has_curvature_bound for block in drive.solver.blocks)
     # without proofs nothing would show that a bold track has left its branch
     tries = (BOLD, None) if certify and provable else (None,)
@@ -189,9 +197,7 @@ def _rows_followed(
     if passage is not None:
         rows = fill_passed_rows(drive, passage, asked.t, placed, rows)
     rows = _mark_missing(rows, track, asked.t, np.isnan(placed), ends)
-    return BranchRows(
-        rows=rows, follow=lambda: track, placed=placed, ends=ends, proved_to_ends=to_ends
-    )
+    return BranchRows(rows=rows, followed=track, placed=placed, ends=ends, proved_to_ends=to_ends)
 
 
 def _by_kernels(drive: Drive, anchor: Node, asked: Asked, certify: bool) -> BranchRows | None:
@@ -199,12 +205,8 @@ def _by_kernels(drive: Drive, anchor: Node, asked: Asked, certify: bool) -> Bran
     rows = _kernel_rows(drive, anchor, asked, asked.t, certify)
     if rows is None:
         return None
-
-    def follow_track() -> Track:
-        return _covering(drive, anchor, asked.t, None, Report(None, 0.0, 0.0, 0.0), None)
-
-    blank = _blank(drive, asked, certify).put(np.arange(len(asked.t)), rows)
-    return BranchRows(rows=blank, follow=follow_track, placed=asked.t, ends=(), proved_to_ends=True)
+    filled = _blank(drive, asked, certify).put(np.arange(len(asked.t)), rows)
+    return BranchRows(rows=filled, followed=None, placed=asked.t, ends=(), proved_to_ends=True)
 
 
 def _kernel_rows(

@@ -157,4 +157,5 @@ def _rows_on_branch(branch: CurveBranch, asked: Asked, parameter: int, free: boo
         keep = np.concatenate([[True], np.abs(np.diff(t[order])) > 1e-12])
         order = order[keep]
     in_file_units = asked.in_file_units[row[order]]
-    return Asked(t=t[order], inputs=asked.inputs[row[order]], in_file_units=in_file_units)
+    inputs = asked.inputs[row[order]]
+    return replace(asked, t=t[order], inputs=inputs, in_file_units=in_file_units)

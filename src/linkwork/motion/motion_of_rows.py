@@ -13,7 +13,7 @@ from linkwork.motion.redundancy import FITS, largest_misfits, misfit
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
 
-__all__ = ["fitting", "motion_of_rows"]
+__all__ = ["fitting", "message_of", "motion_of_rows"]
 
 
 def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArray) -> Motion:
@@ -60,3 +60,17 @@ def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
     lost = (rows.status == Status.CONVERGED.code) & ~fits
     nothing = SolvedRows.blank(rows.inputs[lost], rows.v.shape[1], Status.DOES_NOT_FIT)
     return rows.put(np.flatnonzero(lost), nothing).demote(Certification.SUBSET_CERTIFIED)
+
+
+def message_of(motion: Motion) -> str:
+    """The message of the start if all rows were found, else every limit once."""
+    asked = motion.asked
+    missing = int((asked & ~motion.found).sum())
+    if not missing:
+        return motion.message
+    name, unit = next(iter(motion.input_units.items()))
+    told = (f"{limit.kind.word} at {limit.told(name, unit)}" for limit in motion.limits)
+    misses = [status.value for status in motion.counts if not status.ok]
+    return "; ".join(
+        [f"{missing} of {int(asked.sum())} positions were not found", *misses, *dict.fromkeys(told)]
+    )

@@ -23,7 +23,7 @@ from linkwork.motion.extremes import check_quantities, output_limit_at, output_l
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.limits import BranchEnd
 from linkwork.motion.model import Model
-from linkwork.motion.motion_of_rows import fitting, motion_of_rows
+from linkwork.motion.motion_of_rows import fitting, message_of, motion_of_rows
 from linkwork.motion.path_entry import enter_path
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.start import Start, first_position
@@ -91,7 +91,10 @@ def sweep(
     _ = model.rows  # without an input there is nothing to sweep: an error
     quantities = check_quantities(model, limits_of)
     opt = given_or(NewtonOptions(), "options", options)
-    work = _begin_sweep(model, certify, opt, policy, progress, explained=explained)
+    wants_track = through or bool(quantities)
+    work = _begin_sweep(
+        model, certify, opt, policy, progress, explained=explained, with_track=wants_track
+    )
     if isinstance(work, Start):
         return _without_start(model, work)
     if through:
@@ -123,6 +126,7 @@ def _begin_sweep(
     progress: Callable[[float], None] | None,
     *,
     explained: bool = True,
+    with_track: bool = False,
 ) -> _Sweep | Start:
     """The sweep of the start's branch; the start itself, with the reason, if there is none."""
     rows = model.rows
@@ -131,7 +135,8 @@ def _begin_sweep(
         return start
     lead, rate = leading_input(rows)
     drive = Drive.through(model, rows[0], rate, lead)
-    asked = Asked(t=rows[:, lead], inputs=rows, in_file_units=model.rows_in_file_units)
+    t, named = rows[:, lead], model.rows_in_file_units
+    asked = Asked(t=t, inputs=rows, in_file_units=named, with_track=with_track)
     entry = enter_path(drive, start, asked.t, certify)
     if entry is None:
         message = "no row of the table can be reached from the input values of the guess"
@@ -370,21 +375,7 @@ class _Sweep:
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
         )
-        return replace(motion, message=_message(motion))
-
-
-def _message(motion: Motion) -> str:
-    """The message of the start if all rows were found, else every limit once."""
-    asked = motion.asked
-    missing = int((asked & ~motion.found).sum())
-    if not missing:
-        return motion.message
-    name, unit = next(iter(motion.input_units.items()))
-    told = (f"{limit.kind.word} at {limit.told(name, unit)}" for limit in motion.limits)
-    misses = [status.value for status in motion.counts if not status.ok]
-    return "; ".join(
-        [f"{missing} of {int(asked.sum())} positions were not found", *misses, *dict.fromkeys(told)]
-    )
+        return replace(motion, message=message_of(motion))
 
 
 def _no_rows(model: Model) -> SolvedRows:

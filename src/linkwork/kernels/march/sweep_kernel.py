@@ -32,7 +32,6 @@ from linkwork.kernels.march.work_arrays import InputTable, MarchResult, Tasks
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
 from linkwork.kernels.program.execution import Execution
 from linkwork.kernels.program.interpreter import LANES
-from linkwork.kernels.program.kernel_cache import loop_serves
 from linkwork.kernels.program.printing import trial_source
 from linkwork.kernels.program.program import ROLES, registers_read
 
@@ -279,7 +278,8 @@ class SweepKernel:
     ) -> BoolArray:
         """One design after the other, its rows side by side; then those that this is not for."""
         done, rows = np.zeros(given.shape[1], dtype=bool), len(table.rows)
-        if rows >= LANES and loop_serves("rowwise", len(done) * rows):
+        # whatever this process has compiled: values may not depend on that
+        if rows >= LANES:
             alone, n = self._prepare_single(family, coefficients, table, steps), len(given) - 1
             counts = np.zeros(rows, dtype=np.int64)
             for k in range(len(done)):

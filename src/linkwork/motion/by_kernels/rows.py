@@ -100,8 +100,9 @@ class _Kernel:
         )
 
     def _same(self, one: Array, other: Array, rows: SolvedRows, row: int) -> bool:
+        """Whether two positions are one: no other solution is nearer to the row than twice that."""
         away = float((np.abs(one - other) / self.drive.solver.variable_scale).max())
-        return away < float(rows.uniqueness_radius[row])
+        return 2.0 * away < float(rows.uniqueness_radius[row])
 
 
 def _solved(read: Array, v: Array, rate: Array, counts: CountArray) -> SolvedRows:

@@ -53,9 +53,19 @@ class StartSet:
 
     @classmethod
     def of_arrays(cls, arrays: dict[str, AnyArray]) -> StartSet:
-        """The set of :meth:`as_arrays`."""
+        """The set of :meth:`as_arrays`.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            If these are no arrays of a set.
+        """
         left, right, x = (np.asarray(arrays[n], dtype=complex) for n in ("left", "right", "x"))
         topology = Topology.of_text(str(arrays["topology"]))
+        shape = len(topology.columns[0]), len(topology.columns)
+        width = 2 * (topology.unknowns + topology.own)
+        if left.shape != shape or right.shape != shape or (len(x) and x.shape[1:] != (width,)):
+            raise ValueError("closures and solutions do not have the shapes of the topology")
         return cls(topology=topology, left=left, right=right, x=x, sure=bool(arrays["sure"]))
 
 

@@ -27,6 +27,7 @@ _LARGEST_CONDITION = 1e6  # of the combination of loops
 _SMALLEST_PART = 1e-9  # relative: a vector that lies in a subspace has no part outside
 _MOST_ORDERS = 200  # of unknowns that are tried
 _MOST_PLACES = 20_000
+_MOST_SUBSETS = 512  # of columns whose ranks are compared
 
 _Product = tuple[tuple[int, int], tuple[int, int]]
 
@@ -226,4 +227,6 @@ class _Orders:
                 continue
             wider = [(tuple(sorted((*a, k))), tuple(sorted((*b, j)))) for a, b in subsets]
             if all(self.mine.rank(a) == self.other.rank(b) for a, b in wider):
-                yield from self._extend({**found, k: j}, subsets + wider, rest)
+                # ranks of many columns together say little that those of fewer do not
+                more = subsets + wider if len(subsets) < _MOST_SUBSETS else subsets
+                yield from self._extend({**found, k: j}, more, rest)
