@@ -74,6 +74,22 @@ def test_an_oldham_coupling_has_two_discs_and_a_cross_in_their_grooves() -> None
         assert abs((one / other).real) < 1e-9 * abs(one / other)
 
 
+def test_discs_with_near_points_still_reach_the_middle_of_the_cross() -> None:
+    text = lw.example_text("oldham-coupling")
+    for far, near in (
+        ("A  = [30.6418, 25.7115]", "A = [0.0306418, 0.0257115]"), ('"O1 A" = 40', '"O1 A" = 0.04'),
+        ("B  = [-13.711504, 30.6418]", "B = [11.974288, 0.0306418]"),
+        ('"O2 B" = 40', '"O2 B" = 0.04'),
+    ):  # fmt: skip
+        assert far in text
+        text = text.replace(far, near)
+    coupling = lw.loads(text)
+    for at in (0.0, 40.0, 130.0):
+        scene, middle = coupling.scene(at), complex(*coupling.solve(at).points["M"])
+        for disc in scene.select(Disc, Role.WHEEL):
+            assert abs(complex(*disc.centre) - middle) <= disc.radius * (1 + 1e-9)
+
+
 def test_only_the_oldham_coupling_of_the_library_is_drawn_as_one() -> None:
     models = {
         name: read_example(name).model for name in lw.examples() if not name.startswith("newton-")

@@ -30,6 +30,13 @@ def test_a_picture_states_round_input_values_and_shows_them(name: str, caption: 
     assert max(moved) < 0.05 * scene.measures.size
 
 
+def test_a_zero_has_no_sign() -> None:
+    """The crank of the points is at -0.29°."""
+    mechanism = lw.example("four-bar")
+    points = {**mechanism.description.points, "A": (40.0, -0.2)}
+    assert mechanism.changed(points=points).scene().caption == "crank = 0°"
+
+
 def test_a_value_that_was_asked_for_is_drawn_as_it_is() -> None:
     assert lw.example("slider-crank").scene(at=59.9706).caption == "crank = 59.9706°"
 

@@ -7,6 +7,7 @@ Written from the rules of spreadsheets, not from Linkwork's writer: a sign binds
 from __future__ import annotations
 
 import math
+import operator
 import re
 import sys
 from pathlib import Path
@@ -86,6 +87,10 @@ _FUNCTIONS: dict[str, Any] = {
     "SUMPRODUCT": lambda a, b: float((_matrix(a) * _matrix(b)).sum()),
     "INDEX": lambda area, n: area.flat[int(n) - 1], "AND": lambda *given: all(given),
     "COUNTIF": _count_if,
+}  # fmt: skip
+_OPERATIONS: dict[str, Any] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
+    "^": operator.pow,
 }  # fmt: skip
 _LEVELS = [("<", ">", "=", "<=", ">=", "<>"), ("+", "-"), ("*", "/"), ("^",)]
 
@@ -253,17 +258,7 @@ def _combined(sign: str, left: Any, right: Any) -> Any:
         return CellError("#VALUE!")
     left, right = (_matrix(s) if isinstance(s, np.ndarray) else s for s in (left, right))
     try:
-        match sign:
-            case "+":
-                return left + right
-            case "-":
-                return left - right
-            case "*":
-                return left * right
-            case "/":
-                return left / right
-            case _:
-                return left**right
+        return _OPERATIONS[sign](left, right)
     except (ZeroDivisionError, OverflowError):
         return CellError("#DIV/0!")
 

@@ -45,7 +45,8 @@ def printed_formula(text: str) -> str:
 def printed_value(value: float, unit: str, units: Units) -> str:
     """A number with its unit, to six digits: ``60°``, ``100 mm``."""
     sign = units.angle.sign if unit == units.angle.value else f" {unit}"
-    return f"{value:.6g}{sign}".rstrip().replace("-", "\u2212")
+    shown = value + 0.0  # no negative zero
+    return f"{shown:.6g}{sign}".rstrip().replace("-", "\u2212")
 
 
 def inputs_caption(

@@ -35,10 +35,14 @@ class Coupling:
         return {guide.name for guide, _ in self.discs}
 
     def radius(self, pose: Pose, disc: int) -> float:
-        """The radius of a disc: up to its furthest point, and around the cross in any position."""
+        """The radius of a disc: up to its furthest point, and to the other centre at least.
+
+        The middle of a square cross moves on the circle through both centres.
+        """
         guide, centre = self.discs[disc]
         points = next(bar.points for bar in pose.skeleton.bars if bar.name == guide.on)
-        return max(abs(pose.points[name] - pose.points[centre]) for name in points)
+        reached = (*points, self.discs[1 - disc][1])
+        return max(abs(pose.points[name] - pose.points[centre]) for name in reached)
 
 
 def couplings(skeleton: Skeleton) -> list[Coupling]:

@@ -17,7 +17,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Primitive, Text, text_width, xy
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 
 __all__ = ["lasting_labels"]
 
@@ -147,12 +147,13 @@ def _settled(fixed: Sequence[Array], boxes: Sequence[Array]) -> list[int]:
     Names with the fewest free positions are placed first, or last.
     """
     order = sorted(range(len(fixed)), key=lambda k: -float(fixed[k].min()))
-    found = [_descended(fixed, boxes, one) for one in (order, order[::-1])]
+    near = _neighbours(boxes)
+    found = [_descended(fixed, boxes, near, one) for one in (order, order[::-1])]
     return min(found, key=lambda pair: pair[0])[1]
 
 
 def _descended(
-    fixed: Sequence[Array], boxes: Sequence[Array], order: Sequence[int]
+    fixed: Sequence[Array], boxes: Sequence[Array], near: BoolArray, order: Sequence[int]
 ) -> tuple[float, list[int]]:
     """The penalty and the positions of names placed in an order, then moved one by one."""
     chosen: dict[int, int] = {}
@@ -162,7 +163,7 @@ def _descended(
         for k in order:
             cost = fixed[k].copy()
             for other, place in chosen.items():
-                if other != k:
+                if near[k, other]:
                     shared = _overlapping(boxes[k], boxes[other][:, place])
                     cost += _NAME_ON_NAME * _over_rows(shared.astype(float))
             chosen[k] = int(cost.argmin())
@@ -172,7 +173,17 @@ def _descended(
     return total, [chosen[k] for k in range(len(fixed))]
 
 
-def _overlapping(boxes: Array, others: Array) -> Array:
+def _neighbours(boxes: Sequence[Array]) -> BoolArray:
+    """Whether any positions of two different names can overlap in a row, (n, n)."""
+    around = np.stack([
+        np.concatenate((own[..., :2].min(axis=1), own[..., 2:].max(axis=1)), axis=-1)
+        for own in boxes
+    ], axis=1)  # fmt: skip
+    near = np.stack([_overlapping(around, own).any(axis=0) for own in around.swapaxes(0, 1)])
+    return np.asarray(near & ~np.eye(len(boxes), dtype=bool))
+
+
+def _overlapping(boxes: Array, others: Array) -> BoolArray:
     """Whether boxes (rows, places, 4) overlap one box per row (rows, 4); shape (rows, places)."""
     other = others[:, None, :]
     return np.asarray(

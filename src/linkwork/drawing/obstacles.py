@@ -96,11 +96,11 @@ class Obstacles:
         """
         # A trace of many short pieces counts once per penalty, not once per piece.
         found = np.zeros(len(boxes))
-        crossed = np.zeros((len(boxes), len(self.pieces)), dtype=bool)
         box, piece = np.nonzero(_near(self.pieces, boxes))
-        crossed[box, piece] = _crosses(self.pieces[piece], boxes[box])
+        crossed = _crosses(self.pieces[piece], boxes[box])
+        box, level = box[crossed], self.level[piece[crossed]]
         for k, penalty in enumerate(self.levels):
-            count = np.count_nonzero(crossed[:, self.level == k], axis=1)
+            count = np.bincount(box[level == k], minlength=len(boxes))
             found += np.where(count, penalty * (1.0 + np.log(np.maximum(count, 1))), 0.0)
         inside = np.count_nonzero(_inside(self.plates, boxes), axis=1)
         total: Array = found + _covers(self.discs, boxes) @ self.disc_cost + _INSIDE_PLATE * inside

@@ -135,9 +135,6 @@ def _changed_inside(rng: np.random.Generator, value: Any) -> Any:
     return pick(rng, OBJECTS)
 
 
-_KEYWORDS_OF = {"with_dimensions", "changed"}
-
-
 def _odd(
     rng: np.random.Generator, witness: Witness, function: Callable[..., Any], name: str
 ) -> Any:

@@ -70,9 +70,7 @@ def _solved(rng: np.random.Generator, witness: Witness, mechanism: lw.Mechanism)
     position = call("solve", mechanism.solve)
     if position is not None:
         call("repr of a position", lambda: repr(position))
-    first, step = pick(
-        rng, [(0, 30), (0, 30), (1e6, 10), (-1e9, 60), (1e300, 1), (0, 1e-9), (3, 1)]
-    )
+    first, step = pick(rng, _RANGES)
     call(
         f"sweep from {first}",
         lambda: mechanism.sweep(start=first, stop=first + 6 * step, step=step),

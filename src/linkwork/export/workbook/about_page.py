@@ -34,8 +34,7 @@ def write_about(book: Book, sheet: Any, columns: CycleColumns, version: str) -> 
         _wrapped(sheet, row, text, style["wrapped"])
         row += 1
     row = _checks(book, sheet, columns, row + 1)
-    told = list(notices(book))
-    row = _listed(book, sheet, row + 1, "To note", told, "warning")
+    row = _listed(book, sheet, row + 1, "To note", list(notices(book)), "warning")
     limits = [book.motion.message] if book.motion.limits or not book.motion.found.all() else []
     row = _listed(book, sheet, row, "Limits of the motion", limits, "wrapped")
     row += 1

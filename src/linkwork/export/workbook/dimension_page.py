@@ -35,7 +35,7 @@ def input_table(values: Array) -> tuple[float, float] | None:
     """First value and step of evenly spaced values; ``None`` if they are not."""
     if len(values) == 1:
         return float(values[0]), 0.0
-    step = float(f"{(values[-1] - values[0]) / (len(values) - 1):.12g}")
+    step = float(f"{(values[-1] - values[0]) / (len(values) - 1):.14g}")
     first = float(values[0])
     even = first + step * np.arange(len(values))
     size = max(np.abs(values).max(), abs(step))
@@ -73,7 +73,7 @@ class _Page:
         self._tolerance()
 
     def count_changes(self) -> None:
-        """Count the changed cells above the sections; other sheets ask for them."""
+        """Count the changed cells above the sections; other sheets use the counts."""
         flags = f"${column_name(_FLAG)}${_TOP + 1}:${column_name(_FLAG)}${self.row + 1}"
         for k, (key, shown, counted) in enumerate(
             (("changes", "changed cells", f"{_CHANGED}*"), ("unused_changes", "not used", _UNUSED))

@@ -139,7 +139,7 @@ def _newton(model: Model, closure: ClosureFormulas, guess: Array, right: Array) 
 
 
 def _needed(model: Model, values: Array) -> int:
-    """The number of iterations until convergence, as many as possible if no row tells it."""
+    """The number of iterations until all rows converge; the most if cells solve none."""
     if not values.shape[1]:
         return _MOST
     scale = _file_units(model) / _sizes(model)

@@ -119,7 +119,7 @@ class StatusFormulas:
         return [unknowns[k] for b in self.book.closure.blocks if b.reason for k in b.unknowns]
 
     def _lost(self, row: int) -> str:
-        """What is said of a row that does not close after a change."""
+        """The status of a row that does not close after a change."""
         text = '"no convergence from the row above"'
         if not self._held:
             return text
@@ -134,7 +134,7 @@ class StatusFormulas:
 
     @cached_property
     def _converged(self) -> str:
-        """What is said of a row that closes after a change."""
+        """The status of a row that closes after a change."""
         book = self.book
         text = f'"{_NOT_PROVED}"'
         if self._held:

@@ -163,15 +163,16 @@ class _Page:
             if series is not None:
                 own = series.first if order == 1 else series.second
                 found[:, c] = own[book.iterations.rows] * book.speed**order
-        live = book.iterations.live
+        live, before = book.iterations.live, dict(book.values)
+        for k in block.unknowns:  # of the last iteration's Jacobian
+            symbol = book.model.equations.unknowns[k].symbol
+            before[symbol] = book.iterations.values[-2][:, k]
         if book.rates.sides[b] and live.any():
             jacobian, sides = (
-                np.array(
-                    [[book.over_rows(part.value(book.values)) for part in line] for line in of]
-                )
-                for of in (
-                    [row.slopes for row in block.rows],
-                    [[pair[order - 1]] for pair in book.rates.sides[b]],
+                np.array([[book.over_rows(part.value(values)) for part in line] for line in of])
+                for values, of in (
+                    (before, [row.slopes for row in block.rows]),
+                    (book.values, [[pair[order - 1]] for pair in book.rates.sides[b]]),
                 )
             )
             of_rows = np.moveaxis(jacobian, 2, 0)[live], np.moveaxis(sides[:, 0], 1, 0)[live]
