@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,8 +13,10 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.cli.main import linkwork
-from linkwork.motion.failure import failing
+from linkwork.motion.failure import failing, remedies
+from linkwork.motion.failure.lengths import ChangeableLength, model_with
 from linkwork.motion.failure.other_positions import Elsewhere
+from linkwork.motion.model import Model
 from tests.failures.test_positions_that_do_not_exist import four_bar
 from tests.thinned import thinned
 
@@ -368,3 +371,19 @@ def replace_values(guess: dict[str, float], values: Mapping[str, float]) -> dict
 def test_library_mechanisms_find_the_position_beside_their_guess() -> None:
     named = [n for n in lw.examples() if not n.startswith("newton-")]
     assert {name: lw.example(name).solve().failure for name in named} == dict.fromkeys(named)
+
+
+def test_equations_are_written_a_few_times_for_every_length(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+
+    def counted(length: ChangeableLength, value: float) -> Model | None:
+        asked.append(length.name)
+        return model_with(length, value)
+
+    monkeypatch.setattr(remedies, "model_with", counted)
+    position = lw.example("double-four-bar").with_dimensions(b3=480).solve()
+    assert position.status is lw.Status.CANNOT_CLOSE
+    # near the present value, at the first estimate, and on either side of the fold
+    assert max(Counter(asked).values()) <= 8

@@ -114,3 +114,20 @@ def test_the_smallest_of_all_numbers_has_a_direction() -> None:
 def test_overflow_and_singular_matrices_are_no_warnings(name: str, old: str, new: str) -> None:
     position: Any = lw.loads(changed(name, old, new)).solve()
     assert position.message or position.status.ok
+
+
+def test_rates_beyond_all_floats_at_a_dead_point_are_no_warnings() -> None:
+    text = """\
+format = 1
+[equations]
+F = "x^3 - 3*x + t = 0"
+[guess]
+x = 2
+t = 5e-324
+[input]
+variable = "t"
+from = -1
+to = 1
+step = 0.5
+"""
+    assert lw.loads(text).sweep().found.all()

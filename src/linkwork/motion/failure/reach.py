@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,9 +30,12 @@ _TRIES = 8  # input values around the circle from which an assembled position is
 _TURN = 2.0 * np.pi
 _FAST = 6.0  # where a variable moves this many times faster than the input, a dead point is near
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
-_MOST_LEGS = 24  # a circuit that closes has up to ten; these take about a second  # about a second
+_MOST_LEGS = 24  # a circuit that closes has up to ten; these take about a second
 _MOST_PROVED = 300  # steps of one: proofs that need more would take seconds
 _CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
+
+
+_T = TypeVar("_T", bound=TracedCurve | None)
 
 
 @dataclass(frozen=True)
@@ -154,21 +159,24 @@ def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns:
 
 def _circuit(leads: ParametrizedTable, v: Array, side: float) -> list[TracedCurve]:
     """The whole circuit through a position (N,): one curve if it closes, else one each way."""
-    walks: list[TracedCurve] = []
+    try:
+        aside = _proved(lambda care: _off_dead_point(leads, v, care))
+        start = v if aside is None else aside.curve.legs[-1].v[-1]
+        walks = [_proved(lambda care: _walk(leads, start, side, care))]
+        if not walks[0].curve.end.closed:
+            walks.append(_proved(lambda care: _walk(leads, start, -side, care)))
+    except (ValueError, np.linalg.LinAlgError):
+        return []
+    return [walk for walk in (*walks, aside) if walk is not None and walk.curve.legs]
+
+
+def _proved(follow: Callable[[TrackOptions], _T]) -> _T:
+    """What is followed with the least care that proves it, or else with the most."""
     for care in _CARES:
-        try:
-            aside = _off_dead_point(leads, v, care)
-            start = v if aside is None else aside.curve.legs[-1].v[-1]
-            walks = [_walk(leads, start, side, care)]
-            if not walks[0].curve.end.closed:
-                walks.append(_walk(leads, start, -side, care))
-            walks += [] if aside is None else [aside]
-        except (ValueError, np.linalg.LinAlgError):
-            return []
-        walks = [walk for walk in walks if walk.curve.legs]
-        if walks and all(walk.certified for walk in walks):
+        found = follow(care)
+        if found is None or found.certified:
             break
-    return walks
+    return found
 
 
 def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> TracedCurve:
@@ -199,7 +207,8 @@ def _off_dead_point(leads: ParametrizedTable, v: Array, care: TrackOptions) -> T
         if nodes:
             leg = Leg(led=led, nodes=(node, *nodes))
             curve = Curve(legs=(leg,), end=CircuitEnd.SINGULAR, passes=())
-            return TracedCurve(curve=curve, proof=prove_curve(leads, curve), turns=())
+            proof = prove_curve(leads, curve, _MOST_PROVED)
+            return TracedCurve(curve=curve, proof=proof, turns=())
     return None
 
 

@@ -56,8 +56,11 @@ class Fold:
 
 
 _MOST_STEPS = 40
+_MOST_WRITTEN = 15  # with equations written again for each, which takes far longer
 _LONGEST = 0.5  # weighted: a step is shortened as a whole
 _STILL = 1e-13
+_NEAR = 1e-6  # of a fold of the linear family: the last steps are those of the family itself
+_LINEAR = 1e-7  # relative difference of a family that is not linear; its derivatives have 1e-10
 _FURTHER = 1e-6  # of the parameter's size: how far beyond the fold a solution is sought
 _CLOSED = 1e-10
 _SOLVED = 1e-13
@@ -66,8 +69,8 @@ _SOLVED = 1e-13
 class _At:
     """The scaled system and its parameter's derivatives at one (x, p)."""
 
-    def __init__(self, family: FoldFamily, x: Array, p: float) -> None:
-        self.system, inputs = family.at(p), family.inputs
+    def __init__(self, family: FoldFamily, x: Array, system: Bending) -> None:
+        self.system, inputs = system, family.inputs
         n = self.n = self.system.unknowns
         self.weights = np.concatenate([self.system.variable_scale[:n], np.zeros(len(inputs))])
         self.scale = self.system.equation_scale
@@ -82,13 +85,14 @@ class _At:
         f, j = system.residual_and_jacobian(self.v[None, :])
         return f[0] / self.scale, j[0, :, : self.n] * self.weights[: self.n] / self.scale[:, None]
 
-    def bend(self, direction: Array) -> float:
-        """wᵀ D²F[z, direction], both scaled (n,)."""
-        inputs = np.zeros(len(self.v) - self.n)
-        a, b = (
-            (np.concatenate([part, inputs]) * self.weights)[None, :] for part in (self.z, direction)
-        )
-        return float(self.w @ (self.system.mixed(self.v[None, :], a, b)[0] / self.scale))
+    def bend(self, directions: Array) -> Array:
+        """wᵀ D²F[z, d] of several directions d (B, n), all scaled."""
+        inputs = np.zeros((len(directions), len(self.v) - self.n))
+        b = np.concatenate([directions, inputs], axis=1) * self.weights
+        a = np.zeros_like(b)
+        a[:, : self.n] = self.z * self.weights[: self.n]
+        bent: Array = (self.system.mixed(np.tile(self.v, (len(b), 1)), a, b) / self.scale) @ self.w
+        return bent
 
     def correction(self) -> Array:
         """The Newton step of (x / weights, p) for F = 0 and g = 0, where g = 0 when J is singular.
@@ -103,10 +107,36 @@ class _At:
         self.z, self.w = right[:n], left[:n]
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n], whole[:n, n] = self.j, self.f_p
-        whole[n, :n] = [-self.bend(e) for e in np.eye(n)]  # eq. (43): dg
+        whole[n, :n] = -self.bend(np.eye(n))  # eq. (43): dg
         whole[n, n] = -self.w @ self.j_p @ self.z
         step: Array = -np.linalg.solve(whole, np.concatenate([self.f, [right[n]]]))
         return step
+
+
+class _Linear:
+    """The system F + Δp F_p of a family, F at one p."""
+
+    def __init__(self, family: FoldFamily, system: Bending, change: float) -> None:
+        self.system, self.ends = system, (family.low, family.high)
+        self.share = change / family.step
+        self.unknowns = system.unknowns
+        self.variable_scale, self.equation_scale = system.variable_scale, system.equation_scale
+
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]:
+        systems = (self.system, *self.ends)
+        (f, j), low, high = (system.residual_and_jacobian(v) for system in systems)
+        return f + self.share * (high[0] - low[0]), j + self.share * (high[1] - low[1])
+
+    def mixed(self, v: Array, a: Array, b: Array) -> Array:
+        here, low, high = (system.mixed(v, a, b) for system in (self.system, *self.ends))
+        return here + self.share * (high - low)
+
+    def is_like(self, system: Bending, v: Array) -> bool:
+        """Whether the residual of another system is the same at v (N,)."""
+        f, other = (
+            s.residual_and_jacobian(v[None, :])[0] / self.equation_scale for s in (self, system)
+        )
+        return bool(np.abs(f - other).max() <= _LINEAR * max(1.0, np.abs(other).max()))
 
 
 def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
@@ -130,21 +160,37 @@ def locate_fold(family: FoldFamily, x: Array, p: float) -> Fold | None:
     begin = p
     with np.errstate(all="ignore"):
         try:
-            here = _At(family, x, p)
+            here = _At(family, x, family.at(p))
             slope = float(here.w @ here.f_p) * family.size
             # the length does not change the gap: it is no remedy
             if abs(slope) < 1e-9:
                 return None
             p -= float(here.w @ here.f) / slope * family.size
-            found = _refine_fold(family, x, p)
+            found: tuple[Array, float] | None = (x, p)
+
+            def linear(p: float) -> _Linear:
+                return _Linear(family, here.system, p - begin)
+
+            # equations need not be written again for every p of a linear family
+            if linear(p).is_like(family.at(p), here.v):
+                found = _refine_fold(family, linear, (x, p), _MOST_STEPS, _NEAR)
+            found = found and _refine_fold(family, family.at, found, _MOST_WRITTEN, _STILL)
             return None if found is None else _opening(family, begin, *found)
         except (np.linalg.LinAlgError, ValueError):
             return None
 
 
-def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] | None:
-    for _ in range(_MOST_STEPS):
-        here = _At(family, x, p)
+def _refine_fold(
+    family: FoldFamily,
+    at: Callable[[float], Bending],
+    begin: tuple[Array, float],
+    most: int,
+    still: float,
+) -> tuple[Array, float] | None:
+    """Newton-Raphson on the fold of the systems ``at`` p, until its steps are ``still``."""
+    x, p = begin
+    for _ in range(most):
+        here = _At(family, x, at(p))
         step = here.correction()
         if not np.isfinite(step).all():
             return None
@@ -153,7 +199,7 @@ def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] 
         step *= min(1.0, _LONGEST / size) if size else 1.0
         x = x + step[:-1] * here.weights[: here.n]
         p += float(step[-1])
-        if size <= _STILL * max(1.0, abs(p) / family.size):
+        if size <= still * max(1.0, abs(p) / family.size):
             break
     else:
         if size > 1e-9:
@@ -163,12 +209,12 @@ def _refine_fold(family: FoldFamily, x: Array, p: float) -> tuple[Array, float] 
 
 def _opening(family: FoldFamily, begin: float, x: Array, p: float) -> Fold | None:
     """The fold with the side on which solutions exist, and one of them found there."""
-    here = _At(family, x, p)
+    here = _At(family, x, family.at(p))
     if np.abs(here.f).max() > _CLOSED:
         return None
     # solutions have to exist on the side that leads away from the present length
     towards = np.sign(p - begin) or 1.0
-    ratio = -2.0 * np.float64(here.w @ here.f_p) / here.bend(here.z)  # eq. (44)
+    ratio = -2.0 * np.float64(here.w @ here.f_p) / here.bend(here.z[None, :])[0]  # eq. (44)
     if not np.isfinite(ratio) or ratio * towards <= 0.0:
         return None
     further = towards * _FURTHER * family.size
