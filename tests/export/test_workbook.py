@@ -152,7 +152,7 @@ def test_a_derived_dimension_is_a_formula_of_the_others(tmp_path: Path) -> None:
     [("jansen-leg", {"step": 60}), ("parallel-cranks", {"start": 161, "stop": 175, "step": 7})],
 )
 def test_cells_contain_the_values_of_their_formulas(
-    name: str, asked: dict[str, float], tmp_path: Path
+    name: str, asked: dict[str, Any], tmp_path: Path
 ) -> None:
     mechanism = lw.example(name)
     sheet = written(tmp_path, mechanism, mechanism.sweep(**asked, certify=False))

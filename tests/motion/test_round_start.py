@@ -7,6 +7,7 @@ import math
 import pytest
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
 from linkwork.motion import solve_round_start
 
 
@@ -33,7 +34,9 @@ def test_a_picture_states_round_input_values_and_shows_them(name: str, caption: 
 def test_a_zero_has_no_sign() -> None:
     """The crank of the points is at -0.29°."""
     mechanism = lw.example("four-bar")
-    points = {**mechanism.description.points, "A": (40.0, -0.2)}
+    described = mechanism.description
+    assert isinstance(described, Linkage)
+    points = {**described.points, "A": (40.0, -0.2)}
     assert mechanism.changed(points=points).scene().caption == "crank = 0°"
 
 
