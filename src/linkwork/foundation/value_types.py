@@ -52,7 +52,7 @@ def check_class(name: str, given: Any, kind: type) -> None:
 
 
 def check_flags(progress: object = None, /, **flags: object) -> None:
-    """Check that arguments are True or False, and that progress is told to a function.
+    """Check that arguments are True or False, and that ``progress`` is a function.
 
     Raises
     ------
@@ -116,6 +116,6 @@ def _wanted(kind: Any) -> str:
     return _WORDS.get(kind, f"lw.{kind.__name__}(…)")
 
 
-#: Not named in messages: None by itself, and the texts of formulas beside numbers.
+#: Messages that list the kinds of a value leave these out.
 _UNSAID = (types.NoneType,)
 _WORDS = {str: "a text", bool: "True or False", int: "a whole number", float: "a number"}

@@ -139,7 +139,7 @@ def _check_dimension_keys(linkage: JoinedBodies, problems: Problems) -> None:
     for link, points in linkage.links.items():
         for point in points:
             links_at.setdefault(point, set()).add(link)
-    # the problem of a misspelt point stands at its link
+    # the message about a misspelt point names its link
     misspelt = not links_at.keys() <= set(linkage.points)
     for table, count in (("lengths", 2), ("angles", 3)):
         for text, number in getattr(linkage, table).items():

@@ -226,12 +226,12 @@ def _uvicorn(app: Callable[..., Any]) -> Any:
     try:
         import uvicorn
         import websockets  # noqa: F401 - uvicorn's way to hold the connection
-
-        from linkwork.viewer.live.short_connections import ShortConnection
     except ImportError:
         raise MissingPackageError(
             'the live page needs uvicorn and websockets: pip install "linkwork[view]"'
         ) from None
+    from linkwork.viewer.live.short_connections import ShortConnection
+
     config = uvicorn.Config(
         app,
         interface="asgi3",
