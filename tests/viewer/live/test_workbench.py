@@ -117,7 +117,7 @@ def test_an_edit_that_cannot_be_read_changes_nothing(bench: Workbench) -> None:
 
 
 def test_what_cannot_be_added_is_told_without_a_line_that_the_file_lacks(bench: Workbench) -> None:
-    sliding: dict[str, str | tuple[str, ...]] = {"name": "s", "link": "rocker", "points": ("P",)}
+    sliding: dict[str, str | tuple[str, ...]] = {"name": "s", "link": "rocker", "points": ("B",)}
     edit = ask.AddPart(table="sliders", typed={**sliding, "on": "bar", "line": ("O2", "O4")})
     found = only(bench.handle(edit), tell.ProblemsFound)
     assert {(problem.line, problem.key) for problem in found.problems} == {(None, "sliders[1].on")}
@@ -681,6 +681,7 @@ def test_windows_line_ends_and_bom_survive(tmp_path: Path) -> None:
     ("text", "readable"),
     [
         ("format = 1\n[points]\n", True),
+        ("", True),
         ("format = \n", False),
         ("format = 1\n[equations]\n", False),
     ],

@@ -243,9 +243,8 @@ class Workbench:
         """
         subject = read_subject(text, self._file.name, self._read)
         wrong = [problem for problem in subject.problems if refused(problem)]
-        if wrong and (
-            self._subject.solvable is not None or set(wrong) - set(self._subject.problems)
-        ):
+        before = self._subject
+        if wrong and (before.solvable is not None or not set(wrong) <= set(before.problems)):
             raise MechanismError(wrong, self._file.name)
         self._subject, self._solution = subject, []
         if live:
