@@ -13,7 +13,7 @@ import pytest
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
 from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.workbench import Workbench
 from tests.described import described_as
 from tests.thinned import thinned
@@ -681,7 +681,6 @@ def test_windows_line_ends_and_bom_survive(tmp_path: Path) -> None:
     ("text", "readable"),
     [
         ("format = 1\n[points]\n", True),
-        ("", True),
         ("format = \n", False),
         ("format = 1\n[equations]\n", False),
     ],
@@ -697,6 +696,43 @@ def test_a_file_that_is_no_mechanism_is_opened_and_mended(
     assert state.lacks
     assert only(bench.handle(ask.SolveAt(at={})), tell.Refused)
     assert only(bench.handle(ask.SetText(text=FOUR_BAR)), tell.FileState).lacks == ()
+
+
+@pytest.mark.parametrize("content", [None, "", " \n"])
+def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path: Path) -> None:
+    path = tmp_path / "new.toml"
+    if content is not None:
+        path.write_text(content, "utf-8")
+    bench = Workbench(MechanismFile(path, blank_sheet("new")), lw.loads)
+    state, shown = bench.opened()[1:]
+    assert isinstance(state, tell.FileState)
+    assert isinstance(shown, tell.DraftShown)
+    assert (state.title, state.points, state.unsaved) == ("new", {}, False)
+    assert [lack.message[:20] for lack in state.lacks] == ["Draw the first link:"]
+    assert bench.poll() == []
+    bench.handle(ask.AddPoint(name="A", x=1, y=2))
+    assert only(bench.handle(ask.Save()), tell.FileState).unsaved is False
+    assert "A = [1.0, 2.0]" in path.read_text("utf-8")
+
+
+def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", blank_sheet("new")), lw.loads)
+    places = {"A": (0, 0), "B": (30, 40), "C": (140, 60), "D": (100, 0)}
+    for name, (x, y) in places.items():
+        bench.handle(ask.AddPoint(name=name, x=x, y=y))
+    for name, points in {"crank": ("A", "B"), "coupler": ("B", "C"), "rocker": ("D", "C")}.items():
+        state = only(bench.handle(ask.AddLink(name=name, points=points)), tell.FileState)
+    (fixed,) = (remedy for lack in state.lacks for remedy in lack.remedies)
+    assert fixed.label == "Fix A and D"
+    state = only(bench.handle(ask.Together(edits=fixed.edits)), tell.FileState)
+    driven, *_ = (remedy for lack in state.lacks for remedy in lack.remedies)
+    assert driven.label == "Drive crank"
+    events = bench.handle(ask.Together(edits=driven.edits))
+    assert only(events, tell.FileState).lacks == ()
+    assert only(events, tell.MotionFound).certified == 361
+    for _ in range(9):
+        assert only(bench.handle(ask.Undo()), tell.FileState).lacks
+    assert only(bench.handle(ask.Undo()), tell.Refused)
 
 
 def test_a_file_that_does_not_exist_is_refused_at_once(tmp_path: Path) -> None:
