@@ -38,6 +38,10 @@ export interface Mounted {
   goToInput(value: number): void;
   /** The input of the displayed row. */
   readonly input: number;
+  /** The coordinates of all points in the displayed row. */
+  readonly points: Readonly<Record<string, readonly [number, number]>>;
+  /** Start or stop the motion. */
+  play(on: boolean): void;
   /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
   /** The elements that accept additions. */
@@ -171,6 +175,15 @@ class Page implements Mounted {
 
   get input(): number {
     return this.view.input.values[this.view.order[this.player.at]!]!;
+  }
+
+  get points(): Record<string, readonly [number, number]> {
+    const row = this.view.order[this.player.at]!;
+    return Object.fromEntries(this.view.points.map(({ name, x, y }) => [name, [x[row]!, y[row]!] as const]));
+  }
+
+  play(on: boolean): void {
+    this.player.play(on);
   }
 
   get values(): Record<string, number> {
