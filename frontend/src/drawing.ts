@@ -85,20 +85,20 @@ export class Drawing {
   }
 
   /** Keep a part of the plane visible; null: the whole drawing. */
-  look(view: View | null): void {
+  see(view: View | null): void {
     this.chosen = view;
     this.renew(this.data);
   }
 
   /** Zoom by a factor about a place in the plane. */
   zoom(factor: number, at: readonly [number, number]): void {
-    this.look(zoomed(this.window, factor, at));
+    this.see(zoomed(this.window, factor, at));
   }
 
   /** Move the visible part of the plane. */
   pan(dx: number, dy: number): void {
     const { x, y, width } = this.window;
-    this.look({ x: x + dx, y: y + dy, width });
+    this.see({ x: x + dx, y: y + dy, width });
   }
 
   /** Length in the plane of one pixel. */

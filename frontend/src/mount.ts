@@ -232,6 +232,7 @@ class Page implements Mounted {
       for (const chart of this.charts) chart.show(view, steady);
       this.table.show(view);
     }
+    this.root.classList.toggle("lw-still", view.input.name === "");
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
     this.player.restart(view.order.length, view.data.closed, index);

@@ -343,7 +343,7 @@ export class Editor {
     const tool = TOOLS.find(({ key }) => key === event.key.toLowerCase());
     if (tool) this.tools.element.querySelector<HTMLButtonElement>(`[aria-keyshortcuts="${tool.key.toUpperCase()}"]`)!.click();
     else if (event.key === "Escape") this.escape();
-    else if (event.key === "f" || event.key === "F") this.page.places.drawing.look(null);
+    else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
     else if (["Delete", "Backspace"].includes(event.key) && this.selected.size) this.remove();
     else return;
     event.preventDefault();
