@@ -57,7 +57,7 @@ export class LivePage {
     this.newton = new Newton(desk);
     this.build = new Build(desk);
     this.editor = new Editor(desk, {
-      tool: (_, edited) => this.chosen(edited),
+      mode: (edited) => this.chosen(edited),
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
@@ -192,7 +192,7 @@ export class LivePage {
     if (fresh) this.begin(page);
     else this.page!.update(page, live && page === this.moving);
     this.charted ||= moves;
-    this.editor.redraw();
+    this.editor.redraw(this.editor.edited ? this.moving : null);
   }
 
   private begin(data: PageData): void {

@@ -2,6 +2,7 @@
 
 import type { FileState, LiveEdit } from "../../messages";
 import type { Mounted } from "../../mount";
+import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
 import { clean } from "../ranges";
@@ -17,8 +18,8 @@ const REACH = { mouse: 12, touch: 24 };
 const STILL = 4;
 
 export interface EditorHooks {
-  /** Another tool was chosen; the drawing is edited unless it is "move". */
-  readonly tool: (name: string, edited: boolean) => void;
+  /** The drawing begins or ends to be edited: all tools do that but "move". */
+  readonly mode: (edited: boolean) => void;
   /** Show a short hint. */
   readonly hint: (text: string) => void;
 }
@@ -99,11 +100,12 @@ export class Editor {
 
   choose(name: string): void {
     if (name === this.tool) return;
+    const before = this.edited;
     this.tool = name;
     this.tools.show(name);
     if (name !== "select") this.select(null);
     this.overlay.clear();
-    this.hooks.tool(name, this.edited);
+    if (before !== this.edited) this.hooks.mode(this.edited);
     this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
     this.redraw();
   }
@@ -118,9 +120,10 @@ export class Editor {
     this.redraw();
   }
 
-  /** Draw grid and selection again. */
-  redraw(): void {
+  /** Draw grid and selection again, and the paths of another motion. */
+  redraw(motion?: PageData | null): void {
     if (this.page === null) return;
+    if (motion !== undefined) this.overlay.paths(motion);
     const { drawing } = this.page.places;
     drawing.element.classList.toggle("lw-edited", this.edited);
     this.grid = this.overlay.drawGrid(this.page, this.edited);

@@ -1,6 +1,7 @@
 // What is being drawn, over the drawing: grid, preview of a link, selection, names of snaps.
 
 import type { Mounted } from "../../mount";
+import type { PageData } from "../../page_data";
 import { pathOf, put, svg } from "../../svg";
 import { roundStep } from "../ranges";
 import type { Place, Places } from "./geometry";
@@ -8,6 +9,7 @@ import type { Place, Places } from "./geometry";
 export class Overlay {
   private readonly grid = svg("path", { class: "lw-sheet-grid" });
   private readonly group = svg("g", { class: "lw-draft" });
+  private readonly traced = svg("g", {}, this.group);
   private readonly marks = svg("g", {}, this.group);
   private readonly line = svg("path", { class: "lw-draft-line" }, this.group);
   private readonly box = svg("rect", { class: "lw-draft-box" }, this.group);
@@ -38,6 +40,14 @@ export class Overlay {
     for (let k = Math.ceil(bottom / step); k * step <= top; k++) pieces.push(`M${left} ${-k * step}H${right}`);
     put(this.grid, { d: pieces.join("") });
     return step;
+  }
+
+  /** The paths of points over a motion; null: none. */
+  paths(motion: PageData | null): void {
+    this.traced.replaceChildren();
+    for (const part of motion?.motions[0]?.parts ?? []) {
+      if (part.role === "trace" && part.frame === -1) svg("path", { class: "r-trace", d: pathOf(part.points, false) }, this.traced);
+    }
   }
 
   /** A line that is being drawn, with its length and angle. */

@@ -20,6 +20,7 @@ from linkwork.viewer.live.palette import part_name, part_of
 __all__ = ["Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
+_LENGTHS = ("slider", "cylinder")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
 
 
@@ -158,10 +159,39 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
         for other in (*_DRIVES, "relative_to"):
             if other != edit.drive and text.has((*here, other)):
                 text.remove((*here, other))
+        _write_range(edit.drive, edit.name or "", here, text, before)
     for field, key in _RANGE.items():
         if (entry := getattr(edit, field)) is not None:
             text.put((*here, key), entry)
     return Followed()
+
+
+def _write_range(
+    drive: str, name: str, here: tuple[str | int, ...], text: TextEdits, before: Before
+) -> None:
+    """Replace a range that belongs to another kind of quantity; lengths have no natural one."""
+    number, inputs = here[-1], before.description.inputs
+    assert isinstance(number, int)
+    old = inputs[number].drives[0] if number < len(inputs) else "link"
+    if (old in _LENGTHS) == (drive in _LENGTHS):
+        return
+    for key in _RANGE.values():
+        if text.has((*here, key)):
+            text.remove((*here, key))
+    if drive in _LENGTHS:
+        span = _span_of(name, before)
+        for key, share in (("from", 0.25), ("to", 0.75), ("step", 0.005)):
+            text.put((*here, key), float(f"{share * span:.4g}"))
+
+
+def _span_of(name: str, before: Before) -> float:
+    """The length of a slider's line, or twice that of a cylinder."""
+    for part in getattr(before.description, "parts", ()):
+        if canonical(part.label) == canonical(name):
+            line = getattr(part, "line", None)
+            a, b = line or part.between
+            return abs(before.place(b) - before.place(a)) * (1.0 if line else 2.0) or 1.0
+    return 1.0
 
 
 @applied.register
