@@ -26,6 +26,9 @@ const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "sket
 /** Widths of a blank sheet by unit; otherwise 240. */
 const SHEETS: Readonly<Record<string, number>> = { mm: 240, cm: 24, m: 0.24, in: 10, ft: 1 };
 
+/** Logarithm of the zoom at which symbols are drawn anew. */
+const RESIZED = 0.2;
+
 export class LivePage {
   private readonly connection: Connection;
   private readonly latest: Latest<LiveRequest>;
@@ -46,6 +49,9 @@ export class LivePage {
   /** Whether the page was made with plots. */
   private charted = false;
   private hint: Element | null = null;
+  /** The width of the sheet that was told last. */
+  private width = 1;
+  private resizing: ReturnType<typeof setTimeout> | undefined;
   /** Whether no row of the table has a position. */
   private rowless = false;
 
@@ -58,6 +64,7 @@ export class LivePage {
     this.build = new Build(desk);
     this.editor = new Editor(desk, {
       mode: (edited) => this.chosen(edited),
+      viewed: () => this.viewed(),
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
@@ -225,9 +232,19 @@ export class LivePage {
     if (!edited) this.display();
   }
 
+  /** Symbols of a sketch have the size of the view. */
+  private viewed(): void {
+    if (!this.editor.edited || this.page === null) return;
+    const { width } = this.page.places.drawing.window;
+    if (Math.abs(Math.log(width / this.width)) < RESIZED) return;
+    clearTimeout(this.resizing);
+    this.resizing = setTimeout(() => this.sheet(), 150);
+  }
+
   /** Tell the width of the sheet, by which symbols are sized. */
   private sheet(): void {
     const { width } = this.page!.places.drawing.window;
+    this.width = width;
     this.connection.ask({ kind: "set_sheet", width, edited: this.editor.edited });
   }
 
