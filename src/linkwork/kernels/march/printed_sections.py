@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwork.kernels.march.march_programs import WEIGHTS, MarchPrograms
@@ -31,13 +31,18 @@ class ThreadState:
     blocks: int
 
     @classmethod
-    def of(cls, programs: MarchPrograms, options: Sequence[str]) -> ThreadState:
-        """The state that the programs of a topology need; ``options``: names that may be read."""
+    def of(
+        cls, programs: MarchPrograms, options: Sequence[str], fixed: Collection[str] = ()
+    ) -> ThreadState:
+        """The state that the programs of a topology need; ``options``: names that may be read,
+        ``fixed``: coefficients that are written as numbers.
+        """
         named, blocks = programs.registers.named, len(programs.begin)
         own = {*programs.nodes.ravel().tolist(), *(named[name] for name in programs.noted)}
         noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
         more = [name for name in programs.noted if name not in noted]
-        given = [name for name in named if named[name] not in own and name not in WEIGHTS]
+        known = {*WEIGHTS, *fixed}
+        given = [name for name in named if named[name] not in own and name not in known]
         coefficients = tuple(name for name in given if name not in options)
         used = tuple(name for name in options if name in named)
         order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used, *more)]
