@@ -68,18 +68,25 @@ class PrintedSolver:
 
 
 def print_solver(
-    design: RecordedDesign, columns: Sequence[str], turns: Sequence[str], language: Language
+    design: RecordedDesign,
+    language: Language,
+    *,
+    points: Sequence[str],
+    columns: Sequence[str],
+    turns: Sequence[str],
 ) -> PrintedSolver:
     """Print the solver of a mechanism.
 
     Parameters
     ----------
     design : RecordedDesign
+    language : Language
+    points : sequence of str
+        Points of which x and y with both derivatives are computed.
     columns : sequence of str
-        Unknowns and links whose values are computed: value and first derivative of each.
+        Unknowns and links whose values are computed, after the points: value and first derivative.
     turns : sequence of str
         Links whose angles [rad] are computed, after the columns.
-    language : Language
     """
     base, fixed = design.base, design.fixed
     table, parts = base.compiled.table, block_parts(base)
@@ -96,7 +103,7 @@ def print_solver(
     variables = {f"v{k}": f"v[{k}]" for k in range(table.variables)}
     rates = {name: f"o[{k}]" for k, name in enumerate(at_rows.wanted)}
     drawing = _Drawing(design)
-    drawing.write(columns, turns)
+    drawing.write(points, columns, turns)
     results = {name: f"q[{k}]" for k, name in enumerate(drawing.rec.writes)}
     first_row = len(starts)
     text = [
@@ -181,9 +188,11 @@ class _Drawing:
         self.symbols = {x.name: x.symbol for x in self.equations.variables}
         self.known: dict[str, Vector] = {}
 
-    def write(self, columns: Sequence[str], turns: Sequence[str]) -> None:
+    def write(
+        self, points: Sequence[str], columns: Sequence[str], turns: Sequence[str]
+    ) -> None:
         """Six numbers of every point, two of every column, one of every turn."""
-        for name in self.equations.points:
+        for name in points:
             for axis, jet in zip("xy", self._place(name), strict=True):
                 for order, part in enumerate(jet):
                     self.rec.write(f"{name}.{axis}{order}", part)
@@ -210,7 +219,7 @@ class _Drawing:
 
     def _link(self, name: str) -> Jet:
         angle = self.equations.links[name]
-        constant = self._part(f"a{list(self.equations.links).index(name)}")
+        constant = self._part(f"link{list(self.equations.links).index(name)}")
         if angle.variable is None:
             return constant, 0.0, 0.0
         jet = self._variable(canonical(angle.variable))
@@ -240,7 +249,7 @@ class _Drawing:
         """c s e^{iψ} with both derivatives."""
         rec, rows = self.rec, self.base.compiled.points.rows
         symbols = [x.symbol for x in self.equations.variables]
-        z = self._part(f"p{term}.re"), self._part(f"p{term}.im")
+        z = self._part(f"point{term}.re"), self._part(f"point{term}.im")
         mine, turn = rows.phase_term == term, [0.0, 0.0, 0.0]
         weights = zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True)
         jets = [(float(weight), self._variable(symbols[k])) for k, weight in weights]

@@ -38,7 +38,7 @@ class RecordedDesign:
     recorder : Recorder
         Records ``fits``, 1.0 where the equations keep their form, and the numbers in ``parts``.
     parts : Mapping[str, float or Value]
-        Coefficients by register; ``p<term>.re`` and ``.im`` of points, ``a<link>`` of links,
+        Coefficients by register; ``point<term>.re`` and ``.im``, ``link<k>`` of links,
         ``length``, ``guess<k>`` and ``start``.
     """
 
@@ -156,10 +156,10 @@ def _has_plain_inputs(description: Description) -> bool:
 
 def _named_parts(base: Model, found: Coefficients) -> dict[str, Part]:
     parts: dict[str, Part] = {}
-    for letter, terms in (("c", found.loops), ("p", found.points)):
+    for letter, terms in (("c", found.loops), ("point", found.points)):
         for term, z in enumerate(terms):
             parts[f"{letter}{term}.re"], parts[f"{letter}{term}.im"] = parts_of(z)
-    for letter, numbers in (("k", found.linear), ("a", found.link_angles)):
+    for letter, numbers in (("k", found.linear), ("link", found.link_angles)):
         parts |= {f"{letter}{row}": parts_of(x)[0] for row, x in enumerate(numbers)}
     parts["length"] = parts_of(found.length_scale[0])[0]
     for k, turns in enumerate(base.compiled.table.is_angle):

@@ -16,7 +16,7 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.packing import Pack
 from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData
 
-__all__ = ["OWN_COURSE", "shapes_of"]
+__all__ = ["OWN_COURSE", "places_of", "shapes_of"]
 
 #: The frame of a deforming shape.
 OWN_COURSE = -2
@@ -70,7 +70,7 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -
         of=shape.of,
         tone=shape.tone,
         frame=number,
-        points=local(_places(shape)) if part.frame is not None else (),
+        points=local(places_of(shape)) if part.frame is not None else (),
         radius=shape.radius if isinstance(shape, Disc) else 0.0,
         head=local(shape.arrow_head) if isinstance(shape, Polyline | Arc) else (),
         text=text.text if text else "",
@@ -82,7 +82,7 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -
     )
 
 
-def _places(shape: Primitive) -> tuple[XY, ...]:
+def places_of(shape: Primitive) -> tuple[XY, ...]:
     """The points of a drawn shape."""
     match shape:
         case Polyline() | Arc():
