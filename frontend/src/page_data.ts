@@ -160,7 +160,7 @@ export interface SolverData {
   readonly turns: readonly TurnSource[];
   readonly tracks: readonly TrackData[];
   readonly frames: readonly FrameData[];
-  readonly anchors: readonly readonly number[][];
+  readonly anchors: readonly (readonly number[])[];
 }
 
 /** Constants of `marching` and of the programs; see there. */

@@ -1,0 +1,20 @@
+// The entry point of an offline page that solves its mechanism again when numbers are changed.
+
+import type { SolverData } from "../page_data";
+import { contained, start } from "../start";
+import { programOf, type Printed } from "./march";
+import { Sliders } from "./sliders";
+import { SolvedPages } from "./solved_page";
+
+declare global {
+  interface Window {
+    /** The printed functions of this page's mechanism. */
+    linkworkProgram: Printed;
+  }
+}
+
+start(async (page) => {
+  const data = await contained<SolverData>("linkwork-solver");
+  const pages = new SolvedPages(programOf(window.linkworkProgram), data, page);
+  new Sliders(data, pages, window.linkwork);
+});
