@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,7 +105,6 @@ def print_solver(
     drawing = _Drawing(design)
     drawing.write(points, columns, turns)
     results = {name: f"q[{k}]" for k, name in enumerate(drawing.rec.writes)}
-    first_row = len(starts)
     text = [
         _numbers(design, order, places, language),
         *printed_sections(programs, state, language, written),
@@ -188,9 +187,7 @@ class _Drawing:
         self.symbols = {x.name: x.symbol for x in self.equations.variables}
         self.known: dict[str, Vector] = {}
 
-    def write(
-        self, points: Sequence[str], columns: Sequence[str], turns: Sequence[str]
-    ) -> None:
+    def write(self, points: Sequence[str], columns: Sequence[str], turns: Sequence[str]) -> None:
         """Six numbers of every point, two of every column, one of every turn."""
         for name in points:
             for axis, jet in zip("xy", self._place(name), strict=True):

@@ -7,21 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.batch.building import family_base, write_equations
+from linkwork.batch.building import build_design, family_base, write_equations
 from linkwork.batch.design_sweep import TablePath
 from linkwork.batch.pattern import Coefficients, Pattern
 from linkwork.batch.recorded_number import Part, RecordedNumber, Recording, parts_of
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.program.recorder import Recorder, Value
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import VariedNumber, number_named, with_numbers
+from linkwork.motion import sweep
 from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
 
 __all__ = ["RecordedDesign", "record_design"]
 
 _ON_PATH = 1e-12
+_PART = 0.03  # of a number: by how much motions are compared
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,6 +55,10 @@ class RecordedDesign:
     def fixed(self) -> dict[str, float]:
         """Coefficients that do not vary."""
         return {name: part for name, part in self.parts.items() if not isinstance(part, Value)}
+
+    def changed(self) -> list[Motion | None]:
+        """A sweep with another value of each number that varies; ``None`` where none is found."""
+        return [_changed(self.base, quantity) for quantity in self.quantities]
 
 
 def record_design(model: Model, names: Sequence[str]) -> RecordedDesign:
@@ -104,9 +111,20 @@ def record_design(model: Model, names: Sequence[str]) -> RecordedDesign:
     for name, part in parts.items():
         if isinstance(part, Value):
             rec.write(name, part)
-    return RecordedDesign(
-        base=base, path=path, quantities=quantities, recorder=rec, parts=parts
-    )
+    return RecordedDesign(base=base, path=path, quantities=quantities, recorder=rec, parts=parts)
+
+
+def _changed(model: Model, quantity: VariedNumber) -> Motion | None:
+    value = float(quantity.of(model.description))
+    step = _PART * (abs(value) or model.equations.length_scale)
+    for other in (value + step, value - step):
+        try:
+            motion = sweep(build_design(with_numbers(model.description, {quantity: other})))
+        except LinkworkError:
+            continue
+        if motion.found.any():
+            return motion
+    return None
 
 
 def _coefficients(

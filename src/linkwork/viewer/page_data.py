@@ -20,10 +20,10 @@ __all__ = [
     "Part",
     "PointData",
     "RoleStyle",
+    "RowEvidence",
     "SliderData",
     "SolverData",
     "StepRules",
-    "RowEvidence",
     "ThemeData",
     "TrackData",
     "TurnData",
@@ -332,3 +332,11 @@ class SolverData:
     tracks: tuple[TrackData, ...]
     frames: tuple[FrameData, ...]
     anchors: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvingPage:
+    """The data of a page's solver, and its printed functions as a script."""
+
+    data: SolverData
+    script: str

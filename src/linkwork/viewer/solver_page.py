@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,13 +32,14 @@ from linkwork.viewer.page_data import (
     PackedColumn,
     SliderData,
     SolverData,
+    SolvingPage,
     StepRules,
     TrackData,
     TurnSource,
 )
 from linkwork.viewer.page_shapes import places_of
 
-__all__ = ["SolvingPage", "solving_page"]
+__all__ = ["solving_page"]
 
 _FINEST = 1e-8  # relative step to the end of a branch
 _RULES = StepRules(
@@ -54,16 +54,8 @@ _RULES = StepRules(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class SolvingPage:
-    """The data, and the printed functions as a script."""
-
-    data: SolverData
-    script: str
-
-
 def solving_page(
-    design: RecordedDesign, motion: Motion, changed: Sequence[Motion] = ()
+    design: RecordedDesign, motion: Motion, changed: Sequence[Motion | None]
 ) -> SolvingPage:
     """Print the solver of a motion's mechanism for its page.
 
@@ -72,9 +64,10 @@ def solving_page(
     design : RecordedDesign
     motion : Motion
         The motion that the page shows.
-    changed : sequence of Motion
+    changed : sequence of Motion or None
         A motion with another value of each number that varies, in their order: parts that the
-        page would draw otherwise than those are hidden where that number differs.
+        page would draw otherwise than those are hidden where that number differs. ``None`` where
+        there is no such motion: only parts that move as points do are drawn then.
     """
     scene = moving_scene(motion)
     turns = _used_turns(scene)
@@ -90,7 +83,7 @@ def solving_page(
             name=quantity.name,
             unit=_unit(design.base, quantity),
             value=float(quantity.of(design.base.description)),
-            hidden=hidden[k] if hidden else (),
+            hidden=hidden[k],
         )
         for k, quantity in enumerate(design.quantities)
     )
@@ -253,18 +246,26 @@ def _anchors(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...
 
 
 def _unlike(
-    scene: MovingScene, motion: Motion, anchors: Sequence[tuple[int, ...]], changed: Motion
+    scene: MovingScene, motion: Motion, anchors: Sequence[tuple[int, ...]], changed: Motion | None
 ) -> tuple[int, ...]:
     """Parts that another motion draws otherwise than by moving their corners with points."""
+    if changed is None:
+        return tuple(k for k, part in enumerate(scene.parts) if not _is_plain(part))
     other = moving_scene(changed, like=scene, within=scene.scene.within)
     if [p.frame for p in other.parts] != [p.frame for p in scene.parts]:
-        return tuple(k for k, part in enumerate(scene.parts) if part.frame is None)
+        return tuple(k for k, part in enumerate(scene.parts) if not _is_plain(part))
     return tuple(
         k
         for k, (part, now) in enumerate(zip(scene.parts, other.parts, strict=True))
         if part.shape.role is not Role.TRACE
         and not _is_moved(scene, part, other, now, anchors[k], motion, changed)
     )
+
+
+def _is_plain(part: Moving) -> bool:
+    """Whether a part is a link between points, a pin or a name."""
+    plain = (Role.LINK, Role.PLATE, Role.PIN, Role.POINT, Role.TRACED, Role.LABEL, Role.TRACE)
+    return part.frame is not None and part.shape.role in plain
 
 
 def _is_moved(

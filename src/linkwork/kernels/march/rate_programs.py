@@ -106,8 +106,7 @@ class _RateWriter:
         """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
         rec = self.rec
         conditions = [rec.constant(1.0)]
-        for closure in self.closures:
-            conditions.append(self._condition(closure, self._scales(closure, lengths)))
+        conditions += [self._condition(c, self._scales(c, lengths)) for c in self.closures]
         rec.write("condition", rec.largest(conditions))
         return ["condition", *self.residual(lengths)]
 
@@ -118,9 +117,7 @@ class _RateWriter:
         for closure in self.closures:
             residuals += [
                 rec.divide(rec.absolute(f), scale)
-                for f, scale in zip(
-                    closure.residual(), self._scales(closure, lengths), strict=True
-                )
+                for f, scale in zip(closure.residual(), self._scales(closure, lengths), strict=True)
             ]
         rec.write("residual", rec.largest(residuals))
         return ["residual"]

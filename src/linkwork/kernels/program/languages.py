@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from linkwork.kernels.program.program import Op
 
-__all__ = ["C", "JAVASCRIPT", "PYTHON", "Language"]
+__all__ = ["JAVASCRIPT", "PYTHON", "C", "Language"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +44,7 @@ class Language:
     between: str
     not_a_number: str
     infinity: str
+    declares: bool = False
 
     def written(self, name: str, arguments: Sequence[str], statements: Sequence[str]) -> str:
         """A function of arrays."""
@@ -100,7 +101,7 @@ _OF_C = _COMMON | {
     Op.MAX: "{a} > {b} || {a} != {a} ? {a} : {b}",
     Op.MIN: "{a} < {b} || {a} != {a} ? {a} : {b}",
     Op.WHERE: "{a} > 0.5 ? {b} : {c}",
-    Op.LE: "{a} <= {b} ? 1.0 : 0.0",
+    Op.LE: "{a} <= {b} ? 1 : 0",
     Op.KEEP: "{a} > 0.5 ? {b} : {d}",
 }
 #: Without contraction (``-ffp-contract=off``) C gives the numbers of the other languages.
@@ -115,6 +116,7 @@ C = Language(
     between="\n    ",
     not_a_number="NAN",
     infinity="INFINITY",
+    declares=True,
 )
 JAVASCRIPT = Language(
     forms={op: form.replace(" ", "") for op, form in _OF_C.items()}

@@ -14,6 +14,7 @@ from linkwork.kernels.program.program import ROLES, Code, Op
 
 __all__ = ["Body", "trial_source"]
 
+
 @dataclass
 class Body:
     """Statements over local names; registers are read where first needed and written at the end."""
@@ -56,12 +57,16 @@ class Body:
             self.changed.add(d)
 
     def _add_sine(self, angle: str, sine: int, cosine: int) -> None:
-        self.turns += 1
-        names = {sine: f"s{self.turns}", cosine: f"c{self.turns}"}
+        names = {sine: f"r{sine}", cosine: f"r{cosine}"}
+        if self.language.declares:
+            self.turns += 1
+            names = {sine: f"s{self.turns}", cosine: f"c{self.turns}"}
         form = self.language.sine
         self.lines.append(form.format(a=angle, d=names[sine], c=names[cosine]))
         for register, name in names.items():
-            self._assign(register, name)
+            if self.language.declares:
+                self._assign(register, name)
+        self.known |= names.keys()
         self.changed |= names.keys()
 
     def end(self, kept: Set[int]) -> None:
