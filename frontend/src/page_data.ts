@@ -126,6 +126,21 @@ export interface RoleStyle {
   readonly dashes: readonly number[];
 }
 
+/** The evidence of every row; `found` is 1 or 0, statuses are indices into `texts`. */
+export interface RowEvidence {
+  readonly found: PackedColumn;
+  readonly status: PackedColumn;
+  readonly status_texts: readonly string[];
+  readonly certification: PackedColumn;
+  readonly certification_texts: readonly string[];
+  readonly certified: PackedColumn;
+  readonly residual_log10: PackedColumn;
+  readonly radius_log10: PackedColumn;
+  readonly iterations: PackedColumn;
+  readonly branch: PackedColumn;
+  readonly branch_names: readonly string[];
+}
+
 /** A number that can be changed in the page; `unit` is empty where it is unknown. `hidden`: parts that are not drawn while it differs from `value`. */
 export interface SliderData {
   readonly name: string;
@@ -175,21 +190,6 @@ export interface StepRules {
   readonly start_steps: number;
 }
 
-/** The evidence of every row; `found` is 1 or 0, statuses are indices into `texts`. */
-export interface RowEvidence {
-  readonly found: PackedColumn;
-  readonly status: PackedColumn;
-  readonly status_texts: readonly string[];
-  readonly certification: PackedColumn;
-  readonly certification_texts: readonly string[];
-  readonly certified: PackedColumn;
-  readonly residual_log10: PackedColumn;
-  readonly radius_log10: PackedColumn;
-  readonly iterations: PackedColumn;
-  readonly branch: PackedColumn;
-  readonly branch_names: readonly string[];
-}
-
 /** Colours of a page, light or dark. */
 export interface ThemeData {
   readonly background: string;
@@ -200,9 +200,10 @@ export interface ThemeData {
   readonly styles: readonly RoleStyle[];
 }
 
-/** A track on the ground: the point guided by it, given by index, and its direction. The ends of the point's path count as two more points, after the named ones. */
+/** A track: the point guided by it and its frame, given by index (-1: the ground), and its direction there. The ends of the point's path count as two more points, after the named ones. */
 export interface TrackData {
   readonly point: number;
+  readonly frame: number;
   readonly x: number;
   readonly y: number;
 }

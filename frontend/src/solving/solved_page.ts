@@ -16,7 +16,6 @@ export interface Solved {
 /** Steps nearer than this many of the largest are neighbours on a closed motion. */
 const MEETING = 1.5;
 const SAME_PLACE = 1e-3;
-const MARGIN = 0.05;
 const STATUS = ["converged", "not reached: beyond the end of the branch"];
 const PROOF = ["certified", "no position"];
 
@@ -121,7 +120,7 @@ export class SolvedPages {
       most(points.map(([x, , , y]) => Math.hypot(x![a]! - x![b]!, y![a]! - y![b]!)));
     const near = MEETING * most(rows.map((row, k) => apart(row, rows[Math.max(0, k - 1)]!)));
     const gap = apart(rows[0]!, rows[rows.length - 1]!);
-    const closed = rows.length > 2 && gap <= near;
+    const closed = rows.length === this.path.length && rows.length > 2 && gap <= near;
     if (closed && gap < SAME_PLACE * near) rows.pop();
     if (closed) {
       const first = rows.indexOf(least(rows));
@@ -237,40 +236,46 @@ export class SolvedPages {
 
   /** Where the points that the corners of a part move with are, in its frame. */
   private places(view: MotionView, part: Part, k: number, row = view.order[0]!): (readonly [number, number])[] {
-    const pose = view.pose(part.frame, row);
-    const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
+    const named = view.points.length;
+    const ends = new Map<number, readonly [number, number]>();
     return this.data.anchors[k]!.map((anchor) => {
-      const [x, y] = this.pointAt(view, anchor, row);
-      const [dx, dy] = [x - pose.x, y - pose.y];
-      return [cos * dx + sin * dy, -sin * dx + cos * dy];
+      if (anchor < named) return placeIn(view, part.frame, anchor, row);
+      const end = ends.get(anchor) ?? this.end(view, anchor - named);
+      ends.set(anchor, end);
+      return end;
     });
   }
 
-  /** A point by number; after the named ones, the ends of the paths on tracks. */
-  private pointAt(view: MotionView, number: number, row: number): readonly [number, number] {
-    const named = view.points.length;
-    const point = view.points[number];
-    if (point) return [point.x[row]!, point.y[row]!];
-    const track = this.data.tracks[(number - named) >> 1]!;
-    const { x, y } = view.points[track.point]!;
-    const along = view.order.map((one) => (x[one]! * track.x + y[one]! * track.y) * ((number - named) % 2 ? 1 : -1));
-    const end = view.order[along.indexOf(most(along))]!;
-    return [x[end]!, y[end]!];
+  /** An end of the path on a track, in its frame. */
+  private end(view: MotionView, number: number): readonly [number, number] {
+    const { point, frame, x, y } = this.data.tracks[number >> 1]!;
+    const sign = number % 2 ? 1 : -1;
+    const path = view.order.map((row) => placeIn(view, frame, point, row));
+    return path.reduce((a, b) => (sign * ((b[0] - a[0]) * x + (b[1] - a[1]) * y) > 0 ? b : a));
   }
 
-  /** The view of the page, enlarged to all points. */
+  /** The view of the page, enlarged: around the points there is as much room as before. */
   private view({ points }: Drawn, rows: readonly number[]): number[] {
-    const [left, bottom, right, top] = this.page.view as [number, number, number, number];
-    const air = MARGIN * Math.max(right - left, top - bottom);
-    const xs = points.flatMap(([x]) => rows.map((row) => x![row]!));
-    const ys = points.flatMap(([, , , y]) => rows.map((row) => y![row]!));
-    return [
-      Math.min(left, least(xs) - air),
-      Math.min(bottom, least(ys) - air),
-      Math.max(right, most(xs) + air),
-      Math.max(top, most(ys) + air),
-    ];
+    const now = extent(points.map(([x, , , y]) => ({ x: x!, y: y! })), rows);
+    const before = extent(this.base.points, this.base.order);
+    return this.page.view.map((side, k) => (k < 2 ? Math.min : Math.max)(side, side + now[k]! - before[k]!));
   }
+}
+
+/** A point in a frame. */
+function placeIn(view: MotionView, frame: number, point: number, row: number): readonly [number, number] {
+  const pose = view.pose(frame, row);
+  const { x, y } = view.points[point]!;
+  const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
+  const [dx, dy] = [x[row]! - pose.x, y[row]! - pose.y];
+  return [cos * dx + sin * dy, -sin * dx + cos * dy];
+}
+
+/** Left, bottom, right, top of points over some rows. */
+function extent(points: readonly { readonly x: Float64Array; readonly y: Float64Array }[], rows: readonly number[]): number[] {
+  const xs = points.flatMap(({ x }) => rows.map((row) => x[row]!));
+  const ys = points.flatMap(({ y }) => rows.map((row) => y[row]!));
+  return [least(xs), least(ys), most(xs), most(ys)];
 }
 
 function least(numbers: readonly number[]): number {

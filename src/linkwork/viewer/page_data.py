@@ -286,11 +286,12 @@ class TurnSource:
 
 @dataclass(frozen=True, kw_only=True)
 class TrackData:
-    """A track on the ground: the point guided by it, given by index, and its direction. The ends of
-    the point's path count as two more points, after the named ones.
+    """A track: the point guided by it and its frame, given by index (-1: the ground), and its
+    direction there. The ends of the point's path count as two more points, after the named ones.
     """
 
     point: int
+    frame: int
     x: float
     y: float
 

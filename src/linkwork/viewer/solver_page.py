@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -126,6 +127,7 @@ def _data(
 ) -> SolverData:
     model, path = design.base, design.path
     t = model.rows[:, path.lead]
+    carriers = _carriers(scene)
     steps = Steps(smallest=_FINEST).times(path.size)
     return SolverData(
         title=motion.mechanism,
@@ -150,7 +152,15 @@ def _data(
         input_unit=float(model.input_scale[path.lead]),
         columns=tuple(columns),
         turns=tuple(_source(name, motion, links) for name in turns),
-        tracks=tuple(_tracks(motion).values()),
+        tracks=tuple(
+            TrackData(
+                point=track.point,
+                frame=carriers.index(track.frame) if track.frame != STILL else -1,
+                x=track.along.real,
+                y=track.along.imag,
+            )
+            for track in _tracks(motion, scene)
+        ),
         frames=tuple(_frames(motion, scene)),
         anchors=tuple(anchors),
     )
@@ -190,17 +200,34 @@ def _frames(motion: Motion, scene: MovingScene) -> Iterator[FrameData]:
         yield FrameData(origin=origin, turn=turns.index(frame.turn) if frame.turn else -1)
 
 
-def _tracks(motion: Motion) -> dict[str, TrackData]:
-    """The tracks of guides on the ground, by name."""
-    points, fixed, found = list(motion.points), set(motion.skeleton.fixed), {}
+@dataclass(frozen=True)
+class _Track:
+    """The track of a guided point in a frame; ``ends``: of the point's path there."""
+
+    name: str
+    frame: Frame
+    point: int
+    along: complex
+    ends: tuple[complex, complex]
+
+
+def _tracks(motion: Motion, scene: MovingScene) -> Iterator[_Track]:
+    """The tracks of guides, in every frame in use that has their line."""
+    points, rows = list(motion.points), np.flatnonzero(scene.found)
+    frames = [STILL, *_carriers(scene)]
+    rigid = [_rigid_points(motion, scene, frame) for frame in frames] if points else []
     for guide in motion.skeleton.guides:
-        if fixed.issuperset(guide.line):
-            start, end = (motion.trace(name)[motion.found][0] for name in guide.line)
-            along = (end - start) / abs(end - start)
-            found[guide.name] = TrackData(
-                point=points.index(guide.point), x=float(along.real), y=float(along.imag)
-            )
-    return found
+        start, end = (points.index(name) for name in guide.line)
+        for frame, places in zip(frames, rigid, strict=True):
+            if start in places and end in places:
+                along = places[end] - places[start]
+                along /= abs(along)
+                own = scene.frames.points[guide.point]
+                path = np.broadcast_to(own, (len(motion),))[rows, None]
+                local = scene.frames.local(frame, path, rows)[:, 0]
+                order = np.argsort((local * along.conjugate()).real)
+                ends = complex(local[order[0]]), complex(local[order[-1]])
+                yield _Track(guide.name, frame, points.index(guide.point), along, ends)
 
 
 def _rigid_points(motion: Motion, scene: MovingScene, frame: Frame) -> dict[int, complex]:
@@ -216,16 +243,16 @@ def _rigid_points(motion: Motion, scene: MovingScene, frame: Frame) -> dict[int,
 
 
 def _holding(motion: Motion, scene: MovingScene, part: Moving) -> dict[int, complex]:
-    """The points that corners of a part can move with: ends of its track, or those of its frame."""
+    """The points that corners of a part can move with: those of its frame, and ends of tracks."""
     assert part.frame is not None
-    tracks = _tracks(motion)
-    if part.frame == STILL and part.shape.of in tracks:
-        number, track = list(tracks).index(part.shape.of), tracks[part.shape.of]
-        path = motion.trace(list(motion.points)[track.point])[motion.found]
-        along = (path * complex(track.x, -track.y)).real
-        first = len(motion.points) + 2 * number
-        return {first: complex(path[along.argmin()]), first + 1: complex(path[along.argmax()])}
-    return _rigid_points(motion, scene, part.frame)
+    first, ends, own = len(motion.points), dict[int, complex](), False
+    for k, track in enumerate(_tracks(motion, scene)):
+        if track.frame == part.frame and (
+            part.shape.of == track.name or part.shape.role is Role.LINK
+        ):
+            ends |= {first + 2 * k: track.ends[0], first + 2 * k + 1: track.ends[1]}
+            own |= part.shape.of == track.name
+    return ends if own else _rigid_points(motion, scene, part.frame) | ends
 
 
 def _local(scene: MovingScene, part: Moving) -> ComplexArray:
@@ -277,8 +304,9 @@ def _is_moved(
     motion: Motion,
     changed: Motion,
 ) -> bool:
-    if part.frame is None:
-        return False
+    on_track = any(k >= len(motion.points) for k in anchors)
+    if part.frame is None or (on_track and part.shape.role is Role.HATCH):
+        return False  # as many strokes as its length has
     before, after = _local(scene, part), _local(other, now)
     if len(before) != len(after) or getattr(part.shape, "radius", 0.0) != getattr(
         now.shape, "radius", 0.0
