@@ -42,7 +42,7 @@ export class SolvedPages {
   private readonly anchored: readonly (readonly [number, number])[][];
 
   constructor(
-    private readonly program: Program,
+    readonly program: Program,
     private readonly data: SolverData,
     private readonly page: PageData,
   ) {
@@ -60,7 +60,7 @@ export class SolvedPages {
   /** The page with other numbers; with its own numbers as it was written. */
   at(numbers: readonly number[]): Solved {
     if (this.data.sliders.every(({ value }, k) => value === numbers[k])) return { page: this.page, message: "" };
-    const found = this.march.solve(numbers, this.rising);
+    const found = this.found(numbers);
     if (!found.fits) {
       return { page: null, message: "With these numbers the equations have another form: no link has such lengths, or a part changes sides." };
     }
@@ -69,6 +69,16 @@ export class SolvedPages {
       return { page: null, message: `With these numbers ${why}.` };
     }
     return this.solved(numbers, found);
+  }
+
+  /** The numbers of a column, for scripts. */
+  numbers(column: PackedColumn): Float64Array {
+    return dense(column);
+  }
+
+  /** The positions with other numbers, by increasing values of the path. */
+  found(numbers: readonly number[]): Found {
+    return this.march.solve(numbers, this.rising);
   }
 
   private solved(numbers: readonly number[], found: Found): Solved {

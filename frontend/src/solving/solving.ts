@@ -10,11 +10,14 @@ declare global {
   interface Window {
     /** The printed functions of this page's mechanism. */
     linkworkProgram: Printed;
+    /** For scripts: the solver of this page. */
+    linkworkSolver: SolvedPages;
   }
 }
 
 start(async (page) => {
   const data = await contained<SolverData>("linkwork-solver");
   const pages = new SolvedPages(programOf(window.linkworkProgram), data, page);
+  window.linkworkSolver = pages;
   new Sliders(data, pages, window.linkwork);
 });
