@@ -57,8 +57,9 @@ class PlainMarch:
             self.f.design(numbers, d)
         found = np.full((len(rows), self.p.unknowns + 1), np.nan)
         node = self.begin(d)
-        for way in (0, 1) if node else ():
-            self.follow(d, node, rows, way, found)
+        if node is not None:
+            for way in (0, 1):
+                self.follow(d, node, rows, way, found)
         return found
 
     def load(self, d: list[float], node: list[float]) -> None:

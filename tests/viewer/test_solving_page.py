@@ -149,8 +149,8 @@ def test_the_page_shows_points_columns_and_rates_of_the_changed_mechanism(
     )
     for point, *values in drawn:
         x, y = motion.points[point]
-        expected = [c[77] for one in (x, y) for c in (one.value, one.first, one.second)]
-        assert values == pytest.approx(expected, rel=1e-8, abs=1e-9 * max(numbers))
+        own = [c[77] for one in (x, y) for c in (one.value, one.first, one.second)]
+        assert values == pytest.approx(own, rel=1e-8, abs=1e-9 * max(numbers))
 
 
 def test_lengths_are_dragged_and_the_whole_cycle_is_drawn_again(open_solving: Any) -> None:

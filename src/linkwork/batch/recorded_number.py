@@ -92,7 +92,8 @@ class Recording(Consensus):
         return self.make(values, *_FUNCTIONS[function](self.recorder, *given))
 
     def _choose(self, condition: object, yes: object, no: object) -> RecordedNumber:
-        x, y = self.operand(yes), self.operand(no)
+        x: RecordedNumber = self.operand(yes)
+        y: RecordedNumber = self.operand(no)
         if not isinstance(condition, _RecordedTruths) or not isinstance(condition.mask, Value):
             return x if cast(Truths, condition) else y
         values = np.where(condition.values, x.values, y.values)
@@ -171,7 +172,7 @@ class _RecordedTruths(Truths):
     def __ne__(self, other: object) -> Any:
         raise NotElementwise
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
     __rand__ = __and__
     __ror__ = __or__
 
@@ -222,7 +223,7 @@ class RecordedNumber(Lanes):
     def __bool__(self) -> bool:
         return bool(self != 0.0)
 
-    __hash__ = Lanes.__hash__
+    __hash__ = Lanes._refuse  # comparing numbers would otherwise remove it
 
 
 def parts_of(z: object) -> Parts:

@@ -259,7 +259,8 @@ def _local(scene: MovingScene, part: Moving) -> ComplexArray:
     """The corners of a part in its frame."""
     assert part.frame is not None
     own = np.array([complex(*place) for place in places_of(part.shape)])
-    return scene.frames.local(part.frame, own[None], np.array([scene.row]))[0]
+    local: ComplexArray = scene.frames.local(part.frame, own[None], np.array([scene.row]))[0]
+    return local
 
 
 def _anchors(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...]:

@@ -74,6 +74,7 @@ _COMMON = {
     Op.AND: "{a} * {b}",
     Op.LESS: "{d} - {a}",
 }
+# the zero turns -0.0, which depends on the order of terms, into 0.0: half a turn is π then
 PYTHON = Language(
     forms=_COMMON
     | {
@@ -84,7 +85,7 @@ PYTHON = Language(
         Op.WHERE: "{b} if {a} > 0.5 else {c}",
         Op.LE: "1.0 if {a} <= {b} else 0.0",
         Op.KEEP: "{b} if {a} > 0.5 else {d}",
-        Op.ATAN2: "math.atan2({a}, {b})",
+        Op.ATAN2: "math.atan2({a} + 0.0, {b})",
     },
     first="{name} = {value}",
     later="{name} = {value}",
@@ -106,7 +107,7 @@ _OF_C = _COMMON | {
 }
 #: Without contraction (``-ffp-contract=off``) C gives the numbers of the other languages.
 C = Language(
-    forms=_OF_C | {Op.ABS: "fabs({a})", Op.SQRT: "sqrt({a})", Op.ATAN2: "atan2({a}, {b})"},
+    forms=_OF_C | {Op.ABS: "fabs({a})", Op.SQRT: "sqrt({a})", Op.ATAN2: "atan2({a} + 0.0, {b})"},
     first="double {name} = {value};",
     later="{name} = {value};",
     store="{place} = {value};",
@@ -120,7 +121,7 @@ C = Language(
 )
 JAVASCRIPT = Language(
     forms={op: form.replace(" ", "") for op, form in _OF_C.items()}
-    | {Op.ABS: "abs({a})", Op.SQRT: "sqrt({a})", Op.ATAN2: "atan2({a},{b})"},
+    | {Op.ABS: "abs({a})", Op.SQRT: "sqrt({a})", Op.ATAN2: "atan2({a}+0,{b})"},
     first="var {name}={value};",
     later="{name}={value};",
     store="{place}={value};",
