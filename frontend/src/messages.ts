@@ -22,6 +22,14 @@ export interface MovePoint {
   live?: boolean;
 }
 
+export interface MovePoints {
+  kind: "move_points";
+  id?: number;
+  places: Record<string, readonly [number, number]>;
+  keep?: readonly (string)[];
+  live?: boolean;
+}
+
 export interface SetInput {
   kind: "set_input";
   id?: number;
@@ -60,6 +68,19 @@ export interface RemoveLink {
   kind: "remove_link";
   id?: number;
   name: string;
+}
+
+export interface ReverseLink {
+  kind: "reverse_link";
+  id?: number;
+  name: string;
+}
+
+export interface SetGround {
+  kind: "set_ground";
+  id?: number;
+  points: readonly (string)[];
+  on?: boolean;
 }
 
 export interface AddJoint {
@@ -118,6 +139,13 @@ export interface SetText {
   kind: "set_text";
   id?: number;
   text: string;
+}
+
+export interface SetSheet {
+  kind: "set_sheet";
+  id?: number;
+  width: number;
+  edited?: boolean;
 }
 
 export interface SolveAt {
@@ -195,6 +223,14 @@ export interface FileState {
   traceable: readonly (string)[];
   traced: readonly (string)[];
   equations: readonly (string)[];
+  lacks: readonly (Lack)[];
+  readable: boolean;
+}
+
+export interface SketchShown {
+  kind: "sketch_shown";
+  answers: number | null;
+  page: PageData;
 }
 
 export interface MotionFound {
@@ -224,6 +260,7 @@ export interface PositionFound {
   iterations: number;
   condition: number | null;
   certified: boolean;
+  page: PageData | null;
 }
 
 export interface CannotClose {
@@ -238,6 +275,7 @@ export interface CannotClose {
   open_ends: readonly (OpenEnd)[];
   remedies: Record<string, number>;
   elsewhere: Record<string, number>;
+  page: PageData | null;
 }
 
 export interface ConfigurationsFound {
@@ -348,6 +386,20 @@ export interface Drive {
   name: string;
 }
 
+export interface Lack {
+  message: string;
+  key: string;
+  line: number | null;
+  kind: string;
+  name: string;
+  remedies: readonly (Remedy)[];
+}
+
+export interface Remedy {
+  label: string;
+  edits: readonly (LiveEdit)[];
+}
+
 export interface LimitFound {
   what: string;
   input: number;
@@ -389,11 +441,14 @@ export interface ProblemShown {
 export type LiveEdit =
   | SetNumber
   | MovePoint
+  | MovePoints
   | SetInput
   | AddPoint
   | RemovePoint
   | AddLink
   | RemoveLink
+  | ReverseLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -404,11 +459,14 @@ export type LiveEdit =
 export type LiveRequest =
   | SetNumber
   | MovePoint
+  | MovePoints
   | SetInput
   | AddPoint
   | RemovePoint
   | AddLink
   | RemoveLink
+  | ReverseLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -418,6 +476,7 @@ export type LiveRequest =
   | Together
   | AssembleAt
   | SetText
+  | SetSheet
   | SolveAt
   | ListConfigurations
   | NewtonSteps
@@ -429,6 +488,7 @@ export type LiveRequest =
 export type LiveEvent =
   | PaletteShown
   | FileState
+  | SketchShown
   | MotionFound
   | PositionFound
   | CannotClose

@@ -2,42 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import singledispatch
 
-from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.moving_points import Before, held_places, move_points, put_place, rounded
 from linkwork.viewer.live.palette import part_name, part_of
 
-__all__ = ["Before", "Followed", "applied", "edit_title"]
+__all__ = ["Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
-_DIGITS = 12  # digits of measured dimensions; redundant ones must agree to nine
-
-
-@dataclass(frozen=True, kw_only=True)
-class Before:
-    """The mechanism before a change, and coordinates of its points at the start (x, y)."""
-
-    description: Description
-    places: Mapping[str, tuple[float, float]]
-
-    def place(self, point: str) -> complex:
-        """The coordinates of a point: assembled, or as sketched if it cannot be assembled."""
-        if point in self.places:
-            return complex(*self.places[point])
-        assert isinstance(self.description, Linkage)
-        return self.description.sketched(point)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +78,7 @@ def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
 
 def _measured(description: Description, name: str) -> str | None:
     """The key of [lengths] for a named length between sketched points."""
-    if not isinstance(description, Linkage):
+    if not isinstance(description, Draft):
         return None
     wanted = sorted(map(canonical, name.split()))
     for measured in description.shapes.measured:
@@ -108,7 +91,7 @@ def _move_pivot(
     quantity: VariedNumber, length: float | str, text: TextEdits, description: Description
 ) -> bool:
     """Set a distance on ground by moving its second point along the line between the two."""
-    assert isinstance(description, Linkage)
+    assert isinstance(description, Draft)
     first, second = quantity.key.split()
     pair = (*description.points[first], *description.points[second])
     on_ground = {first, second} <= set(description.links[GROUND])
@@ -117,62 +100,38 @@ def _move_pivot(
     base = description.sketched(first)
     span = description.sketched(second) - base
     # lengths on ground follow from coordinates: both change together
-    _put_place(text, second, base + span / abs(span) * length)
+    put_place(text, second, base + span / abs(span) * length)
     text.put(("lengths", quantity.key), length)
     return True
 
 
 @applied.register
 def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
-    linkage = before.description
-    if not isinstance(linkage, Linkage):
-        raise InputError(
-            "the points of this file follow from its equations: change a dimension instead"
-        )
+    linkage = _sketched(before)
     point = _known_point(linkage, edit.point)
-    place = complex(edit.x, edit.y)
-    if formulas := [c for c in linkage.points[point] if isinstance(c, str)]:
-        raise InputError(
-            f'"{point}" has the formula {formulas[0]}: change a dimension in it instead'
-        )
-    _put_place(text, point, place)
-    measured = [m for m in linkage.shapes.measured if point in m.points]
-    followed, stayed = [" ".join(m.points) for m in measured], []
-    for table in ("lengths", "angles"):
-        for key, number in getattr(linkage, table).items():
-            if point not in key.split():
-                continue
-            # a formula keeps its dependence on dimensions
-            if isinstance(number, str) or not edit.lengths_follow:
-                stayed.append(key)
-                continue
-            places = {p: place if p == point else before.place(p) for p in key.split()}
-            text.put((table, key), _measure(key, places, linkage))
-            followed.append(key)
-    return Followed(followed=tuple(followed), stayed=tuple(stayed))
+    places = {point: complex(edit.x, edit.y)}
+    followed, stayed = move_points(text, before, linkage, places, follow=edit.lengths_follow)
+    return Followed(followed=followed, stayed=stayed)
 
 
-def _measure(key: str, places: Mapping[str, complex], linkage: Linkage) -> float:
-    """A measured length, or angle in the file's unit, between points with coordinates."""
-    match key.split():
-        case [a, b]:
-            return _rounded(abs(places[b] - places[a]))
-        case [a, vertex, b]:
-            rays = (places[b] - places[vertex]) * (places[a] - places[vertex]).conjugate()
-            return _rounded(linkage.angle.from_radians(phase(rays)))
-    raise ValueError(f"{key} names neither two nor three points")
+@applied.register
+def _(edit: ask.MovePoints, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    wanted = {_known_point(linkage, name): complex(*place) for name, place in edit.places.items()}
+    places = held_places(linkage, before, wanted, edit.keep)
+    followed, stayed = move_points(text, before, linkage, places, keep=edit.keep)
+    return Followed(followed=followed, stayed=stayed)
 
 
-def _rounded(number: float) -> float:
-    return float(f"{number:.{_DIGITS}g}")
+def _sketched(before: Before) -> Draft:
+    if isinstance(before.description, Draft):
+        return before.description
+    raise InputError(
+        "the points of this file follow from its equations: change a dimension instead"
+    )
 
 
-def _put_place(text: TextEdits, point: str, place: complex) -> None:
-    text.put(("points", point, 0), _rounded(place.real))
-    text.put(("points", point, 1), _rounded(place.imag))
-
-
-def _known_point(linkage: Linkage, name: str) -> str:
+def _known_point(linkage: Draft, name: str) -> str:
     own = find_spelling(name, linkage.points)
     if own not in linkage.points:
         raise UnknownNameError(
@@ -207,7 +166,7 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
-    _add(text, "points", edit.name, [_rounded(edit.x), _rounded(edit.y)])
+    _add(text, "points", edit.name, [rounded(edit.x), rounded(edit.y)])
     for link in edit.links:
         _carry(text, link, edit.name)
     return Followed()
@@ -215,12 +174,28 @@ def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.AddLink, text: TextEdits, before: Before) -> Followed:
+    for name in edit.points:
+        _check_point(text, name)
     _add(text, "links", edit.name, list(edit.points))
     return Followed()
 
 
 @applied.register
+def _(edit: ask.SetGround, text: TextEdits, before: Before) -> Followed:
+    fixed = _points_of(text, GROUND) if text.has(("links", GROUND)) else []
+    wanted = {canonical(name): _check_point(text, name) for name in edit.points}
+    left = [point for point in fixed if canonical(point) not in wanted]
+    if on := [*left, *wanted.values()] if edit.on else left:
+        text.put(("links", GROUND), on)
+    elif fixed:
+        text.remove(("links", GROUND))
+    _drop_loose_dimensions(text)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.AddJoint, text: TextEdits, before: Before) -> Followed:
+    _check_point(text, edit.point)
     _carry(text, edit.link, edit.point)
     return Followed()
 
@@ -246,12 +221,17 @@ def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
+    first, second, *rest = [*_points_of(text, edit.name), "", ""]
+    if not second:
+        raise InputError(f'"{edit.name}" has no direction: it has one point')
+    text.put(("links", edit.name), [second, first, *filter(None, rest)])
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
-    if not text.has(("points", edit.name)):
-        known = text.keys(("points",))
-        raise UnknownNameError(
-            f'there is no point "{edit.name}" {choices("points", known, edit.name)}'
-        )
+    _check_point(text, edit.name)
     text.remove(("points", edit.name))
     for link in text.keys(("links",)):
         points = _points_of(text, link)
@@ -289,10 +269,7 @@ def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
-    known = text.keys(("points",))
-    if canonical(edit.point) not in map(canonical, known):
-        listed = choices("points", known, edit.point)
-        raise UnknownNameError(f'there is no point "{edit.point}" {listed}')
+    _check_point(text, edit.point)
     traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
     left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
     if edit.on:
@@ -311,6 +288,15 @@ def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followe
     elif text.has(("configuration",)):
         text.remove(("configuration",))
     return Followed()
+
+
+def _check_point(text: TextEdits, name: str) -> str:
+    """A point as it is spelled in the text; an error if there is none."""
+    known = text.keys(("points",))
+    for own in known:
+        if canonical(own) == canonical(name):
+            return own
+    raise UnknownNameError(f'there is no point "{name}" {choices("points", known, name)}')
 
 
 def _add(text: TextEdits, table: str, name: str, entry: object) -> None:
@@ -350,6 +336,8 @@ def edit_title(edit: ask.Edit) -> str:
             return f"{edit.name} = {value}"
         case ask.MovePoint():
             return f"move {edit.point}"
+        case ask.MovePoints():
+            return f"move {', '.join(edit.places)}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

@@ -75,7 +75,9 @@ def encoded(event: Event, answers: int | None = None) -> str:
 
 def _own_fields(message: Any) -> dict[str, Any]:
     """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
-    return {name: getattr(message, name) for name in message.__dataclass_fields__}
+    own = {name: getattr(message, name) for name in message.__dataclass_fields__}
+    # a remedy has the requests that the page sends back
+    return {"kind": kind_of(type(message)), **own} if type(message) in REQUESTS else own
 
 
 def _refuse(message: str) -> NoReturn:
@@ -159,6 +161,10 @@ def _value(entry: Any, kind: Any, where: str, longest: int) -> Any:
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin in (types.UnionType, typing.Union):
         return _one_of(entry, parts, where, longest)
+    if origin is tuple and parts[-1] is not Ellipsis:
+        if len(_listed(entry, where)) != len(parts):
+            _refuse(f"{where}: must have {len(parts)} entries, got {len(entry)}")
+        return tuple(_each(entry, parts[0], where, longest))
     if origin is tuple:
         return tuple(_each(_listed(entry, where), parts[0], where, longest))
     if origin is dict:
