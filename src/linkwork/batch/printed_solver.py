@@ -11,11 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from linkwork.batch.recorded_design import RecordedDesign
-from linkwork.batch.recorded_number import Part
-from linkwork.foundation.names import canonical
+from linkwork.batch.recorded_quantities import RecordedQuantities
 from linkwork.kernels.march.march_programs import march_programs
 from linkwork.kernels.march.printed_sections import ThreadState, printed_sections
 from linkwork.kernels.march.rate_programs import drawn_program
@@ -26,13 +23,8 @@ from linkwork.kernels.program.printing import Body
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 from linkwork.motion.by_kernels import block_parts, lines_of_lengths
-from linkwork.results.quantities.asked import Group
 
 __all__ = ["PrintedSolver", "print_solver"]
-
-#: A value with its first and second derivative.
-Jet = tuple[Part, Part, Part]
-Vector = tuple[Jet, Jet]
 
 _OPTIONS = ("tolerance", "most_turn", "most_correction", "most_drift")
 
@@ -44,6 +36,8 @@ class PrintedSolver:
     Parameters
     ----------
     source : str
+    columns : tuple of str
+        Those that are computed.
     unknowns, size, blocks : int
         As in :class:`linkwork.kernels.gpu.march.Shape`.
     coefficients : int
@@ -56,6 +50,7 @@ class PrintedSolver:
     """
 
     source: str
+    columns: tuple[str, ...]
     unknowns: int
     size: int
     blocks: int
@@ -84,7 +79,8 @@ def print_solver(
     points : sequence of str
         Points of which x and y with both derivatives are computed.
     columns : sequence of str
-        Unknowns and links whose values are computed, after the points: value and first derivative.
+        Quantities whose values are computed if they can be, after the points: value and first
+        derivative.
     turns : sequence of str
         Links whose angles [rad] are computed, after the columns.
     """
@@ -102,9 +98,9 @@ def print_solver(
     at_rows = drawn_program(table, parts, lines_of_lengths(base), zeros)
     variables = {f"v{k}": f"v[{k}]" for k in range(table.variables)}
     rates = {name: f"o[{k}]" for k, name in enumerate(at_rows.wanted)}
-    drawing = _Drawing(design)
-    drawing.write(points, columns, turns)
-    results = {name: f"q[{k}]" for k, name in enumerate(drawing.rec.writes)}
+    drawing = RecordedQuantities(design)
+    recorded = _write_drawn(drawing, points, columns, turns)
+    results = {name: f"q[{k}]" for k, name in enumerate(drawing.recorder.writes)}
     text = [
         _numbers(design, order, places, language),
         *printed_sections(programs, state, language, written),
@@ -113,12 +109,13 @@ def print_solver(
             variables | places | rates, written,
         ),
         _recorded(
-            language, "drawn", ["v", "d", "o", "q"], drawing.rec,
+            language, "drawn", ["v", "d", "o", "q"], drawing.recorder,
             variables | places | rates | results, written,
         ),
     ]  # fmt: skip
     steps = Steps()
     return PrintedSolver(
+        columns=recorded,
         source="".join(text),
         unknowns=table.unknowns,
         size=programs.nodes.shape[1],
@@ -177,108 +174,23 @@ def _function(
     return language.written(name, arguments, body.lines)
 
 
-class _Drawing:
-    """Records what a page draws at a position, with derivatives by the leading input."""
-
-    def __init__(self, design: RecordedDesign) -> None:
-        self.design, self.base, self.rec = design, design.base, Recorder()
-        self.equations = self.base.equations
-        self.number = {x.symbol: k for k, x in enumerate(self.equations.variables)}
-        self.symbols = {x.name: x.symbol for x in self.equations.variables}
-        self.known: dict[str, Vector] = {}
-
-    def write(self, points: Sequence[str], columns: Sequence[str], turns: Sequence[str]) -> None:
-        """Six numbers of every point, two of every column, one of every turn."""
-        for name in points:
-            for axis, jet in zip("xy", self._place(name), strict=True):
-                for order, part in enumerate(jet):
-                    self.rec.write(f"{name}.{axis}{order}", part)
-        for name in columns:
-            asked = self.base.quantities.own[name]
-            jet = self._column(name, asked.group)
-            scale = self.base.units.scale(asked.own.kind)
-            self.rec.write(f"column {name}", self.rec.divide(jet[0], scale))
-            self.rec.write(f"column {name} first", jet[1])
-        for name in turns:
-            self.rec.write(f"turn {name}", self._link(name)[0])
-
-    def _part(self, name: str) -> Part:
-        """A coefficient: a number, or what the page computes from the varied ones."""
-        part = self.design.parts[name]
-        return self.rec.input(name) if isinstance(part, Value) else part
-
-    def _column(self, name: str, group: Group) -> Jet:
-        if group is Group.LINK:
-            return self._link(name)
-        if group is Group.SLIDER:
-            return self._variable(canonical(self.equations.sliders[name]))
-        return self._variable(self.symbols[name])
-
-    def _link(self, name: str) -> Jet:
-        angle = self.equations.links[name]
-        constant = self._part(f"link{list(self.equations.links).index(name)}")
-        if angle.variable is None:
-            return constant, 0.0, 0.0
-        jet = self._variable(canonical(angle.variable))
-        return self.rec.add(jet[0], constant), jet[1], jet[2]
-
-    def _variable(self, symbol: str) -> Jet:
-        k, n = self.number[symbol], len(self.equations.unknowns)
-        value = self.rec.input(f"v{k}")
-        if k >= n:
-            return value, float(self.design.path.rate[k - n]), 0.0
-        return value, self.rec.input(f"first{k}"), self.rec.input(f"second{k}")
-
-    def _place(self, point: str) -> Vector:
-        """A point: its parent's position plus its own terms."""
-        if point not in self.known:
-            table, rec = self.base.compiled.points, self.rec
-            parent = self.equations.points[point].parent
-            still: Jet = (0.0, 0.0, 0.0)
-            place = (still, still) if parent is None else self._place(parent)
-            own = table.names.index(point)
-            for term in np.flatnonzero(table.rows.row == own).tolist():
-                place = _sum(rec, place, self._term(term))
-            self.known[point] = place
-        return self.known[point]
-
-    def _term(self, term: int) -> Vector:
-        """c s e^{iψ} with both derivatives."""
-        rec, rows = self.rec, self.base.compiled.points.rows
-        symbols = [x.symbol for x in self.equations.variables]
-        z = self._part(f"point{term}.re"), self._part(f"point{term}.im")
-        mine, turn = rows.phase_term == term, [0.0, 0.0, 0.0]
-        weights = zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True)
-        jets = [(float(weight), self._variable(symbols[k])) for k, weight in weights]
-        psi, d1, d2 = (
-            rec.total([zero, *(rec.multiply(weight, jet[k]) for weight, jet in jets)])
-            for k, zero in enumerate(turn)
-        )
-        if jets:
-            sine, cosine = rec.sin_cos(psi)
-            z = _times(rec, z, (cosine, sine))
-        length = int(rows.length[term])
-        s: Jet = (1.0, 0.0, 0.0) if length < 0 else self._variable(symbols[length])
-        # derivative of eq. (1), and eq. (3) with a = b
-        first = s[1], rec.multiply(s[0], d1)
-        second = (
-            rec.subtract(s[2], rec.multiply(s[0], rec.multiply(d1, d1))),
-            rec.add(rec.multiply(2.0, rec.multiply(s[1], d1)), rec.multiply(s[0], d2)),
-        )
-        found = [_times(rec, z, factor) for factor in ((s[0], 0.0), first, second)]
-        x, y = zip(*found, strict=True)
-        return x, y
-
-
-def _times(rec: Recorder, a: tuple[Part, Part], b: tuple[Part, Part]) -> tuple[Part, Part]:
-    """The product of two complex numbers."""
-    re = rec.subtract(rec.multiply(a[0], b[0]), rec.multiply(a[1], b[1]))
-    return re, rec.add(rec.multiply(a[0], b[1]), rec.multiply(a[1], b[0]))
-
-
-def _sum(rec: Recorder, a: Vector, b: Vector) -> Vector:
-    x, y = (
-        tuple(rec.add(one, other) for one, other in zip(left, right, strict=True))
-        for left, right in zip(a, b, strict=True)
-    )
-    return (x[0], x[1], x[2]), (y[0], y[1], y[2])
+def _write_drawn(
+    drawing: RecordedQuantities,
+    points: Sequence[str],
+    columns: Sequence[str],
+    turns: Sequence[str],
+) -> tuple[str, ...]:
+    """Six numbers of every point, two of every column, one of every turn; returns the columns."""
+    for name in points:
+        place = drawing.place(name)
+        for axis in ("real", "imag"):
+            for order, part in enumerate((place.v, place.d1, place.d2)):
+                drawing.write(f"{name}.{axis}{order}", getattr(part, axis))
+    recorded = {name: jet for name in columns if (jet := drawing.column(name)) is not None}
+    for name, jet in recorded.items():
+        drawing.write(f"column {name}", jet.v)
+        drawing.write(f"column {name} first", jet.d1)
+    scale = drawing.model.units.angle.radians
+    for name in turns:
+        drawing.write(f"turn {name}", drawing.own(name).v * scale)
+    return tuple(recorded)

@@ -42,7 +42,7 @@ class RecordedDesign:
         Records ``fits``, 1.0 where the equations keep their form, and the numbers in ``parts``.
     parts : Mapping[str, float or Value]
         Coefficients by register; ``point<term>.re`` and ``.im``, ``link<k>`` of links,
-        ``length``, ``guess<k>`` and ``start``.
+        ``dimension<k>``, ``length``, ``guess<k>`` and ``start``.
     """
 
     base: Model
@@ -177,7 +177,8 @@ def _named_parts(base: Model, found: Coefficients) -> dict[str, Part]:
     for letter, terms in (("c", found.loops), ("point", found.points)):
         for term, z in enumerate(terms):
             parts[f"{letter}{term}.re"], parts[f"{letter}{term}.im"] = parts_of(z)
-    for letter, numbers in (("k", found.linear), ("link", found.link_angles)):
+    several = {"k": found.linear, "link": found.link_angles, "dimension": found.numbers}
+    for letter, numbers in several.items():
         parts |= {f"{letter}{row}": parts_of(x)[0] for row, x in enumerate(numbers)}
     parts["length"] = parts_of(found.length_scale[0])[0]
     for k, turns in enumerate(base.compiled.table.is_angle):

@@ -25,6 +25,7 @@ __all__ = ["RecordedNumber", "Recording", "parts_of"]
 Part = Value | float
 Parts = tuple[Part, Part]
 
+_POWERS = range(-4, 5)
 _ROUNDING = 1.5 * 2.0**52  # added and taken away again, it leaves the nearest whole number
 
 
@@ -49,9 +50,9 @@ class Recording(Consensus):
 
     def make(self, values: Any, re: Part, im: Part = 0.0) -> RecordedNumber:
         """A number, values (1,), with its recorded parts."""
-        return RecordedNumber(np.asarray(values), self, self._plainly(re), self._plainly(im))
+        return RecordedNumber(np.asarray(values), self, self.plainly(re), self.plainly(im))
 
-    def _plainly(self, part: Part) -> Part:
+    def plainly(self, part: Part) -> Part:
         """A recorded constant as a float."""
         known = self.recorder.known_value(part)
         return part if known is None else known
@@ -124,12 +125,17 @@ class Recording(Consensus):
         return self.make(x.values / y.values, rec.divide(x.re, y.re), rec.divide(x.im, y.re))
 
     def power(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
-        """x to the power of 2 or 1/2."""
-        if y.re == 2.0:
-            return x * x
+        """x to the power of 1/2 or a small whole number."""
         if y.re == 0.5:
             return self.apply(np.sqrt, x)
-        raise NotElementwise
+        if isinstance(y.re, Value) or y.im != 0.0 or y.re not in _POWERS:
+            raise NotElementwise
+        if y.re < 0.0:
+            return self.plain(1.0) / x**-y.re
+        product = self.plain(1.0)
+        for _ in range(int(y.re)):
+            product = product * x
+        return product
 
     def absolute(self, x: RecordedNumber) -> RecordedNumber:
         """|x|."""
@@ -278,6 +284,18 @@ def _signed(rec: Recorder, x: RecordedNumber, sign: RecordedNumber) -> Parts:
     return rec.where(rec.at_most(0.0, _real(sign)), size, rec.negate(size)), 0.0
 
 
+def _inverse(rec: Recorder, x: RecordedNumber, cosine: bool) -> Parts:
+    part = _real(x)
+    other = rec.sqrt(rec.constant(1.0) - rec.multiply(part, part))
+    return (rec.direction(other, part) if cosine else rec.direction(part, other)), 0.0
+
+
+def _sign(rec: Recorder, x: RecordedNumber) -> Parts:
+    part = _real(x)
+    below, above = rec.at_most(part, 0.0), rec.at_most(0.0, part)
+    return rec.subtract(above, below), 0.0
+
+
 def _called(method: Callable[[Recorder, list[Part]], Value]) -> Callable[..., Parts]:
     return lambda rec, *numbers: (method(rec, [_real(x) for x in numbers]), 0.0)
 
@@ -293,6 +311,12 @@ _FUNCTIONS: dict[Callable[..., Any], Callable[..., Parts]] = {
     remainders: _remainder,
     np.abs: lambda rec, x: (_size(rec, x.re, x.im), 0.0),
     np.hypot: lambda rec, x, y: (_size(rec, _real(x), _real(y)), 0.0),
+    np.round: lambda rec, x: (_rounded(rec, _real(x)), 0.0),
+    np.sign: _sign,
+    np.arccos: lambda rec, x: _inverse(rec, x, True),
+    np.arcsin: lambda rec, x: _inverse(rec, x, False),
+    np.arctan: lambda rec, x: (rec.direction(_real(x), 1.0), 0.0),
+    np.arctan2: lambda rec, y, x: (rec.direction(_real(y), _real(x)), 0.0),
     np.conjugate: lambda rec, x: (x.re, rec.negate(x.im)),
     np.real: lambda rec, x: (x.re, 0.0),
     np.imag: lambda rec, x: (x.im, 0.0),

@@ -28,6 +28,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import unpressed
+from linkwork.viewer.page_building import columns_of
 from linkwork.viewer.page_data import (
     FrameData,
     PackedColumn,
@@ -73,7 +74,7 @@ def solving_page(
     scene = moving_scene(motion)
     turns = _used_turns(scene)
     links = [name for name in turns if name in motion.links]
-    columns = [*motion.unknowns, *motion.riding]
+    columns = [name for name in columns_of(motion) if name not in motion.inputs]
     printed = print_solver(
         design, JAVASCRIPT, points=list(motion.points), columns=columns, turns=links
     )
@@ -89,7 +90,7 @@ def solving_page(
         for k, quantity in enumerate(design.quantities)
     )
     return SolvingPage(
-        data=_data(design, motion, scene, printed, sliders, columns, turns, links, anchors),
+        data=_data(design, motion, scene, printed, sliders, turns, links, anchors),
         script=_script(printed),
     )
 
@@ -120,7 +121,6 @@ def _data(
     scene: MovingScene,
     printed: PrintedSolver,
     sliders: tuple[SliderData, ...],
-    columns: Sequence[str],
     turns: Sequence[str],
     links: Sequence[str],
     anchors: Sequence[tuple[int, ...]],
@@ -150,7 +150,7 @@ def _data(
         rates=tuple(map(float, path.rate)),
         inputs=tuple(map(_plain, model.rows_in_file_units.T)),
         input_unit=float(model.input_scale[path.lead]),
-        columns=tuple(columns),
+        columns=printed.columns,
         turns=tuple(_source(name, motion, links) for name in turns),
         tracks=tuple(
             TrackData(
