@@ -180,6 +180,17 @@ def _summary(motion: Motion) -> str:
     return f"{text}, {proved} proved" if proved else text
 
 
+def columns_of(motion: Motion) -> dict[str, str]:
+    """The quantities of a page besides inputs, with their lists."""
+    everything = dict.fromkeys([*motion.unknowns, *motion.riding], "unknown")
+    everything |= dict.fromkeys(motion.outputs, "output")
+    traced = motion.skeleton.traced
+    for name, asked in motion.quantities.derived.items():
+        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
+            everything[name] = "derived"
+    return everything
+
+
 def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
     found = motion.found
     for name, values in motion.inputs.items():
@@ -192,13 +203,7 @@ def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
             first=None,
             first_unit="",
         )
-    everything = dict.fromkeys([*motion.unknowns, *motion.riding], "unknown")
-    everything |= dict.fromkeys(motion.outputs, "output")
-    traced = motion.skeleton.traced
-    for name, asked in motion.quantities.derived.items():
-        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
-            everything[name] = "derived"
-    for name, group in everything.items():
+    for name, group in columns_of(motion).items():
         asked, series = motion.quantity(name), motion.series(name)
         yield Column(
             name=name,
