@@ -1,7 +1,7 @@
 // The live page: drawing and player as on every page, with panels that edit the file.
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
-import { mount, type Mounted } from "../mount";
+import { mount, type Mounted, type PageData } from "../mount";
 import { themeButton } from "../theme_button";
 import { unitText } from "../chart";
 import { shortNumber, trimmed } from "../numbers";
@@ -9,11 +9,15 @@ import { html } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
 import { Build } from "./build";
+import { Busy } from "./busy";
+import { CircuitsPanel } from "./circuits";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
+import { ExportMenu } from "./export_menu";
 import { Latest } from "./latest";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
+import { Plots } from "./plots";
 import { pictureOf, type Points } from "./schematic";
 import { Sketch } from "./sketch";
 import { Tabs } from "./tabs";
@@ -32,6 +36,12 @@ export class LivePage {
   private readonly newton: Newton;
   private readonly build: Build;
   private readonly sketch: Sketch;
+  private readonly circuits: CircuitsPanel;
+  private readonly plots: Plots;
+  private readonly exports: ExportMenu;
+  private readonly busy = new Busy();
+  /** The last motion of the file. */
+  private found: MotionFound | null = null;
   private readonly tabs: Tabs;
   private readonly picture = html("div", { class: "lw-instead" });
   private file: FileState | null = null;
@@ -48,9 +58,15 @@ export class LivePage {
     this.newton = new Newton(desk);
     this.build = new Build(desk);
     this.sketch = new Sketch(desk);
+    this.plots = new Plots(desk);
+    this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
+    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
+    this.bar.element.append(this.exports.element);
+    document.body.append(this.busy.element);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
+      { title: "Circuits", element: this.circuits.element, shown: (on) => this.circuits.shown(on) },
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
       { title: "Build", element: this.build.element },
     ]);
@@ -58,7 +74,7 @@ export class LivePage {
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
-    this.latest = new Latest((request) => this.connection.ask(request));
+    this.latest = new Latest((request) => this.send(request));
   }
 
   private desk(): Desk {
@@ -66,13 +82,33 @@ export class LivePage {
       ask: (request) => {
         this.latest.clear();
         this.notices.clear();
-        this.connection.ask(request);
+        this.send(request);
+      },
+      background: (request) => {
+        this.send(request);
       },
       latest: (request) => this.latest.put(request),
       file: () => this.file!,
       here: () => this.here(),
       values: () => this.page?.values ?? {},
     };
+  }
+
+  private send(request: LiveRequest): number {
+    const id = this.connection.ask(request);
+    if (!this.element.classList.contains("lw-lost")) this.busy.asked(id);
+    return id;
+  }
+
+  /** The displayed row of the motion of the file. */
+  private row(): number | null {
+    return this.page === null || this.circuits.elsewhere ? null : this.page.row;
+  }
+
+  /** Draw the motion of a circuit, or that of the file. */
+  private look(page: PageData | null): void {
+    const shown = page ?? this.found?.page ?? null;
+    if (shown) this.page?.update(shown);
   }
 
   private here(): Record<string, number> {
@@ -101,6 +137,18 @@ export class LivePage {
       case "configurations_found":
         this.ways.show(event);
         break;
+      case "circuits_found":
+        this.circuits.told(event);
+        break;
+      case "quantities_listed":
+        this.plots.told(event);
+        break;
+      case "exported":
+        void this.exports.show(event);
+        break;
+      case "working":
+        this.busy.progress(event.fraction);
+        return;
       case "newton_shown":
         this.newton.show(event);
         break;
@@ -121,13 +169,14 @@ export class LivePage {
         this.notices.done(`Saved in ${event.file}.`);
         break;
     }
+    this.busy.answered(event.answers);
     if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
   }
 
   private decisions(): Record<string, () => void> {
     return {
-      Reload: () => this.connection.ask({ kind: "reload" }),
-      Overwrite: () => this.connection.ask({ kind: "save", overwrite: true }),
+      Reload: () => this.send({ kind: "reload" }),
+      Overwrite: () => this.send({ kind: "save", overwrite: true }),
     };
   }
 
@@ -143,12 +192,15 @@ export class LivePage {
     this.dimensions.show(file);
     this.build.show(file);
     this.ways.renew();
+    this.circuits.renew();
+    this.plots.renew();
     this.newton.renew();
     this.sketch.renew();
   }
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
+    if (!found.live) this.found = found;
     this.rowless = found.page === null && found.missing === found.rows;
     if (found.page !== null) {
       this.picture.remove();
@@ -156,6 +208,7 @@ export class LivePage {
       if (this.page === null) this.begin(found);
       else this.page.update(found.page, found.live);
       this.element.dataset.live = String(found.live);
+      if (!found.live) this.plots.moved();
     } else if (found.missing < found.rows) {
       this.still({}, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
@@ -165,13 +218,14 @@ export class LivePage {
 
   private begin(found: MotionFound): void {
     this.plain = null;
-    const page = (this.page = mount(this.element, found.page!, { row: () => this.newton.moved() }));
+    const page = (this.page = mount(this.element, found.page!, { row: () => this.newton.moved(), changing: true }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.notices.element);
     side.prepend(this.tabs.element);
     head.closest(".lw")!.querySelector(".lw-hint")!.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
+    this.plots.attach(page);
     this.sketch.attach(page);
   }
 
@@ -227,7 +281,7 @@ export class LivePage {
       const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where the loops just close
       const rounded = trimmed(shortNumber(value));
       const set = (): void => {
-        this.connection.ask({ kind: "set_number", name, value });
+        this.send({ kind: "set_number", name, value });
       };
       return [`${name} = ${rounded}`, "Changing only this length closes the loops", set] as const;
     });
@@ -236,7 +290,7 @@ export class LivePage {
     const where = at.length ? `At ${at.join(", ")} the loops` : "The loops";
     const elsewhere = Object.entries(event.elsewhere).map(([name, value]) => {
       const begin = (): void => {
-        this.connection.ask({ kind: "assemble_at", at: event.elsewhere });
+        this.send({ kind: "assemble_at", at: event.elsewhere });
       };
       const unit = unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "");
       return [`begin at ${name} = ${trimmed(shortNumber(value, 5))}${unit}`, "The loops close at this input: move the points of the sketch to that position", begin] as const;
@@ -247,6 +301,7 @@ export class LivePage {
   }
 
   private lost(message: string): void {
+    this.busy.stop();
     this.bar.close();
     if (this.page === null && this.plain === null) {
       this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));

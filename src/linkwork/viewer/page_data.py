@@ -15,6 +15,7 @@ __all__ = [
     "FrameData",
     "LimitMark",
     "MotionData",
+    "MotionNumber",
     "PackedColumn",
     "PageData",
     "Part",
@@ -44,7 +45,8 @@ class PackedColumn:
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """A quantity over the rows: its printed name and unit; ``group`` is its list: ``input``,
-    ``unknown``, ``output`` or ``derived``.
+    ``unknown``, ``output``, ``derived``, or ``asked`` for any other quantity or rate. ``band``:
+    lowest and highest recommended value.
     """
 
     name: str
@@ -54,6 +56,17 @@ class Column:
     values: PackedColumn
     first: PackedColumn | None
     first_unit: str
+    band: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionNumber:
+    """One number of the whole motion, such as ``stroke(s16)``; ``None`` if undefined."""
+
+    name: str
+    shown: str
+    unit: str
+    value: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,6 +197,7 @@ class MotionData:
     driven: tuple[str, ...]
     evidence: RowEvidence
     limits: tuple[LimitMark, ...]
+    numbers: tuple[MotionNumber, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

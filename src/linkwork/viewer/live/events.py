@@ -7,16 +7,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.answer_events import (
+    BranchFound,
+    CircuitFound,
+    CircuitsFound,
+    Exported,
+    LimitFound,
+    QuantitiesListed,
+    QuantityListed,
+    Working,
+)
 from linkwork.viewer.page_data import PageData
 
 __all__ = [
     "EVENTS",
+    "BranchFound",
     "CannotClose",
     "ChangeableNumber",
+    "CircuitFound",
+    "CircuitsFound",
     "ConfigurationsFound",
     "Drive",
     "DrivenInput",
     "Event",
+    "Exported",
     "FileChanged",
     "FileState",
     "LimitFound",
@@ -32,10 +46,13 @@ __all__ = [
     "PositionFound",
     "ProblemShown",
     "ProblemsFound",
+    "QuantitiesListed",
+    "QuantityListed",
     "Refused",
     "Saved",
     "Unknown",
     "Way",
+    "Working",
 ]
 
 Point = tuple[float, float]
@@ -156,16 +173,6 @@ class FileState:
     traceable: tuple[str, ...]
     traced: tuple[str, ...]
     equations: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class LimitFound:
-    """An end of the motion: a dead point or change point of the input."""
-
-    what: str
-    input: float
-    located: bool
-    sentence: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -342,6 +349,10 @@ Event = (
     | PositionFound
     | CannotClose
     | ConfigurationsFound
+    | CircuitsFound
+    | QuantitiesListed
+    | Exported
+    | Working
     | NewtonShown
     | PointMoved
     | ProblemsFound

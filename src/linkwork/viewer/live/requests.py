@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 __all__ = [
     "EDITS",
+    "QUESTIONS",
     "REQUESTS",
     "AddJoint",
     "AddLink",
@@ -19,9 +20,13 @@ __all__ = [
     "AssembleAt",
     "ChooseConfiguration",
     "Edit",
+    "Export",
+    "ListCircuits",
     "ListConfigurations",
+    "ListQuantities",
     "MovePoint",
     "NewtonSteps",
+    "Question",
     "Redo",
     "Reload",
     "RemoveJoint",
@@ -33,6 +38,7 @@ __all__ = [
     "SetInput",
     "SetNumber",
     "SetText",
+    "ShowQuantities",
     "SolveAt",
     "Together",
     "TracePoint",
@@ -225,6 +231,36 @@ class ListConfigurations:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ListCircuits:
+    """List all circuits of the mechanism, with their motions."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListQuantities:
+    """List all quantities that can be plotted."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShowQuantities:
+    """The quantities, rates and numbers of the motion that the page needs besides the usual ones;
+    replaces those of the request before.
+    """
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """A file for the visitor: ``toml``, ``svg``, ``csv``, ``xlsx``, ``html``, ``gif``, ``webp`` or
+    ``mp4``. A picture shows a row of the motion, by default the first with a position.
+    """
+
+    format: str
+    row: int | None = None
+    dark: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class NewtonSteps:
     """Newton-Raphson from a guess of some or all unknowns, in file units, step by step.
 
@@ -263,14 +299,17 @@ class Reload:
     """Read the file again; unsaved changes stay in the history."""
 
 
+#: A question about the mechanism, which changes nothing.
+Question = ListConfigurations | ListCircuits | ListQuantities | NewtonSteps | Export
+
 Request = (
     Edit
     | Together
     | AssembleAt
     | SetText
     | SolveAt
-    | ListConfigurations
-    | NewtonSteps
+    | ShowQuantities
+    | Question
     | Undo
     | Redo
     | Save
@@ -278,4 +317,5 @@ Request = (
 )
 
 EDITS: tuple[type, ...] = Edit.__args__
+QUESTIONS: tuple[type, ...] = Question.__args__
 REQUESTS: tuple[type, ...] = Request.__args__

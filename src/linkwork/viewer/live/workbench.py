@@ -2,50 +2,33 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 from types import MappingProxyType
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.status import Status
-from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
+from linkwork.viewer.live.answers import GivenUpError, Subject, answered, check_quantities
+from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Before, Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
-from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.solvable import Read, Solvable
 
-__all__ = ["GivenUpError", "Workbench"]
+__all__ = ["Workbench"]
 
 _MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
-_MOST_ITERATIONS = 200
 
 Events = list[tell.Event]
-
-
-class GivenUpError(Exception):
-    """A cycle was cancelled because of a newer change."""
-
-
-@dataclass(kw_only=True)
-class _Drag:
-    """An intermediate change: the text it changes, and the mechanism at its start."""
-
-    kind: str
-    text: TextEdits
-    before: Before
-    what: str = ""
-    latest: str | None = None
 
 
 #: Requests that add text: their problems are at lines that the file does not have.
@@ -63,6 +46,11 @@ class Workbench:
     hurried : callable, optional
         Whether a newer change is waiting, which cancels a cycle.
 
+    Attributes
+    ----------
+    working : callable
+        Told the finished fraction of an answer that takes long.
+
     Raises
     ------
     MechanismFileError
@@ -74,13 +62,15 @@ class Workbench:
     ) -> None:
         self._file, self._read = file, read
         self.hurried = hurried
+        self.working: Callable[[float], None] = lambda fraction: None
         self._mechanism: Solvable = read(file.text, file.name)
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
         self._solution: Events = []  # the cycle of the current mechanism, once solved
+        self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones
         self._owed = False  # a cycle was cancelled, and no other has been sent since
-        self._drag: _Drag | None = None
+        self._drag: Drag | None = None
         self._conflict: tell.FileChanged | None = None
 
     @property
@@ -101,7 +91,7 @@ class Workbench:
     def handle(self, request: ask.Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
         try:
-            if not _goes_on(request, self._drag):
+            if not goes_on(request, self._drag):
                 self._end_drag()
             return self._handle(request)
         except MechanismError as error:
@@ -149,6 +139,8 @@ class Workbench:
     def _handle(self, request: ask.Request) -> Events:
         if isinstance(request, ask.EDITS):
             return self._edited(request)  # type: ignore[arg-type]
+        if isinstance(request, ask.QUESTIONS):
+            return answered(request, self._subject(proved=isinstance(request, ask.Export)))
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
@@ -156,7 +148,7 @@ class Workbench:
         live = bool(getattr(edit, "live", False))
         drag = self._drag
         if drag is None:
-            drag = _Drag(kind=_same_thing(edit), text=TextEdits(self.text), before=self._before())
+            drag = Drag(kind=same_thing(edit), text=TextEdits(self.text), before=self._before())
         self._drag = drag
         try:
             followed = applied(edit, drag.text, drag.before)
@@ -226,21 +218,14 @@ class Workbench:
         return events
 
     @_handle.register
-    def _(self, request: ask.ListConfigurations) -> Events:
-        return [telling.configurations_found(self._mechanism.configurations(request.at or None))]
-
-    @_handle.register
-    def _(self, request: ask.NewtonSteps) -> Events:
-        if not 1 <= request.max_steps <= _MOST_ITERATIONS:
-            raise InputError(f"max_steps must be from 1 to {_MOST_ITERATIONS}")
-        options = NewtonOptions(max_steps=request.max_steps)
-        if request.full_steps:
-            options = replace(options, largest_turn=math.inf)
-        mechanism, guess, at = self._mechanism, request.guess, request.at or None
-        if request.pull:
-            guess = mechanism.pulled_guess(request.pull, (request.x, request.y), guess, at)
-        shown = mechanism.iterates(guess, at, options=options)
-        return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
+    def _(self, request: ask.ShowQuantities) -> Events:
+        if self._motion is not None:
+            check_quantities(self._motion, request.names)
+        self._shown = request.names
+        if self._motion is None or not self._solution:
+            return self._solved()
+        self._solution = [self._pictured(event, self._motion) for event in self._solution]
+        return self._solution
 
     # The text and its results
 
@@ -312,9 +297,8 @@ class Workbench:
             self._owed = True
             return []
         self._motion, self._owed = motion, False
-        equations = () if live else self._mechanism.equations().mathml()
-        page = self._picture.page(motion, equations, self._mechanism.moving_loops, brief=live)
-        events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
+        found = telling.motion_found(motion, live=live, message=message)
+        events: Events = [self._pictured(found, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += self._handle(ask.SolveAt(at={}))
         elif all(status is Status.NO_START for status in motion.status):
@@ -324,6 +308,30 @@ class Workbench:
             events += self._open(None, motion.message, remedies, elsewhere)
         self._solution = [] if live else events
         return events
+
+    def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
+        """A found motion with the data of its page."""
+        if not isinstance(event, tell.MotionFound):
+            return event
+        equations = () if event.live else self._mechanism.equations().mathml()
+        loops, shown = self._mechanism.moving_loops, self._shown
+        page = self._picture.page(motion, equations, loops, asked=shown, brief=event.live)
+        return replace(event, page=page)
+
+    def _subject(self, *, proved: bool) -> Subject:
+        """What questions are about; with its ``proved`` motion, or the latest."""
+        driven = bool(self._mechanism.description.inputs)
+        if proved and driven and not self._solution:
+            self._solved()
+            if not self._solution:
+                raise InputError("the motion was ended by a change: ask again")
+        return Subject(
+            mechanism=self._mechanism,
+            motion=self._motion if driven else None,
+            text=self.text,
+            file=self._file.name,
+            progress=self._give_up,
+        )
 
     def _swept(self, live: bool) -> tuple[Motion, str]:
         mechanism = self._mechanism
@@ -341,6 +349,7 @@ class Workbench:
     def _give_up(self, fraction: float) -> None:
         if self.hurried():
             raise GivenUpError
+        self.working(fraction)
 
     def _open(
         self,
@@ -361,24 +370,6 @@ class Workbench:
             self._history,
             unsaved=self.unsaved,
         )
-
-
-def _same_thing(edit: ask.Request) -> str:
-    """A key of the dragged object: changes with equal keys are merged."""
-    match edit:
-        case ask.SetNumber():
-            return f"number {edit.name}"
-        case ask.MovePoint():
-            return f"point {edit.point} {edit.lengths_follow}"
-        case _:
-            return kind_of(type(edit))
-
-
-def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
-    """Whether a request belongs to an intermediate change or does not affect it."""
-    if drag is None or isinstance(request, ask.SolveAt | ask.ListConfigurations | ask.NewtonSteps):
-        return True
-    return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
 
 
 def _followed(edit: ask.Edit, followed: Followed) -> Events:
