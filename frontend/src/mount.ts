@@ -257,7 +257,12 @@ class Page implements Mounted {
   /** The index with the nearest input; among equals, the one nearest to an index. */
   private nearest(value: number, index: number): number {
     const { input, order } = this.view;
-    const far = order.map((row) => Math.abs(input.values[row]! - value));
+    const turn = { deg: 360, rad: 2 * Math.PI }[input.unit];
+    const far = order.map((row) => {
+      const off = input.values[row]! - value;
+      // One turn further, an angle is the same; the same turn is preferred.
+      return turn ? Math.abs(off - turn * Math.round(off / turn)) + 1e-6 * Math.abs(off) : Math.abs(off);
+    });
     const least = Math.min(...far) * (1 + 1e-9) + 1e-12;
     const alike = far.flatMap((one, k) => (one <= least ? [k] : []));
     return alike.reduce((best, k) => (Math.abs(k - index) < Math.abs(best - index) ? k : best), alike[0] ?? 0);

@@ -85,24 +85,19 @@ export class ExportMenu {
 
 /** A picture of an SVG text, as PNG with the colour of the page behind it. */
 async function pictureOf(text: string): Promise<Blob> {
-  const source = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
-  try {
-    const image = new Image();
-    image.src = source;
-    await image.decode();
-    const scale = PIXELS / Math.max(image.width, image.height);
-    const canvas = html("canvas", { width: Math.round(scale * image.width), height: Math.round(scale * image.height) });
-    const brush = canvas.getContext("2d")!;
-    const page = document.querySelector(".lw");
-    brush.fillStyle = page ? getComputedStyle(page).backgroundColor : "white";
-    brush.fillRect(0, 0, canvas.width, canvas.height);
-    brush.drawImage(image, 0, 0, canvas.width, canvas.height);
-    return await new Promise((found, lost) =>
-      canvas.toBlob((blob) => (blob ? found(blob) : lost(new Error("no picture"))), "image/png"),
-    );
-  } finally {
-    URL.revokeObjectURL(source);
-  }
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await image.decode();
+  const scale = PIXELS / Math.max(image.width, image.height);
+  const canvas = html("canvas", { width: Math.round(scale * image.width), height: Math.round(scale * image.height) });
+  const brush = canvas.getContext("2d")!;
+  const page = document.querySelector(".lw");
+  brush.fillStyle = page ? getComputedStyle(page).backgroundColor : "white";
+  brush.fillRect(0, 0, canvas.width, canvas.height);
+  brush.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((found, lost) =>
+    canvas.toBlob((blob) => (blob ? found(blob) : lost(new Error("no picture"))), "image/png"),
+  );
 }
 
 function download(blob: Blob, name: string): void {

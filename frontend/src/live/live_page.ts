@@ -40,6 +40,8 @@ export class LivePage {
   private readonly plots: Plots;
   private readonly exports: ExportMenu;
   private readonly busy = new Busy();
+  /** The row at which the motion of the file was left for a circuit. */
+  private left: number | null = null;
   /** The last motion of the file. */
   private found: MotionFound | null = null;
   private readonly tabs: Tabs;
@@ -108,7 +110,11 @@ export class LivePage {
   /** Draw the motion of a circuit, or that of the file. */
   private look(page: PageData | null): void {
     const shown = page ?? this.found?.page ?? null;
-    if (shown) this.page?.update(shown);
+    if (shown === null || this.page === null) return;
+    if (page !== null) this.left ??= this.page.row;
+    this.page.update(shown);
+    if (page === null && this.left !== null) this.page.goToRow(this.left);
+    if (page === null) this.left = null;
   }
 
   private here(): Record<string, number> {
@@ -201,6 +207,7 @@ export class LivePage {
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
     if (!found.live) this.found = found;
+    this.left = null;
     this.rowless = found.page === null && found.missing === found.rows;
     if (found.page !== null) {
       this.picture.remove();

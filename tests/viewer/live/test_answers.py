@@ -17,7 +17,6 @@ from linkwork.viewer.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 from tests.viewer.unpacking import unpacked
 
-
 TRUSS = """\
 format = 1
 name = "Truss"
