@@ -231,6 +231,7 @@ class Page implements Mounted {
     this.motion = motion;
     const view = this.view;
     this.drawn = -1;
+    if (this.data.motions.length > 1) this.drawing.renew({ ...this.data, view: view.data.view });
     this.drawing.show(view);
     this.ghost.show(this.past);
     this.arrows.show(view);

@@ -37,7 +37,7 @@ export interface LimitMark {
   readonly text: string;
 }
 
-/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. */
+/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. `view` is the extent of its drawing, as that of the page. */
 export interface MotionData {
   readonly name: string;
   readonly summary: string;
@@ -56,6 +56,7 @@ export interface MotionData {
   readonly evidence: RowEvidence;
   readonly limits: readonly LimitMark[];
   readonly numbers: readonly MotionNumber[];
+  readonly view: readonly number[];
 }
 
 /** One number of the whole motion, such as `stroke(s16)`; `None` if undefined. */

@@ -35,6 +35,11 @@ export class CircuitsPanel {
     return this.chosen !== "";
   }
 
+  /** The motion of the file is drawn again. */
+  left(): void {
+    this.mark("");
+  }
+
   shown(on: boolean): void {
     this.on = on;
     if (on && this.found === null) this.find();

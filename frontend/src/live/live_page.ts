@@ -208,6 +208,7 @@ export class LivePage {
     const unit = this.file!.inputs[0]?.unit ?? "";
     if (!found.live) this.found = found;
     this.left = null;
+    this.circuits.left();
     this.rowless = found.page === null && found.missing === found.rows;
     if (found.page !== null) {
       this.picture.remove();

@@ -115,8 +115,8 @@ def drawn_page(
     """
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
-    view = Box.around(corner for scene in scenes for corner in scene.view.corners)
-    view = view.grown(_MARGIN * measures.size)
+    views = [scene.view.grown(_MARGIN * measures.size) for scene in scenes]
+    view = Box.around(corner for own in views for corner in own.corners)
     lead = next(iter(first.inputs))
     return PageData(
         format=FORMAT,
@@ -125,7 +125,7 @@ def drawn_page(
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
         input_unit=first.input_units[lead],
-        view=(view.left, view.bottom, view.right, view.top),
+        view=_sides(view),
         stroke=measures.stroke,
         pin=measures.pin,
         text=measures.text,
@@ -134,8 +134,9 @@ def drawn_page(
                 _motion(name, motion, scene, () if loops is None else loops(motion), pack),
                 columns=tuple(columns_of(motion, pack, asked)),
                 numbers=() if brief else tuple(numbers_of(motion, asked)),
+                view=_sides(own),
             )
-            for (name, motion), scene in zip(motions.items(), scenes, strict=True)
+            for (name, motion), scene, own in zip(motions.items(), scenes, views, strict=True)
         ),
         light=_theme(LIGHT),
         dark=_theme(DARK),
@@ -143,6 +144,10 @@ def drawn_page(
         force_unit=force_unit(forces),
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
     )
+
+
+def _sides(view: Box) -> tuple[float, float, float, float]:
+    return view.left, view.bottom, view.right, view.top
 
 
 @lru_cache

@@ -178,7 +178,7 @@ class MotionData:
 
     ``order`` are the found rows in the order of the motion; ``closed``: the first follows the last.
     ``speed`` is that of the leading input, 0 if it has none; ``backwards``: its arrow points
-    towards smaller values.
+    towards smaller values. ``view`` is the extent of its drawing, as that of the page.
     """
 
     name: str
@@ -198,6 +198,7 @@ class MotionData:
     evidence: RowEvidence
     limits: tuple[LimitMark, ...]
     numbers: tuple[MotionNumber, ...] = ()
+    view: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
