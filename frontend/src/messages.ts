@@ -62,6 +62,13 @@ export interface RemoveLink {
   name: string;
 }
 
+export interface SetGround {
+  kind: "set_ground";
+  id?: number;
+  points: readonly (string)[];
+  on?: boolean;
+}
+
 export interface AddJoint {
   kind: "add_joint";
   id?: number;
@@ -120,6 +127,12 @@ export interface SetText {
   text: string;
 }
 
+export interface SetSheet {
+  kind: "set_sheet";
+  id?: number;
+  width: number;
+}
+
 export interface SolveAt {
   kind: "solve_at";
   id?: number;
@@ -139,16 +152,6 @@ export interface ListConfigurations {
   at: Record<string, number>;
 }
 
-export interface ListCircuits {
-  kind: "list_circuits";
-  id?: number;
-}
-
-export interface ListQuantities {
-  kind: "list_quantities";
-  id?: number;
-}
-
 export interface NewtonSteps {
   kind: "newton_steps";
   id?: number;
@@ -159,6 +162,16 @@ export interface NewtonSteps {
   pull?: string;
   x?: number;
   y?: number;
+}
+
+export interface ListCircuits {
+  kind: "list_circuits";
+  id?: number;
+}
+
+export interface ListQuantities {
+  kind: "list_quantities";
+  id?: number;
 }
 
 export interface Export {
@@ -219,6 +232,14 @@ export interface FileState {
   traceable: readonly (string)[];
   traced: readonly (string)[];
   equations: readonly (string)[];
+  lacks: readonly (Lack)[];
+  readable: boolean;
+}
+
+export interface DraftShown {
+  kind: "draft_shown";
+  answers: number | null;
+  page: PageData;
 }
 
 export interface MotionFound {
@@ -248,6 +269,7 @@ export interface PositionFound {
   iterations: number;
   condition: number | null;
   certified: boolean;
+  page: PageData | null;
 }
 
 export interface CannotClose {
@@ -262,6 +284,7 @@ export interface CannotClose {
   open_ends: readonly (OpenEnd)[];
   remedies: Record<string, number>;
   elsewhere: Record<string, number>;
+  page: PageData | null;
 }
 
 export interface ConfigurationsFound {
@@ -404,6 +427,20 @@ export interface Drive {
   name: string;
 }
 
+export interface Lack {
+  message: string;
+  key: string;
+  line: number | null;
+  kind: string;
+  name: string;
+  remedies: readonly (Remedy)[];
+}
+
+export interface Remedy {
+  label: string;
+  edits: readonly (LiveEdit)[];
+}
+
 export interface LimitFound {
   what: string;
   input: number;
@@ -475,6 +512,7 @@ export type LiveEdit =
   | RemovePoint
   | AddLink
   | RemoveLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -490,6 +528,7 @@ export type LiveRequest =
   | RemovePoint
   | AddLink
   | RemoveLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -499,12 +538,13 @@ export type LiveRequest =
   | Together
   | AssembleAt
   | SetText
+  | SetSheet
   | SolveAt
   | ShowQuantities
   | ListConfigurations
+  | NewtonSteps
   | ListCircuits
   | ListQuantities
-  | NewtonSteps
   | Export
   | Undo
   | Redo
@@ -514,6 +554,7 @@ export type LiveRequest =
 export type LiveEvent =
   | PaletteShown
   | FileState
+  | DraftShown
   | MotionFound
   | PositionFound
   | CannotClose

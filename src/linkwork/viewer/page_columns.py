@@ -64,7 +64,7 @@ def _column(motion: Motion, asked: Asked, group: str, pack: Pack) -> Column:
     bounded = rate is None
     plain = bounded and asked.group is not Group.EVIDENCE
     first = motion.series(asked.name).first if plain and asked.needs < 2 else None
-    band = ()
+    band: tuple[float, ...] = ()
     if bounded and asked.row is TRANSMISSION_ANGLE:
         band = tuple(bound / motion.units.angle.radians for bound in RECOMMENDED)
     return Column(

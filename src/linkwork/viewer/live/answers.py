@@ -1,25 +1,22 @@
-"""Answers to questions about a mechanism, which change nothing."""
+"""Questions about a mechanism and its motion: circuits, quantities, files."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError
-from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Group
 from linkwork.results.quantities.registry import Call
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.circuit_events import circuits_found
 from linkwork.viewer.live.exported_file import exported_file
-from linkwork.viewer.live.solvable import Solvable
+from linkwork.viewer.live.subject import Subject
 
-__all__ = ["GivenUpError", "Subject", "answered", "check_quantities"]
+__all__ = ["About", "GivenUpError", "check_quantities", "reply"]
 
-_MOST_ITERATIONS = 200
 _MOST_QUANTITIES = 40  # shown besides the usual ones
 _POSITION_DERIVATIVES = 2
 
@@ -31,13 +28,13 @@ class GivenUpError(Exception):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Subject:
-    """What is asked about: a mechanism, its proved motion if it has one, its text and file.
+class About:
+    """What is asked about: a text with its mechanism, its motion if it has one, and its file.
 
     ``progress`` is told the finished fraction and may raise :class:`GivenUpError`.
     """
 
-    mechanism: Solvable
+    subject: Subject
     motion: Motion | None
     text: str
     file: str
@@ -45,48 +42,29 @@ class Subject:
 
 
 @singledispatch
-def answered(request: ask.Request, subject: Subject) -> Events:
+def reply(request: ask.Question, about: About) -> Events:
     """The events that answer a question.
 
     Raises
     ------
     InputError
-        If the question does not fit the mechanism.
+        If the question does not fit the mechanism, or the answer was cancelled.
     """
     raise TypeError(f"{type(request).__name__} is not a question")
 
 
-@answered.register
-def _(request: ask.ListConfigurations, subject: Subject) -> Events:
-    return [telling.configurations_found(subject.mechanism.configurations(request.at or None))]
-
-
-@answered.register
-def _(request: ask.NewtonSteps, subject: Subject) -> Events:
-    if not 1 <= request.max_steps <= _MOST_ITERATIONS:
-        raise InputError(f"max_steps must be from 1 to {_MOST_ITERATIONS}")
-    options = NewtonOptions(max_steps=request.max_steps)
-    if request.full_steps:
-        options = replace(options, largest_turn=math.inf)
-    mechanism, guess, at = subject.mechanism, request.guess, request.at or None
-    if request.pull:
-        guess = mechanism.pulled_guess(request.pull, (request.x, request.y), guess, at)
-    shown = mechanism.iterates(guess, at, options=options)
-    return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
-
-
-@answered.register
-def _(request: ask.ListCircuits, subject: Subject) -> Events:
+@reply.register
+def _(request: ask.ListCircuits, about: About) -> Events:
     try:
-        circuits = subject.mechanism.circuits(progress=subject.progress)
+        circuits = about.subject.mechanism.circuits(progress=about.progress)
     except GivenUpError:
         raise InputError("the search for circuits was ended by a change: list them again") from None
-    return [circuits_found(circuits, subject.motion)]
+    return [circuits_found(circuits, about.motion)]
 
 
-@answered.register
-def _(request: ask.ListQuantities, subject: Subject) -> Events:
-    motion = subject.motion
+@reply.register
+def _(request: ask.ListQuantities, about: About) -> Events:
+    motion = about.motion
     if motion is None:
         return [tell.QuantitiesListed(quantities=(), of_motion=())]
     known = motion.quantities
@@ -114,21 +92,21 @@ def _derivatives(group: Group, needs: int) -> int:
     return 0 if group is Group.EVIDENCE else max(0, _POSITION_DERIVATIVES - needs)
 
 
-@answered.register
-def _(request: ask.Export, subject: Subject) -> Events:
+@reply.register
+def _(request: ask.Export, about: About) -> Events:
     try:
         file = exported_file(
             request.format,
-            subject.mechanism,
-            subject.motion,
-            subject.text,
+            about.subject,
+            about.motion,
+            about.text,
             row=request.row,
             dark=request.dark,
-            progress=subject.progress,
+            progress=about.progress,
         )
     except GivenUpError:
         raise InputError(f"the {request.format} file was ended by a change: ask again") from None
-    return [telling.exported(file, subject.file)]
+    return [telling.exported(file, about.file)]
 
 
 def check_quantities(motion: Motion, names: Sequence[str]) -> None:

@@ -8,6 +8,7 @@ from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.edits import Before
 from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.queries import Query
 
 __all__ = ["Drag", "goes_on", "same_thing"]
 
@@ -36,7 +37,7 @@ def same_thing(edit: ask.Request) -> str:
 
 def goes_on(request: ask.Request, drag: Drag | None) -> bool:
     """Whether a request belongs to an intermediate change or does not affect it."""
-    asking = isinstance(request, (ask.SolveAt, *ask.QUESTIONS))
-    if drag is None or (asking and not isinstance(request, ask.Export)):
+    asking = isinstance(request, Query | ask.Question) and not isinstance(request, ask.Export)
+    if drag is None or asking:
         return True
     return isinstance(request, ask.EDITS) and same_thing(request) == drag.kind

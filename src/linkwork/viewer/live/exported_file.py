@@ -19,6 +19,7 @@ from linkwork.results.csv_text import csv_text
 from linkwork.results.motion import Motion
 from linkwork.viewer.animation import FilmOptions, animation, check_animation
 from linkwork.viewer.live.solvable import Solvable
+from linkwork.viewer.live.subject import Subject
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import motion_page
 
@@ -49,7 +50,7 @@ class ExportedFile:
 
 def exported_file(
     suffix: str,
-    mechanism: Solvable,
+    subject: Subject,
     motion: Motion | None,
     text: str,
     *,
@@ -57,7 +58,7 @@ def exported_file(
     dark: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> ExportedFile:
-    """A mechanism in one of several formats.
+    """A mechanism, or the text of a draft, in one of several formats.
 
     Parameters
     ----------
@@ -90,11 +91,12 @@ def exported_file(
     if suffix == "toml":
         content = text.encode()
     elif suffix == "svg":
-        scene = _scene(mechanism, motion, row)
+        scene = _scene(subject.mechanism, motion, row)
         content = inline_svg(scene, FixedInks(dark=dark), longest=_LONGEST).encode()
     else:
         if motion is None or not motion.found.any():
             raise InputError(f"a .{suffix} file needs a motion: the mechanism has none")
+        mechanism = subject.mechanism
         if suffix == "csv":
             content = csv_text(motion.table()).encode()
         elif suffix == "html":

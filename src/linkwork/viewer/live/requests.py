@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 __all__ = [
     "EDITS",
-    "QUESTIONS",
     "REQUESTS",
     "AddJoint",
     "AddLink",
@@ -35,8 +34,10 @@ __all__ = [
     "RemovePoint",
     "Request",
     "Save",
+    "SetGround",
     "SetInput",
     "SetNumber",
+    "SetSheet",
     "SetText",
     "ShowQuantities",
     "SolveAt",
@@ -125,6 +126,14 @@ class RemoveLink:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SetGround:
+    """Fix points to the ground, or release them."""
+
+    points: tuple[str, ...]
+    on: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
 class AddJoint:
     """Add a point to a link: a pin joint with the other links at the point."""
 
@@ -185,6 +194,7 @@ Edit = (
     | RemovePoint
     | AddLink
     | RemoveLink
+    | SetGround
     | AddJoint
     | RemoveJoint
     | AddPart
@@ -213,6 +223,13 @@ class SetText:
     """Replace the whole text of the file."""
 
     text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetSheet:
+    """Tell the width of the visible part of the plane [length], by which symbols are sized."""
+
+    width: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -299,16 +316,19 @@ class Reload:
     """Read the file again; unsaved changes stay in the history."""
 
 
-#: A question about the mechanism, which changes nothing.
-Question = ListConfigurations | ListCircuits | ListQuantities | NewtonSteps | Export
+#: A question about the mechanism and its motion, which changes nothing.
+Question = ListCircuits | ListQuantities | Export
 
 Request = (
     Edit
     | Together
     | AssembleAt
     | SetText
+    | SetSheet
     | SolveAt
     | ShowQuantities
+    | ListConfigurations
+    | NewtonSteps
     | Question
     | Undo
     | Redo
@@ -317,5 +337,4 @@ Request = (
 )
 
 EDITS: tuple[type, ...] = Edit.__args__
-QUESTIONS: tuple[type, ...] = Question.__args__
 REQUESTS: tuple[type, ...] = Request.__args__
