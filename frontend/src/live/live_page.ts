@@ -9,7 +9,6 @@ import { html } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
 import { Build } from "./build";
-import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { Latest } from "./latest";
 import { Newton } from "./newton";
@@ -17,13 +16,14 @@ import { Notices } from "./notices";
 import { pictureOf, type Points } from "./schematic";
 import { Sketch } from "./sketch";
 import { Tabs } from "./tabs";
+import type { Connect, Transport } from "./transport";
 import { Ways } from "./ways";
 
 /** Events that answer a request, so that the next can be sent. */
 const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "newton_shown", "refused", "problems_found"]);
 
 export class LivePage {
-  private readonly connection: Connection;
+  private readonly connection: Transport;
   private readonly latest: Latest<LiveRequest>;
   private readonly bar: Bar;
   private readonly notices = new Notices();
@@ -40,7 +40,7 @@ export class LivePage {
   /** Whether no row of the table has a position. */
   private rowless = false;
 
-  constructor(private readonly element: HTMLElement) {
+  constructor(private readonly element: HTMLElement, connect: Connect) {
     const desk = this.desk();
     this.bar = new Bar(desk);
     this.dimensions = new Dimensions(desk);
@@ -54,7 +54,7 @@ export class LivePage {
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
       { title: "Build", element: this.build.element },
     ]);
-    this.connection = new Connection({
+    this.connection = connect({
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import logging
 import threading
-from collections import deque
 from collections.abc import Callable
+from functools import partial
 
-from linkwork.viewer.live.events import Event, Refused
-from linkwork.viewer.live.requests import EDITS, Request
+from linkwork.viewer.live.events import Event
+from linkwork.viewer.live.requests import Request
+from linkwork.viewer.live.waiting import Waiting, answer, answers_of
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["Desk", "Tell"]
-
-_log = logging.getLogger("linkwork.viewer")
 
 #: Receives events and the id of the request that they answer.
 Tell = Callable[[list[Event], int | None], None]
@@ -37,7 +35,7 @@ class Desk:
 
     def __init__(self, workbench: Workbench, tell: Tell) -> None:
         self._workbench, self._tell = workbench, tell
-        self._waiting: deque[tuple[Request | None, int | None]] = deque()
+        self._waiting = Waiting()
         self._changed = threading.Condition()
         self._closing = False
         workbench.hurried = self._hurried
@@ -60,7 +58,7 @@ class Desk:
     def ask(self, request: Request | None, number: int | None) -> None:
         """Queue a request; its events have this id."""
         with self._changed:
-            self._waiting.append((request, number))
+            self._waiting.add(request, number)
             self._changed.notify()
 
     def close(self, patience: float = 5.0) -> bool:
@@ -73,7 +71,7 @@ class Desk:
 
     def _hurried(self) -> bool:
         with self._changed:
-            return self._closing or any(isinstance(r, EDITS) for r, _ in self._waiting)
+            return self._closing or self._waiting.has_edit
 
     def _work(self) -> None:
         while True:
@@ -82,36 +80,17 @@ class Desk:
                     self._changed.wait(_LOOK_AT_FILE)
                 if self._closing:
                     return
-                request = self._next() if self._waiting else _NOTHING
+                request = self._waiting.next() if self._waiting else _NOTHING
             self._do(*request)
 
-    def _next(self) -> tuple[Request | None, int | None]:
-        """The next request; outdated intermediate changes are skipped."""
-        request, number = self._waiting.popleft()
-        while getattr(request, "live", False) and self._waiting:
-            if not _replaces(self._waiting[0][0], request):
-                break
-            # a dragged point sends positions faster than they are solved: use only the
-            # last
-            request, number = self._waiting.popleft()
-        return request, number
-
     def _do(self, request: Request | None, number: int | None) -> None:
-        try:
-            if (request, number) == _NOTHING:
-                number, events = None, self._workbench.poll()
-            elif (request, number) == _UNTOLD:
-                self._workbench.opened()
-                return
-            elif request is None:
-                events = self._workbench.opened()
-            else:
-                events = self._workbench.handle(request)
-        except Exception as error:  # any error: keep the page and unsaved changes
-            _log.exception("a request failed")
-            mistake = f"{type(error).__name__}: {error}"
-            number = None if request is None else number
-            events = [Refused(message=f"this is an error in Linkwork, please report it: {mistake}")]
+        if (request, number) == _UNTOLD:
+            answer(self._workbench.opened)
+            return
+        if (request, number) == _NOTHING:
+            number, events = None, answer(self._workbench.poll)
+        else:
+            events = answer(partial(answers_of, self._workbench, request))
         if events or number is not None:
             self._tell(events, number)
 
@@ -120,10 +99,3 @@ class Desk:
 _NOTHING: tuple[Request | None, int | None] = (None, -1)
 _UNTOLD: tuple[Request | None, int | None] = (None, -2)
 
-
-def _replaces(newer: Request | None, older: Request | None) -> bool:
-    """Whether a newer change makes the older intermediate one obsolete."""
-    if type(newer) is not type(older):
-        return False
-    same = ("name", "point", "lengths_follow")
-    return all(getattr(newer, field, None) == getattr(older, field, None) for field in same)
