@@ -71,6 +71,6 @@ export class WorkerConnection implements Transport {
 
   private failed(message: string): void {
     this.worker?.terminate();
-    this.hooks.lost(`The engine has stopped: ${message.slice(0, 300)} Reload the page; unsaved changes are kept.`);
+    this.hooks.lost(`The engine has stopped: ${message.trim().split("\n").pop()!.slice(0, 300)} Reload the page; unsaved changes are kept.`);
   }
 }

@@ -98,4 +98,3 @@ class Desk:
 #: Besides requests with ids: checks of the file, and background work.
 _NOTHING: tuple[Request | None, int | None] = (None, -1)
 _UNTOLD: tuple[Request | None, int | None] = (None, -2)
-

@@ -103,9 +103,9 @@ def _found(folder: Path, file: LockedFile) -> bytes:
     try:
         return (folder / file.file).read_bytes()
     except OSError as error:
-        where = f" (it can be downloaded from {file.url})" if file.url else ""
         raise InputError(
-            f'cannot read "{folder / file.file}": {error.strerror or error}{where}'
+            f'cannot read "{folder / file.file}": {error.strerror or error}; '
+            f"get it{_source(file) or ', or mend the lock file'}"
         ) from None
 
 
@@ -126,6 +126,10 @@ def _check_hash(file: LockedFile, content: bytes) -> None:
     found = hashlib.sha256(content).hexdigest()
     if found != file.sha256:
         raise InputError(
-            f'"{file.file}" is not the expected file: its SHA-256 is {found}, and '
-            f"{file.sha256} was expected; download it again{f' from {file.url}' if file.url else ''}"
+            f'"{file.file}" is not the expected file: its SHA-256 is {found}, and {file.sha256} '
+            f"was expected; get it again{_source(file)}"
         )
+
+
+def _source(file: LockedFile) -> str:
+    return f" from {file.url}" if file.url else ""
