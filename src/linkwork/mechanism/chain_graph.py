@@ -8,7 +8,7 @@ from typing import Any
 from linkwork.foundation.errors import MissingPackageError
 from linkwork.mechanism.chain import Chain
 
-__all__ = ["contours", "orbits", "same_graph", "same_inversion"]
+__all__ = ["contours", "missing", "orbits", "same_graph", "same_inversion"]
 
 Graph = Any  # networkx has no type hints
 
@@ -22,6 +22,15 @@ def _networkx() -> Any:
             "names of kinematic chains need networkx: pip install networkx"
         ) from None
     return networkx
+
+
+def missing() -> str:
+    """Why chains cannot be compared here; "" if they can."""
+    try:
+        _networkx()
+    except MissingPackageError as error:
+        return str(error)
+    return ""
 
 
 def _of_graph6(text: str) -> Graph:
