@@ -17,10 +17,19 @@ export interface EngineFile {
   readonly size: number;
 }
 
+/** The place of the mark that archives are prepared. */
+const PREPARED = "engine/prepared";
+
 export type Files = Record<string, ArrayBuffer>;
 
+/** The files, and whether a visit that is now prepared could start faster. */
+export interface Found {
+  readonly files: Files;
+  readonly prepare: boolean;
+}
+
 /** All files, unpacked; `progress` gets the bytes received so far, and their number. */
-export async function engineFiles(engine: Engine, progress: (bytes: number, all: number) => void): Promise<Files> {
+export async function engineFiles(engine: Engine, progress: (bytes: number, all: number) => void): Promise<Found> {
   const all = engine.files.reduce((sum, file) => sum + file.size, 0);
   let bytes = 0;
   const received = (more: number): void => progress((bytes += more), all);
@@ -28,7 +37,19 @@ export async function engineFiles(engine: Engine, progress: (bytes: number, all:
   const contents = await Promise.all(
     engine.files.map(async (file) => unpacked(file.url ? await fetched(file, cache, received) : contained(file, received))),
   );
-  return Object.fromEntries(engine.files.map((file, k) => [file.name, contents[k]!]));
+  const files = Object.fromEntries(engine.files.map((file, k) => [file.name, contents[k]!]));
+  const before = await cache?.match(PREPARED);
+  return { files, prepare: cache !== null && !before && engine.files.every((file) => file.url) };
+}
+
+/** Keep archives for the next visit: they replace those of the same names. */
+export async function keepPrepared(engine: Engine, prepared: Files): Promise<void> {
+  const cache = await kept(engine.build);
+  for (const file of engine.files) {
+    const content = prepared[file.name];
+    if (content) await cache?.put(file.url, new Response(content));
+  }
+  await cache?.put(PREPARED, new Response("1"));
 }
 
 /** The store of earlier visits; none in a frame without an origin of its own. */

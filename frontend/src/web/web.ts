@@ -27,10 +27,10 @@ function begin(): void {
   let connection!: WorkerConnection;
   new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {
-    bar.value = bytes / all;
-    doing.textContent = `Loading the engine: ${mega(bytes)} of ${mega(all)} MB. Everything is computed in this browser.`;
+    bar.value = Math.min(1, bytes / all); // prepared archives are larger
+    doing.textContent = `Loading the engine: ${mega(Math.min(bytes, all))} of ${mega(all)} MB. Everything is computed in this browser.`;
   }).then(
-    (files) => connection.start(engine, files, (text) => (doing.textContent = text)),
+    (found) => connection.start(engine, found, (text) => (doing.textContent = text)),
     (error: unknown) => {
       bar.remove();
       wait.setAttribute("role", "alert");

@@ -9,6 +9,8 @@ export interface Start {
   readonly files: Files;
   readonly fragment: string;
   readonly kept: Kept | null;
+  /** Whether the page can keep archives for its next start. */
+  readonly prepare: boolean;
 }
 
 /** To the page: events as JSON, or one of these. */
@@ -17,6 +19,10 @@ export interface Doing {
 }
 export interface Failed {
   readonly failed: string;
+}
+/** Archives by name that start faster. */
+export interface Prepared {
+  readonly prepared: Files;
 }
 
 interface PyFunction {
@@ -29,12 +35,13 @@ interface Python {
   runPythonAsync(code: string): Promise<unknown>;
   registerJsModule(name: string, module: object): void;
   globals: { get(name: string): PyFunction };
+  FS: { readFile(path: string): Uint8Array; writeFile(path: string, content: Uint8Array): void; unlink(path: string): void };
 }
 
 declare const loadPyodide: (options: object) => Promise<Python>;
 declare const self: {
   onmessage: (message: MessageEvent<Start | string>) => void;
-  postMessage(message: string | Doing | Failed): void;
+  postMessage(message: string | Doing | Failed | Prepared, transfer?: ArrayBuffer[]): void;
   fetch: unknown;
 };
 
@@ -43,12 +50,23 @@ const HOME = "https://linkwork.invalid/";
 
 const PACKAGES = "/lib/python3.13/site-packages";
 
+const ARCHIVES = ["python_stdlib.zip", "site.zip"];
+
+/** Time without requests before archives are prepared [ms]. */
+const REST = 3000;
+
 const BEGIN = `
+from itertools import chain
+from pathlib import Path
+
 from linkwork_page import take, tell, turn
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
 from linkwork.viewer.live.browser_desk import BrowserDesk
+from linkwork.viewer.live.bytecode import with_bytecode
+
+STDLIB = Path("/lib/python313.zip")
 
 
 def pause():
@@ -58,6 +76,14 @@ def pause():
 
 desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
+steps = chain(
+    with_bytecode(STDLIB, STDLIB, Path("/tmp/prepared-python_stdlib.zip")),
+    with_bytecode(Path("/tmp/site.zip"), Path("${PACKAGES}"), Path("/tmp/prepared-site.zip")),
+)
+
+
+def prepare():
+    return next(steps, 0) is None
 `;
 
 let messages: string[] = [];
@@ -73,12 +99,13 @@ self.onmessage = ({ data }) => {
   }
 };
 
-async function start({ engine, files, fragment, kept }: Start): Promise<void> {
+async function start({ engine, files, fragment, kept, prepare }: Start): Promise<void> {
   say("Starting Python …");
   self.fetch = (url: URL | string) => Promise.resolve(own(String(url), files));
   const python = await loadPyodide({ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME });
   say("Loading the solver …");
   python.unpackArchive(files["site.zip"]!, "zip", { extractDir: PACKAGES });
+  if (prepare) python.FS.writeFile("/tmp/site.zip", new Uint8Array(files["site.zip"]!));
   for (const name of Object.keys(files)) delete files[name];
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
@@ -89,6 +116,25 @@ async function start({ engine, files, fragment, kept }: Start): Promise<void> {
   // with stack switching, long work lets newer messages in
   work = "Suspending" in WebAssembly ? () => one.callPromising() : () => Promise.resolve(one());
   await answer();
+  if (prepare) prepareArchives(python);
+}
+
+/** Write archives with compiled modules, a module at a time while nothing is asked. */
+function prepareArchives(python: Python): void {
+  const step = python.globals.get("prepare");
+  const goOn = (): void => {
+    if (busy) setTimeout(goOn, REST);
+    else if (step()) setTimeout(goOn);
+    else {
+      const prepared = Object.fromEntries(
+        ARCHIVES.map((name) => [name, python.FS.readFile(`/tmp/prepared-${name}`).buffer as ArrayBuffer]),
+      );
+      for (const name of ARCHIVES) python.FS.unlink(`/tmp/prepared-${name}`);
+      python.FS.unlink("/tmp/site.zip");
+      self.postMessage({ prepared }, Object.values(prepared));
+    }
+  };
+  setTimeout(goOn, REST);
 }
 
 /** Answer all requests, one at a time. */

@@ -2,10 +2,10 @@
 
 import type { Transport, TransportHooks } from "../live/transport";
 import type { FileState, LiveEvent, LiveRequest } from "../messages";
-import type { Engine, Files } from "./engine";
+import { keepPrepared, type Engine, type Found } from "./engine";
 import { keep, keptWork } from "./keeping";
 import { Saving } from "./saving";
-import type { Doing, Failed, Start } from "./worker";
+import type { Doing, Failed, Prepared, Start } from "./worker";
 
 export class WorkerConnection implements Transport {
   private readonly saving = new Saving();
@@ -19,19 +19,20 @@ export class WorkerConnection implements Transport {
   constructor(private readonly hooks: TransportHooks) {}
 
   /** Start the worker; `doing` gets what it does until the first events arrive. */
-  start(engine: Engine, files: Files, doing: (text: string) => void): void {
+  start(engine: Engine, { files, prepare }: Found, doing: (text: string) => void): void {
     const { "worker.js": script, ...rest } = files;
     const url = URL.createObjectURL(new Blob([script!], { type: "text/javascript" }));
     this.worker = new Worker(url);
-    this.worker.onmessage = ({ data }: MessageEvent<string | Doing | Failed>) => {
+    this.worker.onmessage = ({ data }: MessageEvent<string | Doing | Failed | Prepared>) => {
       if (typeof data === "string") this.told(JSON.parse(data) as LiveEvent);
       else if ("doing" in data) doing(data.doing);
-      else this.failed(data.failed);
+      else if ("failed" in data) this.failed(data.failed);
+      else void keepPrepared(engine, data.prepared);
     };
     this.worker.onerror = (event) => this.failed(event.message);
     const kept = keptWork();
     this.saved = kept?.saved ?? null;
-    const start: Start = { engine, files: rest, fragment: location.hash, kept };
+    const start: Start = { engine, files: rest, fragment: location.hash, kept, prepare };
     this.worker.postMessage(start, Object.values(rest));
     for (const message of this.early.splice(0)) this.worker.postMessage(message);
   }
