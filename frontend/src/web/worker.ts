@@ -2,6 +2,7 @@
 
 import type { Engine, Files } from "./engine";
 import type { Kept } from "./keeping";
+import { storedEntries } from "./stored_zip";
 
 /** From the page: the start, then requests as JSON. */
 export interface Start {
@@ -30,12 +31,19 @@ interface PyFunction {
   callPromising(...given: unknown[]): Promise<unknown>;
 }
 
+/** Files in memory; `canOwn`: the content is not copied. */
+interface FileSystem {
+  mkdirTree(path: string): void;
+  readFile(path: string): Uint8Array;
+  unlink(path: string): void;
+  writeFile(path: string, content: Uint8Array, options?: { canOwn: boolean }): void;
+}
+
 interface Python {
-  unpackArchive(content: ArrayBuffer, format: string, options: { extractDir: string }): void;
   runPythonAsync(code: string): Promise<unknown>;
   registerJsModule(name: string, module: object): void;
   globals: { get(name: string): PyFunction };
-  FS: { readFile(path: string): Uint8Array; writeFile(path: string, content: Uint8Array): void; unlink(path: string): void };
+  FS: FileSystem;
 }
 
 declare const loadPyodide: (options: object) => Promise<Python>;
@@ -104,8 +112,12 @@ async function start({ engine, files, fragment, kept, prepare }: Start): Promise
   self.fetch = (url: URL | string) => Promise.resolve(own(String(url), files));
   const python = await loadPyodide({ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME });
   say("Loading the solver …");
-  python.unpackArchive(files["site.zip"]!, "zip", { extractDir: PACKAGES });
-  if (prepare) python.FS.writeFile("/tmp/site.zip", new Uint8Array(files["site.zip"]!));
+  for (const { name, content } of storedEntries(files["site.zip"]!)) {
+    const path = `${PACKAGES}/${name}`;
+    python.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
+    python.FS.writeFile(path, content, { canOwn: true });
+  }
+  if (prepare) python.FS.writeFile("/tmp/site.zip", new Uint8Array(files["site.zip"]!), { canOwn: true });
   for (const name of Object.keys(files)) delete files[name];
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
