@@ -30,8 +30,10 @@ __all__ = [
     "RemovePoint",
     "Request",
     "Save",
+    "SetGround",
     "SetInput",
     "SetNumber",
+    "SetSheet",
     "SetText",
     "SolveAt",
     "Together",
@@ -119,6 +121,14 @@ class RemoveLink:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SetGround:
+    """Fix points to the ground, or release them."""
+
+    points: tuple[str, ...]
+    on: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
 class AddJoint:
     """Add a point to a link: a pin joint with the other links at the point."""
 
@@ -179,6 +189,7 @@ Edit = (
     | RemovePoint
     | AddLink
     | RemoveLink
+    | SetGround
     | AddJoint
     | RemoveJoint
     | AddPart
@@ -207,6 +218,13 @@ class SetText:
     """Replace the whole text of the file."""
 
     text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetSheet:
+    """Tell the width of the visible part of the plane [length], by which symbols are sized."""
+
+    width: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -268,6 +286,7 @@ Request = (
     | Together
     | AssembleAt
     | SetText
+    | SetSheet
     | SolveAt
     | ListConfigurations
     | NewtonSteps
