@@ -77,7 +77,8 @@ def _places(motion: Event, found: BoolArray) -> dict[str, Array]:
 
 def _found(motion: Event) -> BoolArray:
     every = np.ones(motion["rows"], dtype=bool)
-    return _column(motion["evidence"]["found"], every) == 1
+    found: BoolArray = _column(motion["evidence"]["found"], every) == 1
+    return found
 
 
 def _evidence(motion: Event, name: str) -> list[str]:

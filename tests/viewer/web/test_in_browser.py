@@ -108,7 +108,7 @@ def open_web(browser: Any, site: Site) -> Iterator[Open]:
 
 def told(page: Any, kind: str) -> dict[str, Any]:
     """The last event of a kind."""
-    events = map(json.loads, page.evaluate("() => window.said"))
+    events: list[dict[str, Any]] = [*map(json.loads, page.evaluate("() => window.said"))]
     return [event for event in events if event["kind"] == kind][-1]
 
 
@@ -186,6 +186,29 @@ def test_a_length_is_dragged_and_the_cycle_is_that_of_the_library(
     state = told(page, "file_state")
     assert state["unsaved"]
     assert list(differences(told(page, "motion_found"), in_python(state["text"], tmp_path))) == []
+
+
+def test_a_newer_change_cancels_a_cycle_that_is_being_solved(open_web: Open, site: Site) -> None:
+    page = open_web(f"{site.address}#example=jansen-leg")
+    page.wait_for_selector(_READY)
+    changes = [
+        json.dumps({"kind": "set_number", "name": "A B", "value": 50 + k / 10, "id": 1000 + k})
+        for k in range(2)
+    ]
+    page.evaluate(
+        """([first, second]) => {
+          window.engine.postMessage(first);
+          const more = () => window.engine.postMessage(second);
+          window.engine.addEventListener("message", more, {once: true});
+        }""",
+        changes,
+    )
+    page.wait_for_function(
+        """() => window.said.map(JSON.parse).some(
+          ({kind, answers}) => kind === "motion_found" && answers === 1001)"""
+    )
+    events = map(json.loads, page.evaluate("() => window.said"))
+    assert [event["answers"] for event in events if event["kind"] == "motion_found"] == [None, 1001]
 
 
 def test_one_file_opens_from_a_disk_keeps_work_and_saves_it(open_web: Open, site: Site) -> None:

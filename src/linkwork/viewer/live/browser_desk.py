@@ -79,16 +79,16 @@ class BrowserDesk:
             The file that the page kept: its name, its text, and the text with changes that are not
             saved; ``name`` is "" if it kept none.
         """
-        if name and self.open(name, saved, text):
+        if name:
+            self.open(name, saved, text)
             return
         refused: list[Event] = []
         try:
-            named, begun = self._linked(fragment)
+            linked = self._linked(fragment)
         except InputError as error:
             refused = [Refused(message=str(error))]
-            named, begun = self._linked("")
-        if not self.open(named, begun):
-            self.open(*self._linked(""))
+            linked = self._linked("")
+        self.open(*linked)
         self._send(refused)
 
     def _linked(self, fragment: str) -> tuple[str, str]:
@@ -99,7 +99,7 @@ class BrowserDesk:
             return f"{name}.toml", self._library(name)
         return "mechanism.toml", text_of_fragment(code)
 
-    def open(self, name: str, saved: str, text: str | None = None) -> bool:
+    def open(self, name: str, saved: str, text: str | None = None) -> None:
         """Open a file in the memory of the browser, and send the complete state.
 
         Parameters
@@ -110,24 +110,14 @@ class BrowserDesk:
             The text of the file.
         text : str, optional
             The text with changes that are not saved.
-
-        Returns
-        -------
-        bool
-            Whether the file is open; if not, the reason has been sent and nothing has changed.
         """
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
-        try:
-            path.unlink(missing_ok=True)
-            workbench = Workbench(MechanismFile(path, saved), self._read, self._hurried)
-        except (InputError, OSError) as error:
-            self._send([Refused(message=str(error))])
-            return False
+        path.unlink(missing_ok=True)
+        workbench = Workbench(MechanismFile(path, saved), self._read, self._hurried)
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
         self._send(answer(workbench.opened))
-        return True
 
     def work(self) -> bool:
         """Process the next request; returns whether there was one."""

@@ -48,12 +48,13 @@ def with_bytecode(archive: Path, root: Path, target: Path) -> Iterator[None]:
 def _compiled(name: str, module: ModuleType, root: Path) -> tuple[str, bytes]:
     """The place of a compiled module in the archive, and its content; "" if it is not of it."""
     spec = getattr(module, "__spec__", None)
-    origin, loader = getattr(spec, "origin", None), getattr(spec, "loader", None)
+    origin = getattr(spec, "origin", None)
+    get_code = getattr(getattr(spec, "loader", None), "get_code", None)
     if spec is None or spec.name != name or not origin or not origin.endswith(".py"):
         return "", b""
-    if not Path(origin).is_relative_to(root) or not hasattr(loader, "get_code"):
+    if not Path(origin).is_relative_to(root) or get_code is None:
         return "", b""
     # an archive is searched for compiled modules next to their sources, a folder in __pycache__
     compiled = f"{origin}c" if root.is_file() else cache_from_source(origin)
-    content = MAGIC_NUMBER + _UNCHECKED + marshal.dumps(loader.get_code(name))
+    content = MAGIC_NUMBER + _UNCHECKED + marshal.dumps(get_code(name))
     return Path(compiled).relative_to(root).as_posix(), content
