@@ -34,7 +34,7 @@ def _steps(archive: Path, root: Path, target: Path, monkeypatch: pytest.MonkeyPa
         steps = list(with_bytecode(archive, root, target))
     finally:
         for name in ("deep", "deep.used"):
-            monkeypatch.delitem(sys.modules, name)
+            del sys.modules[name]
     assert len(steps) == 2
     with zipfile.ZipFile(target) as copy:
         return copy.namelist()
