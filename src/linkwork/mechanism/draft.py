@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -18,7 +17,7 @@ from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.link_shapes import link_shapes
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.part.index import PARTS, JoinedBodies
-from linkwork.mechanism.part.part import Part, PartChecks, carriers, turning_links
+from linkwork.mechanism.part.part import LARGEST, Part, PartChecks, carriers, turning_links
 
 __all__ = ["Draft"]
 
@@ -117,7 +116,7 @@ class Draft(JoinedBodies):
     def _is_placed(self, point: str) -> bool:
         place = self.points[point]
         try:
-            return len(place) == 2 and all(math.isfinite(self.numbers(c)) for c in place)
+            return len(place) == 2 and all(abs(self.numbers(c)) <= LARGEST for c in place)
         except ExpressionError:
             return False
 

@@ -27,7 +27,6 @@ __all__ = [
     "CannotClose",
     "ChangeableNumber",
     "ConfigurationsFound",
-    "DraftShown",
     "Drive",
     "DrivenInput",
     "Event",
@@ -50,6 +49,7 @@ __all__ = [
     "Refused",
     "Remedy",
     "Saved",
+    "SketchShown",
     "Unknown",
     "Way",
 ]
@@ -63,8 +63,8 @@ class PaletteShown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DraftShown:
-    """The drawing of a draft."""
+class SketchShown:
+    """The drawing of the points as sketched, or assembled at the start."""
 
     page: PageData
 
@@ -251,7 +251,7 @@ class Saved:
 Event = (
     PaletteShown
     | FileState
-    | DraftShown
+    | SketchShown
     | MotionFound
     | PositionFound
     | CannotClose
