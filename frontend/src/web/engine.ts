@@ -49,7 +49,7 @@ export async function keepPrepared(engine: Engine, prepared: Files): Promise<voi
     const content = prepared[file.name];
     if (content) await cache?.put(file.url, new Response(content));
   }
-  await cache?.put(PREPARED, new Response("1"));
+  if ("site.zip" in prepared) await cache?.put(PREPARED, new Response("1")); // the last one
 }
 
 /** The store of earlier visits; none in a frame without an origin of its own. */

@@ -59,12 +59,13 @@ const HOME = "https://linkwork.invalid/";
 const PACKAGES = "/lib/python3.13/site-packages";
 
 const ARCHIVES = ["python_stdlib.zip", "site.zip"];
+const PACKED = "/tmp/site.zip";
+const PREPARED = "/tmp/prepared.zip";
 
 /** Time without requests before archives are prepared [ms]. */
 const REST = 3000;
 
 const BEGIN = `
-from itertools import chain
 from pathlib import Path
 
 from linkwork_page import take, tell, turn
@@ -84,14 +85,14 @@ def pause():
 
 desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
-steps = chain(
-    with_bytecode(STDLIB, STDLIB, Path("/tmp/prepared-python_stdlib.zip")),
-    with_bytecode(Path("/tmp/site.zip"), Path("${PACKAGES}"), Path("/tmp/prepared-site.zip")),
-)
+steps = {
+    "python_stdlib.zip": with_bytecode(STDLIB, STDLIB, Path("${PREPARED}")),
+    "site.zip": with_bytecode(Path("${PACKED}"), Path("${PACKAGES}"), Path("${PREPARED}")),
+}
 
 
-def prepare():
-    return next(steps, 0) is None
+def prepare(name):
+    return next(steps[name], 0) is None
 `;
 
 let messages: string[] = [];
@@ -117,7 +118,7 @@ async function start({ engine, files, fragment, kept, prepare }: Start): Promise
     python.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
     python.FS.writeFile(path, content, { canOwn: true });
   }
-  if (prepare) python.FS.writeFile("/tmp/site.zip", new Uint8Array(files["site.zip"]!), { canOwn: true });
+  if (prepare) python.FS.writeFile(PACKED, new Uint8Array(files["site.zip"]!), { canOwn: true });
   for (const name of Object.keys(files)) delete files[name];
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
@@ -134,16 +135,19 @@ async function start({ engine, files, fragment, kept, prepare }: Start): Promise
 /** Write archives with compiled modules, a module at a time while nothing is asked. */
 function prepareArchives(python: Python): void {
   const step = python.globals.get("prepare");
+  const names = [...ARCHIVES];
   const goOn = (): void => {
-    if (busy) setTimeout(goOn, REST);
-    else if (step()) setTimeout(goOn);
+    const [name] = names;
+    if (name === undefined) python.FS.unlink(PACKED);
+    else if (busy) setTimeout(goOn, REST);
     else {
-      const prepared = Object.fromEntries(
-        ARCHIVES.map((name) => [name, python.FS.readFile(`/tmp/prepared-${name}`).buffer as ArrayBuffer]),
-      );
-      for (const name of ARCHIVES) python.FS.unlink(`/tmp/prepared-${name}`);
-      python.FS.unlink("/tmp/site.zip");
-      self.postMessage({ prepared }, Object.values(prepared));
+      if (!step(name)) {
+        const content = python.FS.readFile(PREPARED).buffer as ArrayBuffer;
+        python.FS.unlink(PREPARED);
+        self.postMessage({ prepared: { [name]: content } }, [content]);
+        names.shift();
+      }
+      setTimeout(goOn);
     }
   };
   setTimeout(goOn, REST);
