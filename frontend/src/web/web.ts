@@ -5,6 +5,9 @@ import { html } from "../svg";
 import { engineFiles, type Engine } from "./engine";
 import { WorkerConnection } from "./worker_connection";
 
+/** The part of the start that loading its files takes. */
+const LOADED = 0.3;
+
 const element = document.getElementById("linkwork")!;
 const wait = html("div", { class: "lw-wait", role: "status" });
 const doing = html("p", {}, wait);
@@ -27,10 +30,14 @@ function begin(): void {
   let connection!: WorkerConnection;
   new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {
-    bar.value = Math.min(1, bytes / all); // prepared archives are larger
+    bar.value = LOADED * Math.min(1, bytes / all); // prepared archives are larger
     doing.textContent = `Loading the engine: ${mega(Math.min(bytes, all))} of ${mega(all)} MB. Everything is computed in this browser.`;
   }).then(
-    (found) => connection.start(engine, found, (text) => (doing.textContent = text)),
+    (found) =>
+      connection.start(engine, found, (what) => {
+        doing.textContent = what.doing;
+        bar.value = what.done;
+      }),
     (error: unknown) => {
       bar.remove();
       wait.setAttribute("role", "alert");

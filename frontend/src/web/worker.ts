@@ -17,6 +17,8 @@ export interface Start {
 /** To the page: events as JSON, or one of these. */
 export interface Doing {
   readonly doing: string;
+  /** The part of the start that is done, from 0 to 1. */
+  readonly done: number;
 }
 export interface Failed {
   readonly failed: string;
@@ -109,10 +111,10 @@ self.onmessage = ({ data }) => {
 };
 
 async function start({ engine, files, fragment, kept, prepare }: Start): Promise<void> {
-  say("Starting Python …");
+  say("Starting Python …", 0.35);
   self.fetch = (url: URL | string) => Promise.resolve(own(String(url), files));
   const python = await loadPyodide({ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME });
-  say("Loading the solver …");
+  say("Loading the solver …", 0.7);
   for (const { name, content } of storedEntries(files["site.zip"]!)) {
     const path = `${PACKAGES}/${name}`;
     python.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
@@ -123,7 +125,7 @@ async function start({ engine, files, fragment, kept, prepare }: Start): Promise
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
   await python.runPythonAsync(BEGIN);
-  say("Solving …");
+  say("Solving …", 0.9);
   const [begin, one] = [python.globals.get("begin"), python.globals.get("work")];
   begin(fragment, kept?.name ?? "", kept?.saved ?? "", kept?.text ?? "");
   // with stack switching, long work lets newer messages in
@@ -184,6 +186,6 @@ function own(url: string, files: Files): Response {
   return content ? new Response(content, { headers: { "content-type": kind } }) : new Response(null, { status: 404 });
 }
 
-function say(doing: string): void {
-  self.postMessage({ doing });
+function say(doing: string, done: number): void {
+  self.postMessage({ doing, done });
 }

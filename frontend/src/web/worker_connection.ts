@@ -19,13 +19,13 @@ export class WorkerConnection implements Transport {
   constructor(private readonly hooks: TransportHooks) {}
 
   /** Start the worker; `doing` gets what it does until the first events arrive. */
-  start(engine: Engine, { files, prepare }: Found, doing: (text: string) => void): void {
+  start(engine: Engine, { files, prepare }: Found, doing: (what: Doing) => void): void {
     const { "worker.js": script, ...rest } = files;
     const url = URL.createObjectURL(new Blob([script!], { type: "text/javascript" }));
     this.worker = new Worker(url);
     this.worker.onmessage = ({ data }: MessageEvent<string | Doing | Failed | Prepared>) => {
       if (typeof data === "string") this.told(JSON.parse(data) as LiveEvent);
-      else if ("doing" in data) doing(data.doing);
+      else if ("doing" in data) doing(data);
       else if ("failed" in data) this.failed(data.failed);
       else void keepPrepared(engine, data.prepared);
     };
