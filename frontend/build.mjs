@@ -15,6 +15,13 @@ const common = {
 };
 await Promise.all([
   build({ ...common, entryPoints: ["src/offline.ts"], format: "iife", outfile: join(folder, "offline.js") }),
+  build({
+    ...common,
+    entryPoints: ["src/solving/solving.ts"],
+    format: "iife",
+    outfile: join(folder, "solving.js"),
+  }),
+  build({ ...common, entryPoints: ["src/solving/solving.css"], outfile: join(folder, "solving.css") }),
   build({ ...common, entryPoints: ["src/live/live.ts"], format: "iife", outfile: join(folder, "live.js") }),
   build({ ...common, entryPoints: ["src/web/web.ts"], format: "iife", outfile: join(folder, "web.js") }),
   build({ ...common, entryPoints: ["src/web/worker.ts"], format: "iife", outfile: join(folder, "web_worker.js") }),

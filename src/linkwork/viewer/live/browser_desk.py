@@ -14,7 +14,7 @@ from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.messages import MessageError, decoded, encoded
 from linkwork.viewer.live.requests import SetText
 from linkwork.viewer.live.solvable import Read
-from linkwork.viewer.live.waiting import Waiting, answer, answers_of
+from linkwork.viewer.live.waiting import Waiting, WorkSigns, answer, answers_of
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["BrowserDesk"]
@@ -65,6 +65,7 @@ class BrowserDesk:
         self._read, self._library = read, library
         self._tell, self._take, self._pause = tell, take, pause
         self._waiting = Waiting()
+        self._signs = WorkSigns(self._send)
         self._workbench: Workbench | None = None
         self._looked = 0.0
 
@@ -114,6 +115,7 @@ class BrowserDesk:
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
         workbench = Workbench(MechanismFile(path, saved), self._read, self._hurried)
+        workbench.working = self._signs
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
@@ -126,6 +128,7 @@ class BrowserDesk:
             return False
         self._looked = time.monotonic()
         request, number = self._waiting.next()
+        self._signs.begin(number)
         self._send(answer(partial(answers_of, self._workbench, request)), number)
         return True
 

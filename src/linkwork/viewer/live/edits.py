@@ -53,6 +53,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         if (measured := _measured(description, edit.name)) is None:
             raise
         text.put(("lengths", measured), edit.value)
+        _stretch(measured, edit.value, text, before)
         return Followed()
     written = quantity.written(description)
     # a number in place of a formula would silently remove the dependence on dimensions
@@ -61,10 +62,26 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
             f'"{quantity.name}" is the formula {written}: change a dimension in '
             "it, or send another formula"
         )
-    if quantity.table == "lengths" and _move_pivot(quantity, edit.value, text, description):
-        return Followed()
+    if quantity.table == "lengths":
+        if _move_pivot(quantity, edit.value, text, description):
+            return Followed()
+        _stretch(quantity.key, edit.value, text, before)
     text.put(_path(quantity, text), edit.value)
     return Followed()
+
+
+def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> None:
+    """Give a length to a draft, which is not assembled: its freer end moves in the sketch."""
+    draft = before.description
+    if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
+        return
+    carriers = draft.drawable().carriers()
+    if not set(key.split()) <= carriers.keys():
+        return
+    fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
+    start, end = before.place(fixed), before.place(free)
+    if length > 0 and end != start and not any(isinstance(c, str) for c in draft.points[free]):
+        put_place(text, free, start + (end - start) / abs(end - start) * length)
 
 
 def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
@@ -82,7 +99,7 @@ def _measured(description: Description, name: str) -> str | None:
     if not isinstance(description, Draft):
         return None
     wanted = sorted(map(canonical, name.split()))
-    for measured in description.shapes.measured:
+    for measured in description.measured:
         if sorted(map(canonical, measured.points)) == wanted:
             return " ".join(measured.points)
     return None

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
 from functools import partial
 
-from linkwork.viewer.live.events import Event
 from linkwork.viewer.live.requests import Request
-from linkwork.viewer.live.waiting import Waiting, answer, answers_of
+from linkwork.viewer.live.waiting import Tell, Waiting, WorkSigns, answer, answers_of
 from linkwork.viewer.live.workbench import Workbench
 
-__all__ = ["Desk", "Tell"]
-
-#: Receives events and the id of the request that they answer.
-Tell = Callable[[list[Event], int | None], None]
+__all__ = ["Desk"]
 
 _LOOK_AT_FILE = 0.5  # interval of checks of the file on disk [s]
 
@@ -38,7 +33,8 @@ class Desk:
         self._waiting = Waiting()
         self._changed = threading.Condition()
         self._closing = False
-        workbench.hurried = self._hurried
+        self._signs = WorkSigns(tell)
+        workbench.hurried, workbench.working = self._hurried, self._signs
         self._thread = threading.Thread(target=self._work, name="linkwork desk", daemon=True)
         self._thread.start()
 
@@ -84,6 +80,7 @@ class Desk:
             self._do(*request)
 
     def _do(self, request: Request | None, number: int | None) -> None:
+        self._signs.begin(number if (number or 0) >= 0 else None)
         if (request, number) == _UNTOLD:
             answer(self._workbench.opened)
             return

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import logging
+import time
 from collections import deque
 from collections.abc import Callable
 
-from linkwork.viewer.live.events import Event, Refused
+from linkwork.viewer.live.events import Event, Refused, Working
 from linkwork.viewer.live.requests import EDITS, Request
 from linkwork.viewer.live.workbench import Workbench
 
-__all__ = ["Waiting", "answer", "answers_of"]
+__all__ = ["Tell", "Waiting", "WorkSigns", "answer", "answers_of"]
 
+#: Receives events and the id of the request that they answer.
+Tell = Callable[[list[Event], int | None], None]
+
+_PACE = 0.25  # between reports of progress [s]
 _log = logging.getLogger("linkwork.viewer")
 
 
@@ -47,6 +52,26 @@ class Waiting:
             # last
             request, number = self._requests.popleft()
         return request, number
+
+
+class WorkSigns:
+    """Tells the progress of an answer, a few times per second."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._number: int | None = None
+        self._told_at = 0.0
+
+    def begin(self, number: int | None) -> None:
+        """Begin with a request of this id."""
+        self._number, self._told_at = number, time.monotonic()
+
+    def __call__(self, fraction: float) -> None:
+        """Tell the fraction done, unless one has just been told."""
+        now = time.monotonic()
+        if now - self._told_at >= _PACE:
+            self._told_at = now
+            self._tell([Working(fraction=min(1.0, max(0.0, fraction)))], self._number)
 
 
 def answers_of(workbench: Workbench, request: Request | None) -> list[Event]:
