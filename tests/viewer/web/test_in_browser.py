@@ -146,7 +146,7 @@ def assert_same(page: Any, names: list[str], folder: Path) -> None:
               const hear = ({data}) => {
                 if (typeof data !== "string") return;
                 const {kind, answers} = JSON.parse(data);
-                if (answers !== id || kind === "file_state") return;
+                if (answers !== id || kind === "file_state" || kind === "working") return;
                 window.engine.removeEventListener("message", hear);
                 resolve(data);
               };

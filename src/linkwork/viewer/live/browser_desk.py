@@ -115,11 +115,11 @@ class BrowserDesk:
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
         workbench = Workbench(MechanismFile(path, saved), self._read, self._hurried)
-        workbench.working = self._signs
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
         self._send(answer(workbench.opened))
+        workbench.working = self._signs
 
     def work(self) -> bool:
         """Process the next request; returns whether there was one."""
