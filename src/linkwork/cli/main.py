@@ -27,6 +27,7 @@ _COMMANDS = (
     "plot",
     "animate",
     "view",
+    "web",
     "study",
     "compile",
     "examples",
