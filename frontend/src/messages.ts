@@ -145,6 +145,12 @@ export interface NewtonSteps {
   y?: number;
 }
 
+export interface MakeLink {
+  kind: "make_link";
+  id?: number;
+  app?: string;
+}
+
 export interface Undo {
   kind: "undo";
   id?: number;
@@ -281,6 +287,15 @@ export interface Refused {
   kind: "refused";
   answers: number | null;
   message: string;
+}
+
+export interface LinkMade {
+  kind: "link_made";
+  answers: number | null;
+  link: string;
+  embed: string;
+  qr: string;
+  note: string;
 }
 
 export interface FileChanged {
@@ -421,6 +436,7 @@ export type LiveRequest =
   | SolveAt
   | ListConfigurations
   | NewtonSteps
+  | MakeLink
   | Undo
   | Redo
   | Save
@@ -437,5 +453,6 @@ export type LiveEvent =
   | PointMoved
   | ProblemsFound
   | Refused
+  | LinkMade
   | FileChanged
   | Saved;

@@ -95,10 +95,7 @@ def is_link(given: str) -> bool:
     """
     given = given.lstrip()
     return bool(
-        given.startswith("#")
-        or _ADDRESS.match(given)
-        or _CODE.match(given)
-        or _CODE.match(given, given.find("#") + 1)
+        _ADDRESS.match(given) or _CODE.match(given) or _CODE.match(given, given.find("#") + 1)
     )
 
 
@@ -115,7 +112,7 @@ def text_of_link(link: str) -> str:
     MechanismFileError
         If the link has no mechanism, is of another version, too long, incomplete or damaged.
     """
-    address, _, after = link.strip().rpartition("#")
+    after = link.strip().rpartition("#")[2]
     found = _CODE.match(after)
     if found is None:
         _refuse(

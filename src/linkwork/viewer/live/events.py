@@ -21,6 +21,7 @@ __all__ = [
     "FileState",
     "LimitFound",
     "Link",
+    "LinkMade",
     "MotionFound",
     "NewtonIterate",
     "NewtonShown",
@@ -319,6 +320,20 @@ class Refused:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LinkMade:
+    """The file as a link.
+
+    ``embed``: HTML for another page; ``qr``: the QR code as SVG. Both are empty without the address
+    of an app; without a QR code, ``note`` says why.
+    """
+
+    link: str
+    embed: str
+    qr: str
+    note: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class FileChanged:
     """Another program changed the file: ``reloaded``, unless there are ``unsaved`` changes."""
 
@@ -346,6 +361,7 @@ Event = (
     | PointMoved
     | ProblemsFound
     | Refused
+    | LinkMade
     | FileChanged
     | Saved
 )

@@ -20,6 +20,7 @@ __all__ = [
     "ChooseConfiguration",
     "Edit",
     "ListConfigurations",
+    "MakeLink",
     "MovePoint",
     "NewtonSteps",
     "Redo",
@@ -263,6 +264,13 @@ class Reload:
     """Read the file again; unsaved changes stay in the history."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class MakeLink:
+    """Pack the text of the file into a link to the address of an app, or into a fragment only."""
+
+    app: str = ""
+
+
 Request = (
     Edit
     | Together
@@ -271,6 +279,7 @@ Request = (
     | SolveAt
     | ListConfigurations
     | NewtonSteps
+    | MakeLink
     | Undo
     | Redo
     | Save

@@ -18,6 +18,7 @@ from linkwork.viewer.live import events as tell, requests as ask, result_events 
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
 from linkwork.viewer.live.edits import Before, Followed, applied, edit_title
 from linkwork.viewer.live.history import History
+from linkwork.viewer.live.link_making import link_made
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
@@ -241,6 +242,10 @@ class Workbench:
             guess = mechanism.pulled_guess(request.pull, (request.x, request.y), guess, at)
         shown = mechanism.iterates(guess, at, options=options)
         return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
+
+    @_handle.register
+    def _(self, request: ask.MakeLink) -> Events:
+        return [link_made(self.text, self._mechanism.description.name, request.app)]
 
     # The text and its results
 

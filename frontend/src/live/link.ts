@@ -1,0 +1,125 @@
+// The dialog that hands the mechanism on: a link, its QR code, and HTML for other pages.
+
+import type { LinkMade } from "../messages";
+import { html } from "../svg";
+import type { Desk } from "./asking";
+
+/** Key of the typed address in localStorage. */
+const KEPT = "linkwork-app";
+const COPIED = 2000; // milliseconds
+
+let own = "";
+
+/** Say that this page is itself the app: links lead to it, and no address is asked for. */
+export function isApp(address: string): void {
+  own = address.replace(/#.*$/s, "");
+}
+
+/** The address of the app that links lead to; empty if none is known. */
+export function appUrl(): string {
+  return own || kept();
+}
+
+/** Storage may be forbidden, as in a sandboxed frame. */
+function kept(): string {
+  try {
+    return localStorage.getItem(KEPT) ?? "";
+  } catch {
+    return "";
+  }
+}
+
+function keep(address: string): void {
+  try {
+    localStorage.setItem(KEPT, address);
+  } catch {
+    // it is asked for again next time
+  }
+}
+
+export class LinkDialog {
+  private readonly element = html("dialog", { class: "lw-link", "aria-labelledby": "lw-link-title" });
+  private readonly app: HTMLInputElement;
+  private readonly link: HTMLTextAreaElement;
+  private readonly embed: HTMLTextAreaElement;
+  private readonly code = html("div", { class: "lw-code" });
+  private readonly note = html("p", { class: "lw-lead", role: "status" });
+
+  constructor(private readonly desk: Desk) {
+    html("h2", { id: "lw-link-title" }, this.element, "Link to this mechanism");
+    html("p", { class: "lw-lead" }, this.element, "The link contains the whole file, after the #: browsers do not send that part to a server.");
+    const address = html("label", { class: "lw-app" }, this.element, "Address of a Linkwork app");
+    this.app = html("input", { type: "text", inputmode: "url", autocomplete: "url", spellcheck: "false", placeholder: "https://…" }, address);
+    address.hidden = own !== "";
+    this.app.addEventListener("change", () => {
+      keep(this.app.value.trim());
+      this.renew();
+    });
+    this.link = this.copied("Link");
+    this.embed = this.copied("HTML for a course page");
+    this.element.append(this.code, this.note);
+    const close = html("button", { type: "button" }, this.element, "Close");
+    close.addEventListener("click", () => this.element.close());
+  }
+
+  get opened(): boolean {
+    return this.element.open;
+  }
+
+  /** Open the dialog in a page, and ask for the link. */
+  open(page: Element): void {
+    page.append(this.element);
+    this.app.value = appUrl();
+    this.element.showModal();
+    this.renew();
+  }
+
+  /** Ask for the link again if the dialog is open. */
+  renew(): void {
+    if (this.opened) this.desk.ask({ kind: "make_link", app: own || this.app.value.trim() });
+  }
+
+  show({ link, embed, qr, note }: LinkMade): void {
+    this.link.value = link;
+    this.embed.value = embed;
+    this.embed.parentElement!.hidden = !embed;
+    this.code.replaceChildren();
+    if (qr) {
+      // as a picture, which can be saved
+      html("img", { src: `data:image/svg+xml,${encodeURIComponent(qr)}`, alt: "QR code of the link" }, this.code);
+    }
+    const part = "Without an address this is the last part of a link: linkwork view \"#…\" and lw.load read it.";
+    this.note.textContent = note || (embed ? "" : part);
+  }
+
+  /** Show why there is no link. */
+  refuse(message: string): void {
+    this.show({ kind: "link_made", answers: null, link: "", embed: "", qr: "", note: message });
+  }
+
+  /** A text to copy, with its button. */
+  private copied(name: string): HTMLTextAreaElement {
+    const box = html("div", { class: "lw-copied" }, this.element);
+    const area = html("textarea", { rows: 3, readonly: "", spellcheck: "false" }, html("label", {}, box, name));
+    area.addEventListener("focus", () => area.select());
+    const button = html("button", { type: "button", "aria-live": "polite", "aria-label": `Copy: ${name}` }, box, "Copy");
+    button.addEventListener("click", () => {
+      void copy(area).then((done) => {
+        button.textContent = done ? "Copied" : "Press Ctrl+C";
+        setTimeout(() => (button.textContent = "Copy"), COPIED);
+      });
+    });
+    return area;
+  }
+}
+
+/** Copy a text, also where the clipboard is forbidden; otherwise select it. */
+async function copy(area: HTMLTextAreaElement): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(area.value);
+    return true;
+  } catch {
+    area.select();
+    return document.execCommand("copy");
+  }
+}
