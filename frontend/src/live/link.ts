@@ -10,8 +10,8 @@ const COPIED = 2000; // milliseconds
 
 let own = "";
 
-/** Say that this page is itself the app: links lead to it, and no address is asked for. */
-export function isApp(address: string): void {
+/** Links lead to this page itself: no address is asked for. */
+export function setAppUrl(address: string): void {
   own = address.replace(/#.*$/s, "");
 }
 
@@ -39,6 +39,7 @@ function keep(address: string): void {
 
 export class LinkDialog {
   private readonly element = html("dialog", { class: "lw-link", "aria-labelledby": "lw-link-title" });
+  private readonly address = html("label", {}, undefined, "Address of a Linkwork app");
   private readonly app: HTMLInputElement;
   private readonly link: HTMLTextAreaElement;
   private readonly embed: HTMLTextAreaElement;
@@ -48,13 +49,9 @@ export class LinkDialog {
   constructor(private readonly desk: Desk) {
     html("h2", { id: "lw-link-title" }, this.element, "Link to this mechanism");
     html("p", { class: "lw-lead" }, this.element, "The link contains the whole file, after the #: browsers do not send that part to a server.");
-    const address = html("label", { class: "lw-app" }, this.element, "Address of a Linkwork app");
-    this.app = html("input", { type: "text", inputmode: "url", autocomplete: "url", spellcheck: "false", placeholder: "https://…" }, address);
-    address.hidden = own !== "";
-    this.app.addEventListener("change", () => {
-      keep(this.app.value.trim());
-      this.renew();
-    });
+    this.element.append(this.address);
+    this.app = html("input", { type: "text", inputmode: "url", autocomplete: "url", spellcheck: "false", placeholder: "https://…" }, this.address);
+    this.app.addEventListener("change", () => this.renew());
     this.link = this.copied("Link");
     this.embed = this.copied("HTML for a course page");
     this.element.append(this.code, this.note);
@@ -69,6 +66,7 @@ export class LinkDialog {
   /** Open the dialog in a page, and ask for the link. */
   open(page: Element): void {
     page.append(this.element);
+    this.address.hidden = own !== "";
     this.app.value = appUrl();
     this.element.showModal();
     this.renew();
@@ -76,13 +74,13 @@ export class LinkDialog {
 
   /** Ask for the link again if the dialog is open. */
   renew(): void {
-    if (this.opened) this.desk.ask({ kind: "make_link", app: own || this.app.value.trim() });
+    if (this.opened) this.desk.ask({ kind: "make_link", app: this.app.value.trim() });
   }
 
   show({ link, embed, qr, note }: LinkMade): void {
-    this.link.value = link;
-    this.embed.value = embed;
-    this.embed.parentElement!.hidden = !embed;
+    fill(this.link, link);
+    fill(this.embed, embed);
+    if (link && !own) keep(this.app.value.trim()); // an address that was accepted, or none
     this.code.replaceChildren();
     if (qr) {
       // as a picture, which can be saved
@@ -111,6 +109,12 @@ export class LinkDialog {
     });
     return area;
   }
+}
+
+/** Show a text with its button; hide both if it is empty. */
+function fill(area: HTMLTextAreaElement, text: string): void {
+  area.value = text;
+  area.closest<HTMLElement>(".lw-copied")!.hidden = !text;
 }
 
 /** Copy a text, also where the clipboard is forbidden; otherwise select it. */
