@@ -260,6 +260,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "plot",
         "animate",
         "view",
+        "link",
         "study",
         "compile",
         "examples",

@@ -44,9 +44,9 @@ def link(
     """Print a link that contains the whole mechanism file.
 
     \b
-      linkwork link rapier.toml --app https://example.org/linkwork/
-      linkwork link rapier.toml --app https://example.org/linkwork/ --qr rapier.svg
-      linkwork link rapier.toml --app https://example.org/linkwork/ --embed
+      linkwork link rapier.toml --app https://example.org/lw/
+      linkwork link rapier.toml --app https://example.org/lw/ --qr rapier.svg
+      linkwork link rapier.toml --app https://example.org/lw/ --embed
       linkwork link "#lw1=..." --text > rapier.toml
 
     The mechanism stands after the #, which browsers do not send to servers.
