@@ -177,7 +177,8 @@ def test_every_loop_finds_the_same_rows(
 
     for way in ("in_step", "by_rows", "march"):
         monkeypatch.setattr(loops, way, partial(noted, way, getattr(loops, way)))
-    monkeypatch.setattr(sweep_kernel, "loop_serves", lambda loop, positions: side_by_side)
+    if not side_by_side:
+        monkeypatch.setattr(sweep_kernel, "_SIDE_BY_SIDE", 10**9)
     family = family_of(name, 0.998, 1.002)
     motion = family.sweep()
     assert ways[0] == expected

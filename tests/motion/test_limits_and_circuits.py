@@ -223,7 +223,7 @@ def test_a_full_turn_has_nothing_to_go_through() -> None:
         lw.example("rapier-drive").sweep(step=5, through=through) for through in (False, True)
     )
     assert (one.circuit, other.circuit) == (None, CircuitEnd.CLOSED)
-    np.testing.assert_array_equal(one["s16"], other["s16"])
+    np.testing.assert_allclose(one["s16"], other["s16"], rtol=1e-12)  # rounding of two loops
     assert not other.added.any()
 
 

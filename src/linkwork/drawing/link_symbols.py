@@ -60,7 +60,9 @@ def _link(pose: Pose, bar: Bar, tone: int, gaps: list[Gap]) -> Iterator[Primitiv
 def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
     """The radius of a pin, reduced at the centre of a small wheel."""
     discs = pose.skeleton.of(Wheel)
-    return min([measures.pin, *(0.4 * d.radius for d in discs if d.center == name)])
+    # wheels of a draft may have no radius yet
+    radii = (0.4 * disc.radius for disc in discs if disc.center == name and disc.radius > 0)
+    return min([measures.pin, *radii])
 
 
 def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:

@@ -36,7 +36,7 @@ from linkwork.foundation.value_types import given_or
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["SceneOptions", "scene_of", "symbols", "traced"]
+__all__ = ["SceneOptions", "scene_of", "scene_of_pose", "symbols", "traced"]
 
 _BEHIND = 0.62  # fading of the mechanism behind its vectors
 _FIRM = (Role.GROUND, Role.HATCH, Role.TRACE, Role.PIN, Role.POINT, Role.TRACED)
@@ -117,6 +117,24 @@ def scene_of(
         unit=position.units.length,
         title=position.mechanism if chosen.title is None else chosen.title,
         caption="; ".join(filter(None, (caption, told.caption))),
+    )
+
+
+def scene_of_pose(pose: Pose, *, size: float, unit: str = "", title: str = "") -> Scene:
+    """The symbols, input arrows and names of a pose, which need not be a solved position.
+
+    ``size``: the least length by which symbols are sized, such as half the width of a sheet.
+    """
+    drawn = drawn_box(pose, (), []) if pose.points else Box(0.0, 0.0, size, size)
+    left, bottom = drawn.left, drawn.bottom
+    within = drawn.with_box(Box(left, bottom, left + size, bottom))
+    measures = Measures.of(within, pose.gaps)
+    found = tracks(pose, measures, tones(pose))
+    primitives = list(symbols(pose, found, (), measures))
+    primitives += input_arrows(pose, found, measures, 1.0, primitives)
+    primitives += placed(point_names(pose, measures), primitives)
+    return Scene(
+        primitives=tuple(primitives), measures=measures, within=drawn, unit=unit, title=title
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -23,6 +23,7 @@ __all__ = ["Pose", "Travel", "no_points", "travel_along"]
 Path = ComplexArray
 Real = Array
 
+_UNSEEN = 1e-9  # of the size of a drawing
 _STILL = 1e-6  # of the largest travel: points that move less are fixed
 
 
@@ -63,6 +64,21 @@ class Pose:
         radians = position.units.angle.radians
         angles = {name: value * radians for name, value in position.links.items()}
         return cls(skeleton=position.skeleton, points=points, paths=paths, angles=angles)
+
+    @classmethod
+    def still(cls, skeleton: Skeleton, points: Mapping[str, complex]) -> Pose:
+        """The pose of points that need not be a position; every link points to its second point.
+
+        Points at one place are drawn apart by less than can be seen, for lines need a direction.
+        """
+        points = _apart(points)
+        angles = {
+            bar.name: cmath.phase(points[bar.points[1]] - points[bar.points[0]])
+            if len(bar.points) > 1
+            else 0.0
+            for bar in skeleton.bars
+        }
+        return cls(skeleton=skeleton, points=points, paths={}, angles=angles)
 
     @classmethod
     def at_row(cls, motion: Motion, row: int) -> Pose:
@@ -200,6 +216,17 @@ def _named(skeleton: Skeleton) -> dict[str, None]:
     names += [point for figure in skeleton.figures for point in figure.ends]
     names += [point for guide in skeleton.guides for point in (guide.point, *guide.line)]
     return dict.fromkeys(names)
+
+
+def _apart(points: Mapping[str, complex]) -> dict[str, complex]:
+    size = max((abs(place) for place in points.values()), default=0.0) or 1.0
+    found: dict[complex, str] = {}
+    for name, place in points.items():
+        own = place
+        while own in found:
+            own += _UNSEEN * size
+        found[own] = name
+    return {name: place for place, name in found.items()}
 
 
 def _path(motion: Motion, name: str) -> Path:

@@ -30,7 +30,11 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
     """
     lanes = _lanes_in(matrix, right)
     if lanes is None:
-        found: Array = np.linalg.lstsq(np.array(matrix), np.array(right), rcond=_CUT)[0]
+        known, wanted = np.array(matrix), np.array(right)
+        # LAPACK prints a line about such numbers
+        if not (np.isfinite(known).all() and np.isfinite(wanted).all()):
+            raise np.linalg.LinAlgError
+        found: Array = np.linalg.lstsq(known, wanted, rcond=_CUT)[0]
         return [float(number) for number in found]
     a, b = _stacked(matrix, lanes), _stacked([right], lanes)[:, 0]
     finite: BoolArray = np.isfinite(np.concatenate([a, b[:, :, None]], axis=2)).all(axis=(1, 2))

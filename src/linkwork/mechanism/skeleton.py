@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.figures import Disc, Figure, Guide, Mesh, Outlines
-from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.part.weld import RigidJoint
 
@@ -73,7 +73,7 @@ class Skeleton:
     figures: tuple[Figure, ...] = ()
 
     @classmethod
-    def of_linkage(cls, linkage: Linkage, outlines: Outlines) -> Skeleton:
+    def of_linkage(cls, linkage: Draft, outlines: Outlines) -> Skeleton:
         """The skeleton of a points-and-links mechanism.
 
         ``outlines``: body, centre and points of every cam and curve by name.
@@ -153,7 +153,7 @@ def _bodies(carriers: Mapping[str, list[str]], figures: Iterable[Figure]) -> Map
     return {point: len(links) - welded.count(point) for point, links in carriers.items()}
 
 
-def _driven_parts(linkage: Linkage, carriers: Mapping[str, list[str]]) -> list[DrivenPart]:
+def _driven_parts(linkage: Draft, carriers: Mapping[str, list[str]]) -> list[DrivenPart]:
     found = []
     for which in linkage.inputs:
         kind, name = which.drives

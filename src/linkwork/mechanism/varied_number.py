@@ -10,7 +10,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.loops import Loops, PlainEquations
 
 __all__ = [
@@ -56,7 +56,7 @@ def varied_numbers(description: Description) -> Iterator[VariedNumber]:
     if isinstance(description, Loops | PlainEquations):
         for name in description.guess:
             yield VariedNumber(name, "guess", name)
-    if isinstance(description, Linkage):
+    if isinstance(description, Draft):
         for table in ("lengths", "angles"):
             for key in getattr(description, table):
                 yield VariedNumber(key, table, key)
@@ -128,7 +128,7 @@ def with_numbers(description: Description, numbers: Mapping[VariedNumber, Number
     for quantity, number in numbers.items():
         changed = tables.setdefault(quantity.table, {})
         if quantity.table == "points":
-            assert isinstance(description, Linkage)
+            assert isinstance(description, Draft)
             place = list(changed.get(quantity.key, description.points[quantity.key]))
             place[quantity.axis] = number
             changed[quantity.key] = tuple(place)
@@ -140,7 +140,7 @@ def with_numbers(description: Description, numbers: Mapping[VariedNumber, Number
 def _changed(description: Description, table: str, changes: Mapping[str, Any]) -> Any:
     if table != "sliders":
         return {**getattr(description, table), **changes}
-    assert isinstance(description, Linkage)
+    assert isinstance(description, Draft)
     return tuple(
         replace(part, offset=changes[part.name]) if part.name in changes else part
         for part in description.sliders

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.part.index import PARTS
-from linkwork.textfile.keys import EQUATIONS, FORMAT, LOOPS, Form, form_of
+from linkwork.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 
-__all__ = ["ReadFile", "check_format", "located_error", "read_bytes", "read_file", "read_text"]
+__all__ = [
+    "DraftFile",
+    "ReadFile",
+    "check_format",
+    "located_error",
+    "read_bytes",
+    "read_draft",
+    "read_file",
+    "read_text",
+]
 
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
@@ -100,6 +110,51 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     raise located_error(problems, lines, name) from None
 
 
+@dataclass(frozen=True, kw_only=True)
+class DraftFile:
+    """A file of points and links that need not be a mechanism yet.
+
+    Parameters
+    ----------
+    draft : Draft
+        What the file contains, without tables whose keys or types are wrong.
+    problems : tuple of Problem
+        All that keeps the file from being a mechanism, with lines, in the file's order; none if it
+        is a linkage, which may still lack an input.
+    """
+
+    draft: Draft
+    problems: tuple[Problem, ...]
+
+
+def read_draft(text: str, name: str = "the text") -> DraftFile:
+    """Read points, links and parts, whether or not they are a mechanism.
+
+    Raises
+    ------
+    MechanismFileError
+        If the text is not TOML, is in a newer format, or contains equations, with every problem.
+
+    Examples
+    --------
+    >>> file = read_draft("format = 1\\n[points]\\nA = [0, 0]")
+    >>> list(file.draft.points), len(file.problems)
+    (['A'], 2)
+    """
+    data = data_of(text, name)
+    lines = Lines.of(text)
+    check_format(data, lines, name)
+    form = form_of(data)
+    structure = Structure(data, form)
+    if form is not LINKAGE:
+        raise located_error(structure.problems, lines, name)
+    kept = _without(structure.problems, structure.content, structure.lost)
+    draft = Draft(**_common_fields(kept), **_linkage_fields(kept))
+    lost = {(key,) for key in structure.lost}
+    found = [*structure.problems, *(p for p in draft.problems if p.key[:1] not in lost)]
+    return DraftFile(draft=draft, problems=tuple(located_error(found, lines, name).problems))
+
+
 def located_error(problems: Iterable[Problem], lines: Lines, name: str) -> MechanismFileError:
     """Problems with file name and line numbers, in the file's order."""
     found = [p if p.line is not None else p.at_line(lines.line(p.key)) for p in problems]
@@ -119,6 +174,16 @@ def check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
 
 def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | PlainEquations:
     """The mechanism described by the checked content of a file."""
+    fields = _common_fields(content)
+    if form is LOOPS:
+        own = {key: content.get(key, {}) for key in ("loops", "guess", "points", "links")}
+        return Loops(**fields, **own)
+    if form is EQUATIONS:
+        return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
+    return Linkage(**fields, **_linkage_fields(content))
+
+
+def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
     fields: dict[str, Any] = {
         key: content[key]
         for key in (
@@ -136,18 +201,28 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))
     fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
-    if form is LOOPS:
-        own = {key: content.get(key, {}) for key in ("loops", "guess", "points", "links")}
-        return Loops(**fields, **own)
-    if form is EQUATIONS:
-        return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
-    fields |= {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
-    for name, kind in PARTS.items():
-        fields[name] = tuple(map(kind.of_table, content.get(name, ())))
-    return Linkage(
-        **fields,
-        sketch=content.get("sketch", False),
-    )
+    return fields
+
+
+def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
+    tables = {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
+    parts = {
+        table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
+    }
+    return {**tables, **parts, "sketch": content.get("sketch", False)}
+
+
+def _without(
+    problems: Iterable[Problem], content: dict[str, Any], lost: Set[str]
+) -> dict[str, Any]:
+    """The content of a file without the entries that have problems."""
+    wrong = {problem.key[:2] for problem in problems}
+    kept = {key: entry for key, entry in content.items() if key not in lost}
+    for key in lost & content.keys():
+        if isinstance(content[key], dict):
+            named = content[key].items()
+            kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
+    return kept
 
 
 def _input(table: dict[str, Any]) -> Input:

@@ -38,7 +38,7 @@ from linkwork.viewer.page_data import (
 from linkwork.viewer.page_shapes import shapes_of
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["FORMAT", "Loops", "drawn_page", "motion_page"]
+__all__ = ["FORMAT", "MARGIN", "Loops", "drawn_page", "motion_page", "page_version", "themes"]
 
 #: Gives the loop equations over a motion.
 Loops = Callable[[Motion], Sequence[MovingLoop]]
@@ -46,7 +46,7 @@ Loops = Callable[[Motion], Sequence[MovingLoop]]
 #: Version of the page data; the front end rejects any other.
 FORMAT = 1
 
-_MARGIN = 0.05  # margin as a fraction of the drawing
+MARGIN = 0.05  # margin as a fraction of the drawing
 _NOTHING = -400.0  # exponent written for 0, below that of any float
 _COARSE = 0.001  # in decades: precision of residuals and radii
 
@@ -113,11 +113,12 @@ def drawn_page(
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
     view = Box.around(corner for scene in scenes for corner in scene.view.corners)
-    view = view.grown(_MARGIN * measures.size)
+    view = view.grown(MARGIN * measures.size)
     lead = next(iter(first.inputs))
+    light, dark = themes()
     return PageData(
         format=FORMAT,
-        version=_version(),
+        version=page_version(),
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
@@ -130,8 +131,8 @@ def drawn_page(
             _motion(name, motion, scene, () if loops is None else loops(motion), pack)
             for (name, motion), scene in zip(motions.items(), scenes, strict=True)
         ),
-        light=_theme(LIGHT),
-        dark=_theme(DARK),
+        light=light,
+        dark=dark,
         forces=tuple(_forces(first, forces)),
         force_unit=force_unit(forces),
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
@@ -139,7 +140,8 @@ def drawn_page(
 
 
 @lru_cache
-def _version() -> str:
+def page_version() -> str:
+    """The version of this package."""
     return version("linkwork")
 
 
@@ -267,6 +269,11 @@ def _limits(motion: Motion) -> Iterator[LimitMark]:
     for row, text in enumerate(motion.limit):
         if text and motion.found[row]:
             yield LimitMark(row=row, text=text)
+
+
+def themes() -> tuple[ThemeData, ThemeData]:
+    """The colours of pages, light and dark."""
+    return _theme(LIGHT), _theme(DARK)
 
 
 @lru_cache

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +17,10 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.packing import Pack
 from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData
 
-__all__ = ["OWN_COURSE", "shapes_of"]
+__all__ = ["OWN_COURSE", "shapes_of", "still_shape"]
+
+#: Gives x, y, x, y, … of places in the frame of a shape.
+Local = Callable[[tuple[XY, ...]], tuple[float, ...]]
 
 #: The frame of a deforming shape.
 OWN_COURSE = -2
@@ -63,22 +67,39 @@ def _part(part: Moving, scene: MovingScene, carriers: list[Frame], pack: Pack) -
             line = scene.frames.local(part.frame, line[None], np.array([scene.row]))[0]
         return _flat(line, scene.scene.measures.size)
 
+    still = _shape(shape, number, local)
+    if part.course is None:
+        return still
+    course = tuple(_course(part.course, scene.found, pack))
+    return replace(still, points=(), course=course, shown=_shown(part.course, pack))
+
+
+def still_shape(shape: Primitive, size: float) -> Part:
+    """A shape in the plane; ``size`` is that of the drawing."""
+
+    def flat(places: tuple[XY, ...]) -> tuple[float, ...]:
+        return _flat(np.array([complex(*place) for place in places]), size)
+
+    return _shape(shape, -1, flat)
+
+
+def _shape(shape: Primitive, frame: int, local: Local) -> Part:
     text = shape if isinstance(shape, Text) else None
     return Part(
         kind=_KINDS[type(shape)],
         role=shape.role.name.lower(),
         of=shape.of,
         tone=shape.tone,
-        frame=number,
-        points=local(_places(shape)) if part.frame is not None else (),
+        frame=frame,
+        points=local(_places(shape)),
         radius=shape.radius if isinstance(shape, Disc) else 0.0,
         head=local(shape.arrow_head) if isinstance(shape, Polyline | Arc) else (),
         text=text.text if text else "",
         offset=text.offset if text else (),
         height=text.height if text else 0.0,
         align=text.align if text else 0,
-        course=() if part.course is None else tuple(_course(part.course, scene.found, pack)),
-        shown=None if part.course is None else _shown(part.course, pack),
+        course=(),
+        shown=None,
     )
 
 

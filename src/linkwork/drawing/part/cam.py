@@ -43,7 +43,8 @@ def _follower(follower: Follower, pose: Pose, measures: Measures) -> Iterator[Po
     place, stem = pose.points[follower.point], stems(pose, measures).get(follower.point)
     if stem:
         lines.append((place, place + stem))
-    if follower.contact == "flat":
+    drawn = any(cam.name == follower.name for cam in pose.skeleton.of(CamOutline))
+    if follower.contact == "flat" and drawn:
         lines.append(_face(pose, follower, measures))
     tone = tones(pose).get(follower.link, 0)
     for start, end in lines:

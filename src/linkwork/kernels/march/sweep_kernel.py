@@ -40,6 +40,7 @@ __all__ = ["RowsOfOne", "Steps", "SweepKernel"]
 # Up to so many designs are solved one at a time with their rows side by side. Side by side
 # themselves they would leave three quarters of the 64 lanes idle.
 _FEW = LANES // 4
+_SIDE_BY_SIDE = LANES  # rows of one design that fill the lanes
 _FEWER = 4  # both ways of so many fill the lanes that a processor computes at once
 _ROUGHLY = 1e-6  # weighted: the tolerance where a proof corrects once more
 
@@ -279,7 +280,7 @@ class SweepKernel:
         """One design after the other, its rows side by side; then those that this is not for."""
         done, rows = np.zeros(given.shape[1], dtype=bool), len(table.rows)
         # whatever this process has compiled: values may not depend on that
-        if rows >= LANES:
+        if rows >= _SIDE_BY_SIDE:
             alone, n = self._prepare_single(family, coefficients, table, steps), len(given) - 1
             counts = np.zeros(rows, dtype=np.int64)
             for k in range(len(done)):
