@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, MechanismFileError, Problem
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.textfile.toml_text import LARGEST, bytes_of, text_of
 
 __all__ = ["LONGEST", "fragment_of", "is_link", "link_of", "source_text", "text_of_link"]
@@ -73,16 +74,7 @@ def link_of(text: str, app: str | None = None) -> str:
     InputError
         Like :func:`fragment_of`; or if ``app`` is not the address of a page.
     """
-    fragment = fragment_of(text)
-    if app is None:
-        return fragment
-    if not isinstance(app, str) or not _APP.fullmatch(app):
-        shown = f'"{app[:80]}"' if isinstance(app, str) else type(app).__name__
-        raise InputError(
-            f"{shown} is not the address of an app: give its whole URL without #, as in "
-            "https://example.org/linkwork/"
-        )
-    return app + fragment
+    return ("" if app is None else _address(app)) + fragment_of(text)
 
 
 def is_link(given: str) -> bool:
@@ -141,6 +133,16 @@ def source_text(given: str) -> tuple[str, str]:
     if is_link(given) and not os.path.exists(given):
         return text_of_link(given), _WHERE
     return text_of(bytes_of(Path(given), given), given), given
+
+
+def _address(app: object) -> str:
+    if isinstance(app, str) and _APP.fullmatch(app):
+        return app
+    shown = f'"{app[:80]}"' if isinstance(app, str) else as_told(app)
+    raise InputError(
+        f"{shown} is not the address of an app: give its whole URL without #, as in "
+        "https://example.org/linkwork/"
+    )
 
 
 def _refuse(message: str) -> NoReturn:
