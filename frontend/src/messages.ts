@@ -62,6 +62,13 @@ export interface RemoveLink {
   name: string;
 }
 
+export interface SetGround {
+  kind: "set_ground";
+  id?: number;
+  points: readonly (string)[];
+  on?: boolean;
+}
+
 export interface AddJoint {
   kind: "add_joint";
   id?: number;
@@ -118,6 +125,12 @@ export interface SetText {
   kind: "set_text";
   id?: number;
   text: string;
+}
+
+export interface SetSheet {
+  kind: "set_sheet";
+  id?: number;
+  width: number;
 }
 
 export interface SolveAt {
@@ -201,6 +214,14 @@ export interface FileState {
   traceable: readonly (string)[];
   traced: readonly (string)[];
   equations: readonly (string)[];
+  lacks: readonly (Lack)[];
+  readable: boolean;
+}
+
+export interface DraftShown {
+  kind: "draft_shown";
+  answers: number | null;
+  page: PageData;
 }
 
 export interface MotionFound {
@@ -230,6 +251,7 @@ export interface PositionFound {
   iterations: number;
   condition: number | null;
   certified: boolean;
+  page: PageData | null;
 }
 
 export interface CannotClose {
@@ -244,6 +266,7 @@ export interface CannotClose {
   open_ends: readonly (OpenEnd)[];
   remedies: Record<string, number>;
   elsewhere: Record<string, number>;
+  page: PageData | null;
 }
 
 export interface ConfigurationsFound {
@@ -363,6 +386,20 @@ export interface Drive {
   name: string;
 }
 
+export interface Lack {
+  message: string;
+  key: string;
+  line: number | null;
+  kind: string;
+  name: string;
+  remedies: readonly (Remedy)[];
+}
+
+export interface Remedy {
+  label: string;
+  edits: readonly (LiveEdit)[];
+}
+
 export interface LimitFound {
   what: string;
   input: number;
@@ -409,6 +446,7 @@ export type LiveEdit =
   | RemovePoint
   | AddLink
   | RemoveLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -424,6 +462,7 @@ export type LiveRequest =
   | RemovePoint
   | AddLink
   | RemoveLink
+  | SetGround
   | AddJoint
   | RemoveJoint
   | AddPart
@@ -433,6 +472,7 @@ export type LiveRequest =
   | Together
   | AssembleAt
   | SetText
+  | SetSheet
   | SolveAt
   | ListConfigurations
   | NewtonSteps
@@ -445,6 +485,7 @@ export type LiveRequest =
 export type LiveEvent =
   | PaletteShown
   | FileState
+  | DraftShown
   | MotionFound
   | PositionFound
   | CannotClose

@@ -15,7 +15,7 @@ from linkwork.cli.options import debug_option, file_argument, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import is_link, text_of_link
-from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
 
@@ -23,11 +23,15 @@ __all__ = ["view"]
 
 
 def _opened(file: str) -> MechanismFile:
-    """A file; or a mechanism of the library or a link as a file that is created when saved."""
+    """A file, or a text that is written when it is saved: a mechanism of the library or of a link,
+    or a blank sheet.
+    """
     if is_link(file) and not os.path.exists(file):
         return _of_link(text_of_link(file))
     if Path(file).exists() or file not in examples():
-        return MechanismFile(file)
+        path = Path(file)
+        named = path if path.suffix or path.exists() else path.with_suffix(".toml")
+        return MechanismFile(named, blank_sheet(path.stem))
     path = Path(f"{file}.toml")
     if path.exists():
         raise InputError(
@@ -68,7 +72,7 @@ def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
     """Show and edit a mechanism in a browser until Ctrl-C.
 
     \b
-      linkwork view rapier.toml
+      linkwork view rapier.toml   (a blank sheet, if there is no such file)
       linkwork view four-bar      (of the library: saved as four-bar.toml)
       linkwork view "LINK"        (saved as linked.toml)
       linkwork view rapier.toml --port 8123 --no-browser

@@ -16,7 +16,7 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.textfile.link import fragment_of
 from linkwork.viewer.embedding import embed_snippet
 from linkwork.viewer.live import events as tell, requests as ask
-from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.workbench import Workbench
 from linkwork.viewer.qr_code import qr_svg
 from tests.described import described_as
@@ -121,15 +121,17 @@ def test_an_edit_that_cannot_be_read_changes_nothing(bench: Workbench) -> None:
 
 
 def test_what_cannot_be_added_is_told_without_a_line_that_the_file_lacks(bench: Workbench) -> None:
-    found = only(bench.handle(ask.AddPoint(name="Q", x=1, y=2, links=())), tell.ProblemsFound)
-    (problem,) = found.problems
-    assert (problem.line, problem.key) == (None, "points.Q")
-    assert problem.message.startswith("is on no link")
+    sliding: dict[str, str | tuple[str, ...]] = {"name": "s", "link": "rocker", "points": ("B",)}
+    edit = ask.AddPart(table="sliders", typed={**sliding, "on": "bar", "line": ("O2", "O4")})
+    found = only(bench.handle(edit), tell.ProblemsFound)
+    assert {(problem.line, problem.key) for problem in found.problems} == {(None, "sliders[1].on")}
+    assert not bench.unsaved
 
 
 def test_the_text_typed_by_hand_is_judged_by_the_reader(bench: Workbench) -> None:
-    found = only(bench.handle(ask.SetText(text=FOUR_BAR + "[lenghts]\n")), tell.ProblemsFound)
-    assert [p.line for p in found.problems] == [len(FOUR_BAR.splitlines()) + 1]
+    found = only(bench.handle(ask.SetText(text=FOUR_BAR + "[lenghts]\n")), tell.FileState)
+    assert [lack.line for lack in found.lacks] == [len(FOUR_BAR.splitlines()) + 1]
+    assert only(bench.handle(ask.Undo()), tell.FileState).lacks == ()
     broken = only(bench.handle(ask.SetText(text="format = ")), tell.ProblemsFound)
     assert "is not TOML" in broken.problems[0].message
     whole = FOUR_BAR.replace('"A B" = 120', '"A B" = 125')
@@ -289,7 +291,7 @@ def test_a_ground_point_that_contradicts_its_length_is_refused_by_the_reader(
 
 def test_links_are_added_together_with_their_points(bench: Workbench) -> None:
     alone = bench.handle(ask.AddLink(name="bar", points=("P", "Q")))
-    assert kinds(alone) == ["ProblemsFound"]
+    assert only(alone, tell.Refused).message.startswith('there is no point "Q"')
     dyad = ask.Together(
         edits=(
             ask.AddPoint(name="Q", x=60, y=150),
@@ -323,8 +325,9 @@ def test_lengths_go_with_the_link_that_had_them(bench: Workbench) -> None:
 
 
 def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
-    loose = only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), tell.ProblemsFound)
-    assert "coupler" in loose.problems[0].message
+    loose = only(bench.handle(ask.RemoveJoint(link="coupler", point="A")), tell.FileState)
+    assert loose.lacks
+    bench.handle(ask.Undo())
     wheels: dict[str, str | tuple[str, ...]] = {
         "name": "g",
         "centers": ("O2", "O4"),
@@ -336,7 +339,8 @@ def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
         ask.AddPart(table="gears", typed={**wheels, "wheels": ("wheel", "pinion")}),
     )
     events = bench.handle(ask.Together(edits=edits))
-    assert kinds(events) == ["ProblemsFound"]  # nothing turns the wheels
+    assert kinds(events) == ["FileState", "DraftShown"]  # nothing turns the wheels
+    bench.handle(ask.Undo())
     crank = ask.Together(
         edits=(
             ask.AddLink(name="pinion", points=("O4",)),
@@ -677,11 +681,65 @@ def test_windows_line_ends_and_bom_survive(tmp_path: Path) -> None:
     assert file.read_bytes() == data.replace(b"a = 40 ", b"a = 42 ")
 
 
-def test_a_file_that_is_no_mechanism_is_refused_at_once(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("text", "readable"),
+    [
+        ("format = 1\n[points]\n", True),
+        ("format = \n", False),
+        ("format = 1\n[equations]\n", False),
+    ],
+)
+def test_a_file_that_is_no_mechanism_is_opened_and_mended(
+    text: str, readable: bool, tmp_path: Path
+) -> None:
     file = tmp_path / "broken.toml"
-    file.write_text("format = 1\n[points]\n", encoding="utf-8")
-    with pytest.raises(lw.MechanismFileError):
-        Workbench(MechanismFile(file), lw.loads)
+    file.write_text(text, encoding="utf-8")
+    bench = Workbench(MechanismFile(file), lw.loads)
+    state = only(bench.opened(), tell.FileState)
+    assert (state.text, state.readable) == (text, readable)
+    assert state.lacks
+    assert only(bench.handle(ask.SolveAt(at={})), tell.Refused)
+    assert only(bench.handle(ask.SetText(text=FOUR_BAR)), tell.FileState).lacks == ()
+
+
+@pytest.mark.parametrize("content", [None, "", " \n"])
+def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path: Path) -> None:
+    path = tmp_path / "new.toml"
+    if content is not None:
+        path.write_text(content, "utf-8")
+    bench = Workbench(MechanismFile(path, blank_sheet("new")), lw.loads)
+    state, shown = bench.opened()[1:]
+    assert isinstance(state, tell.FileState)
+    assert isinstance(shown, tell.DraftShown)
+    assert (state.title, state.points, state.unsaved) == ("new", {}, False)
+    assert [lack.message[:20] for lack in state.lacks] == ["Draw the first link:"]
+    assert bench.poll() == []
+    bench.handle(ask.AddPoint(name="A", x=1, y=2))
+    assert only(bench.handle(ask.Save()), tell.FileState).unsaved is False
+    assert "A = [1.0, 2.0]" in path.read_text("utf-8")
+
+
+def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", blank_sheet("new")), lw.loads)
+    places = {"A": (0, 0), "B": (30, 40), "C": (140, 60), "D": (100, 0)}
+    for name, (x, y) in places.items():
+        bench.handle(ask.AddPoint(name=name, x=x, y=y))
+    for name, points in {"crank": ("A", "B"), "coupler": ("B", "C"), "rocker": ("D", "C")}.items():
+        state = only(bench.handle(ask.AddLink(name=name, points=points)), tell.FileState)
+    (fixed,) = (remedy for lack in state.lacks for remedy in lack.remedies)
+    assert fixed.label == "Fix A and D"
+    state = only(bench.handle(ask.Together(edits=fixed.edits)), tell.FileState)
+    driven, *_ = (remedy for lack in state.lacks for remedy in lack.remedies)
+    assert driven.label == "Drive crank"
+    events = bench.handle(ask.Together(edits=driven.edits))
+    assert only(events, tell.FileState).lacks == ()
+    assert only(events, tell.MotionFound).certified == 361
+    for _ in range(9):
+        assert only(bench.handle(ask.Undo()), tell.FileState).lacks
+    assert only(bench.handle(ask.Undo()), tell.Refused)
+
+
+def test_a_file_that_does_not_exist_is_refused_at_once(tmp_path: Path) -> None:
     with pytest.raises(lw.MechanismFileError, match="there is no such file"):
         MechanismFile(tmp_path / "none.toml")
 
@@ -701,3 +759,9 @@ def test_the_text_under_edit_is_linked(bench: Workbench, monkeypatch: pytest.Mon
     assert without.link == made.link
     refused = only(bench.handle(ask.MakeLink(app="example.org")), tell.Refused)
     assert refused.message.startswith('"example.org" is not the address of an app')
+
+
+def test_a_draft_is_linked_too(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", "[points]\nA = [0, 0]\n"), lw.loads)
+    (made,) = bench.handle(ask.MakeLink())
+    assert made == tell.LinkMade(link=fragment_of(bench.text), embed="", qr="", note="")

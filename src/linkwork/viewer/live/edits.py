@@ -10,7 +10,7 @@ from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.textfile.text_edits import TextEdits
@@ -36,7 +36,7 @@ class Before:
         """The coordinates of a point: assembled, or as sketched if it cannot be assembled."""
         if point in self.places:
             return complex(*self.places[point])
-        assert isinstance(self.description, Linkage)
+        assert isinstance(self.description, Draft)
         return self.description.sketched(point)
 
 
@@ -95,7 +95,7 @@ def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
 
 def _measured(description: Description, name: str) -> str | None:
     """The key of [lengths] for a named length between sketched points."""
-    if not isinstance(description, Linkage):
+    if not isinstance(description, Draft):
         return None
     wanted = sorted(map(canonical, name.split()))
     for measured in description.shapes.measured:
@@ -108,7 +108,7 @@ def _move_pivot(
     quantity: VariedNumber, length: float | str, text: TextEdits, description: Description
 ) -> bool:
     """Set a distance on ground by moving its second point along the line between the two."""
-    assert isinstance(description, Linkage)
+    assert isinstance(description, Draft)
     first, second = quantity.key.split()
     pair = (*description.points[first], *description.points[second])
     on_ground = {first, second} <= set(description.links[GROUND])
@@ -125,7 +125,7 @@ def _move_pivot(
 @applied.register
 def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
     linkage = before.description
-    if not isinstance(linkage, Linkage):
+    if not isinstance(linkage, Draft):
         raise InputError(
             "the points of this file follow from its equations: change a dimension instead"
         )
@@ -152,7 +152,7 @@ def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
     return Followed(followed=tuple(followed), stayed=tuple(stayed))
 
 
-def _measure(key: str, places: Mapping[str, complex], linkage: Linkage) -> float:
+def _measure(key: str, places: Mapping[str, complex], linkage: Draft) -> float:
     """A measured length, or angle in the file's unit, between points with coordinates."""
     match key.split():
         case [a, b]:
@@ -172,7 +172,7 @@ def _put_place(text: TextEdits, point: str, place: complex) -> None:
     text.put(("points", point, 1), _rounded(place.imag))
 
 
-def _known_point(linkage: Linkage, name: str) -> str:
+def _known_point(linkage: Draft, name: str) -> str:
     own = find_spelling(name, linkage.points)
     if own not in linkage.points:
         raise UnknownNameError(
@@ -215,12 +215,28 @@ def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.AddLink, text: TextEdits, before: Before) -> Followed:
+    for name in edit.points:
+        _check_point(text, name)
     _add(text, "links", edit.name, list(edit.points))
     return Followed()
 
 
 @applied.register
+def _(edit: ask.SetGround, text: TextEdits, before: Before) -> Followed:
+    fixed = _points_of(text, GROUND) if text.has(("links", GROUND)) else []
+    wanted = {canonical(name): _check_point(text, name) for name in edit.points}
+    left = [point for point in fixed if canonical(point) not in wanted]
+    if on := [*left, *wanted.values()] if edit.on else left:
+        text.put(("links", GROUND), on)
+    elif fixed:
+        text.remove(("links", GROUND))
+    _drop_loose_dimensions(text)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.AddJoint, text: TextEdits, before: Before) -> Followed:
+    _check_point(text, edit.point)
     _carry(text, edit.link, edit.point)
     return Followed()
 
@@ -247,11 +263,7 @@ def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
-    if not text.has(("points", edit.name)):
-        known = text.keys(("points",))
-        raise UnknownNameError(
-            f'there is no point "{edit.name}" {choices("points", known, edit.name)}'
-        )
+    _check_point(text, edit.name)
     text.remove(("points", edit.name))
     for link in text.keys(("links",)):
         points = _points_of(text, link)
@@ -289,10 +301,7 @@ def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
-    known = text.keys(("points",))
-    if canonical(edit.point) not in map(canonical, known):
-        listed = choices("points", known, edit.point)
-        raise UnknownNameError(f'there is no point "{edit.point}" {listed}')
+    _check_point(text, edit.point)
     traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
     left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
     if edit.on:
@@ -311,6 +320,15 @@ def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followe
     elif text.has(("configuration",)):
         text.remove(("configuration",))
     return Followed()
+
+
+def _check_point(text: TextEdits, name: str) -> str:
+    """A point as it is spelled in the text; an error if there is none."""
+    known = text.keys(("points",))
+    for own in known:
+        if canonical(own) == canonical(name):
+            return own
+    raise UnknownNameError(f'there is no point "{name}" {choices("points", known, name)}')
 
 
 def _add(text: TextEdits, table: str, name: str, entry: object) -> None:

@@ -7,6 +7,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.file_state import (
+    ChangeableNumber,
+    Drive,
+    DrivenInput,
+    FileState,
+    Lack,
+    Link,
+    PaletteField,
+    PalettePart,
+    Point,
+    Remedy,
+    Unknown,
+)
 from linkwork.viewer.page_data import PageData
 
 __all__ = [
@@ -14,11 +27,13 @@ __all__ = [
     "CannotClose",
     "ChangeableNumber",
     "ConfigurationsFound",
+    "DraftShown",
     "Drive",
     "DrivenInput",
     "Event",
     "FileChanged",
     "FileState",
+    "Lack",
     "LimitFound",
     "Link",
     "LinkMade",
@@ -34,92 +49,11 @@ __all__ = [
     "ProblemShown",
     "ProblemsFound",
     "Refused",
+    "Remedy",
     "Saved",
     "Unknown",
     "Way",
 ]
-
-Point = tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ChangeableNumber:
-    """A named number that can be changed.
-
-    ``table``: dimensions, lengths, angles, sliders, guess, points, or measured. ``formula`` is
-    its formula in the file, if it has one: such a number depends on others.
-    """
-
-    name: str
-    value: float
-    unit: str
-    table: str
-    formula: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Unknown:
-    """An unknown of the equations with its guess."""
-
-    name: str
-    unit: str
-    guess: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class DrivenInput:
-    """An input: the driven quantity, and its range as in the file."""
-
-    name: str
-    unit: str
-    drive: str
-    start: float
-    stop: float
-    rows: int
-    speed: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Drive:
-    """A possible input: link, slider, cylinder or variable, and its name."""
-
-    kind: str
-    name: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Link:
-    """A link and its points."""
-
-    name: str
-    points: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class PaletteField:
-    """A field of a form: a key of a table, its description and kind of entry.
-
-    ``entry``: ``text``, ``number``, ``flag``, ``choice`` among ``words``; the name of a
-    ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
-    ``lines`` of numbers, or of words in the order of ``named``.
-    """
-
-    name: str
-    doc: str
-    entry: str
-    required: bool
-    words: tuple[str, ...] = ()
-    named: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class PalettePart:
-    """A kind of part, with its table in the file."""
-
-    table: str
-    title: str
-    doc: str
-    fields: tuple[PaletteField, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,33 +64,10 @@ class PaletteShown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FileState:
-    """The edited file.
+class DraftShown:
+    """The drawing of a draft."""
 
-    ``parts``: names of sliders, gears, cams, …; for a weld its two links. ``drives``: possible
-    inputs. ``traceable``: points whose paths can be shown.
-    """
-
-    file: str
-    title: str
-    text: str
-    form: str
-    unsaved: bool
-    undo: str
-    redo: str
-    length_unit: str
-    angle_unit: str
-    configuration: str
-    numbers: tuple[ChangeableNumber, ...]
-    unknowns: tuple[Unknown, ...]
-    inputs: tuple[DrivenInput, ...]
-    points: dict[str, Point]
-    links: tuple[Link, ...]
-    parts: tuple[str, ...]
-    drives: tuple[Drive, ...]
-    traceable: tuple[str, ...]
-    traced: tuple[str, ...]
-    equations: tuple[str, ...]
+    page: PageData
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,6 +114,7 @@ class PositionFound:
     iterations: int
     condition: float | None
     certified: bool
+    page: PageData | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,6 +143,7 @@ class CannotClose:
     open_ends: tuple[OpenEnd, ...]
     remedies: dict[str, float]
     elsewhere: dict[str, float]
+    page: PageData | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -353,6 +266,7 @@ class Saved:
 Event = (
     PaletteShown
     | FileState
+    | DraftShown
     | MotionFound
     | PositionFound
     | CannotClose

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from enum import Enum
 from pathlib import Path
 
@@ -10,9 +11,14 @@ from linkwork.foundation.errors import InputError, MechanismFileError
 from linkwork.textfile.toml_text import bytes_of, text_of
 from linkwork.textfile.writer import save_text
 
-__all__ = ["FileConflictError", "MechanismFile", "OnDisk"]
+__all__ = ["FileConflictError", "MechanismFile", "OnDisk", "blank_sheet"]
 
 _MOST_COPIES = 100  # names tried for a copy next to the file
+
+
+def blank_sheet(name: str) -> str:
+    """The text of a mechanism without points."""
+    return f'format = 1\nname = {json.dumps(name, ensure_ascii=False)}\nlength = "mm"\n'
 
 
 class FileConflictError(InputError):
@@ -35,7 +41,8 @@ class MechanismFile:
     path : str or Path
         A symbolic link is resolved once, here.
     begun : str, optional
-        The text to begin with where there is no such file: it is created when it is saved.
+        The text to begin with where there is no such file, or an empty one; it is written when it
+        is saved.
 
     Raises
     ------
@@ -55,13 +62,14 @@ class MechanismFile:
         """The text on disk; does not change the edited version."""
         if self._begun is not None and self._stamp_now() is None:
             return self._begun
-        return text_of(bytes_of(self._path, self.name), self.name)
+        text = text_of(bytes_of(self._path, self.name), self.name)
+        return text if self._begun is None or text.strip() else self._begun
 
     def accept(self, text: str) -> None:
         """Set the edited version to a text of this file."""
         self.text = text
-        unwritten = self._begun is not None and self._stamp_now() is None
-        self._known = self._reported = b"" if unwritten else _digest(text.encode())
+        begun = self._begun is not None and text == self._begun
+        self._known = self._reported = self._digest_now() if begun else _digest(text.encode())
 
     def news(self) -> OnDisk | None:
         """The change by another program since the last call; ``None`` without a change.

@@ -75,7 +75,9 @@ def encoded(event: Event, answers: int | None = None) -> str:
 
 def _own_fields(message: Any) -> dict[str, Any]:
     """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
-    return {name: getattr(message, name) for name in message.__dataclass_fields__}
+    own = {name: getattr(message, name) for name in message.__dataclass_fields__}
+    # a remedy has the requests that the page sends back
+    return {"kind": kind_of(type(message)), **own} if type(message) in REQUESTS else own
 
 
 def _refuse(message: str) -> NoReturn:

@@ -13,7 +13,7 @@ from typing import NoReturn
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
 from linkwork.mechanism.part.index import PARTS
-from linkwork.viewer.live.events import PaletteField, PalettePart
+from linkwork.viewer.live.file_state import PaletteField, PalettePart
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 

@@ -31,8 +31,10 @@ __all__ = [
     "RemovePoint",
     "Request",
     "Save",
+    "SetGround",
     "SetInput",
     "SetNumber",
+    "SetSheet",
     "SetText",
     "SolveAt",
     "Together",
@@ -120,6 +122,14 @@ class RemoveLink:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SetGround:
+    """Fix points to the ground, or release them."""
+
+    points: tuple[str, ...]
+    on: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
 class AddJoint:
     """Add a point to a link: a pin joint with the other links at the point."""
 
@@ -180,6 +190,7 @@ Edit = (
     | RemovePoint
     | AddLink
     | RemoveLink
+    | SetGround
     | AddJoint
     | RemoveJoint
     | AddPart
@@ -208,6 +219,13 @@ class SetText:
     """Replace the whole text of the file."""
 
     text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetSheet:
+    """Tell the width of the visible part of the plane [length], by which symbols are sized."""
+
+    width: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -276,6 +294,7 @@ Request = (
     | Together
     | AssembleAt
     | SetText
+    | SetSheet
     | SolveAt
     | ListConfigurations
     | NewtonSteps

@@ -10,7 +10,7 @@ from linkwork.equations.writing import EquationSheet
 from linkwork.foundation.errors import MechanismError, key_text
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
-from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from linkwork.results.configurations import Configurations
@@ -20,7 +20,10 @@ from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.history import History
+from linkwork.viewer.live.readiness import lacks_of
+from linkwork.viewer.live.subject import Subject
 from linkwork.viewer.page_data import PageData
+from linkwork.viewer.still_page import still_page
 
 __all__ = [
     "cannot_close",
@@ -74,6 +77,7 @@ def position_found(position: Position) -> tell.PositionFound:
         iterations=position.iterations,
         condition=_number(position.condition),
         certified=position.certificate.certified,
+        page=_still(position),
     )
 
 
@@ -94,7 +98,17 @@ def cannot_close(
         open_ends=_open_ends(nearest.apart),
         remedies=dict(remedies),
         elsewhere=dict(elsewhere),
+        page=_still(nearest),
     )
+
+
+def _still(found: Position | NearestAssembly) -> PageData | None:
+    """The drawing of a position; ``None`` without points."""
+    points = _points(found.points)
+    # a position that was not found has no coordinates
+    if not points or points.keys() != found.points.keys():
+        return None
+    return still_page(found.skeleton, points, units=found.units, title=found.mechanism)
 
 
 def _open_ends(ends: Iterable[LinkEnd]) -> tuple[tell.OpenEnd, ...]:
@@ -180,7 +194,7 @@ def _changeable_numbers(
             table=quantity.table,
             formula=written if isinstance(written, str) else "",
         )
-    if isinstance(description, Linkage):
+    if isinstance(description, Draft):
         for measured in description.shapes.measured:
             yield tell.ChangeableNumber(
                 name=" ".join(measured.points),
@@ -238,9 +252,10 @@ def _driven_inputs(sheet: EquationSheet, description: Description) -> tuple[tell
 
 def _sketched_points(description: Description) -> dict[str, tuple[float, float]]:
     """The movable points of a sketch; none if they are given by equations."""
-    if not isinstance(description, Linkage):
+    if not isinstance(description, Draft):
         return {}
-    places = {point: description.sketched(point) for point in description.points}
+    found = description.drawable() if description.problems else description
+    places = {point: found.sketched(point) for point in found.points}
     return {point: (float(z.real), float(z.imag)) for point, z in places.items()}
 
 
@@ -252,16 +267,18 @@ def _links_of(description: Description) -> tuple[tell.Link, ...]:
 
 def _parts_of(description: Description) -> tuple[str, ...]:
     """The names of the parts of a linkage other than points and links."""
-    if not isinstance(description, Linkage):
+    if not isinstance(description, Draft):
         return ()
     return tuple(part.label for part in description.parts)
 
 
-def _drives_of(sheet: EquationSheet, description: Description) -> tuple[tell.Drive, ...]:
+def _drives_of(sheet: EquationSheet | None, description: Description) -> tuple[tell.Drive, ...]:
     """Possible inputs: links, displacements and lengths of a linkage, otherwise any variable."""
-    if isinstance(description, Linkage):
+    if isinstance(description, Draft):
         named = [("link", name) for name in description.links if name != GROUND]
         named += [(part.drive, part.label) for part in description.parts if part.drive]
+    elif sheet is None:
+        named = []
     else:
         named = [("variable", variable.name) for variable in sheet.equations.variables]
     return tuple(tell.Drive(kind=kind, name=name) for kind, name in named)
@@ -276,7 +293,7 @@ def _loop_texts(sheet: EquationSheet) -> tuple[str, ...]:
 
 def _form_of(description: Description) -> str:
     """The form of the file."""
-    if isinstance(description, Linkage):
+    if isinstance(description, Draft):
         return "points-and-links"
     return "loops" if isinstance(description, Loops) else "plain-equations"
 
@@ -299,16 +316,12 @@ def _points(table: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, 
 
 
 def file_state(
-    file: str,
-    text: str,
-    description: Description,
-    sheet: EquationSheet,
-    history: History,
-    *,
-    unsaved: bool,
+    file: str, subject: Subject, history: History, *, text: str, unsaved: bool
 ) -> tell.FileState:
     """A file as the page edits it: its text, and the parts, numbers and equations read from it."""
-    kinds = {v.name: v.kind for v in sheet.equations.variables}
+    description = subject.description
+    sheet = None if subject.solvable is None else subject.solvable.equations()
+    kinds = {} if sheet is None else {v.name: v.kind for v in sheet.equations.variables}
     return tell.FileState(
         file=file,
         title=description.name,
@@ -320,14 +333,16 @@ def file_state(
         length_unit=description.length,
         angle_unit=description.angle.value,
         configuration=description.configuration,
-        numbers=tuple(_changeable_numbers(description, kinds)),
-        unknowns=_unknowns_of(sheet, description),
-        inputs=_driven_inputs(sheet, description),
+        numbers=tuple(_changeable_numbers(description, kinds)) if subject.readable else (),
+        unknowns=() if sheet is None else _unknowns_of(sheet, description),
+        inputs=() if sheet is None else _driven_inputs(sheet, description),
         points=_sketched_points(description),
         links=_links_of(description),
         parts=_parts_of(description),
         drives=_drives_of(sheet, description),
         traceable=tuple(getattr(description, "points", ())),
         traced=description.trace,
-        equations=_loop_texts(sheet),
+        equations=() if sheet is None else _loop_texts(sheet),
+        lacks=lacks_of(subject),
+        readable=subject.readable,
     )

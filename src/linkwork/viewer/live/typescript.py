@@ -84,6 +84,8 @@ def _parts_of_events() -> Iterator[type]:
         if kind is PageData:  # defined in its own module
             return
         if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+            if kind in REQUESTS:
+                return
             if kind not in EVENTS:
                 found[kind] = None
             for inner in typing.get_type_hints(kind).values():

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import singledispatchmethod
 from pathlib import Path
-from types import MappingProxyType
 
-from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.errors import InputError, MechanismError, Problem
 from linkwork.foundation.status import Status
-from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
@@ -23,15 +20,17 @@ from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.palette import PALETTE
+from linkwork.viewer.live.queries import Query, answered, nearest_closure
 from linkwork.viewer.live.solvable import Read, Solvable
+from linkwork.viewer.live.subject import read_subject
 
 __all__ = ["GivenUpError", "Workbench"]
 
 _MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
-_MOST_ITERATIONS = 200
 
 Events = list[tell.Event]
+Refusing = Callable[[Problem], bool]
 
 
 class GivenUpError(Exception):
@@ -49,6 +48,8 @@ class _Drag:
     latest: str | None = None
 
 
+#: Edits that change numbers or choices, not what there is.
+_OF_NUMBERS = (ask.SetNumber, ask.MovePoint, ask.SetInput, ask.ChooseConfiguration, ask.TracePoint)
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
 
@@ -63,11 +64,6 @@ class Workbench:
         Builds a solvable mechanism from a text; ``linkwork.loads``.
     hurried : callable, optional
         Whether a newer change is waiting, which cancels a cycle.
-
-    Raises
-    ------
-    MechanismFileError
-        If the file is not a valid mechanism.
     """
 
     def __init__(
@@ -75,7 +71,8 @@ class Workbench:
     ) -> None:
         self._file, self._read = file, read
         self.hurried = hurried
-        self._mechanism: Solvable = read(file.text, file.name)
+        self._subject = read_subject(file.text, file.name, read, whatever=True)
+        self._sheet = 0.0  # width of the visible part of the plane, for the symbols of drafts
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
@@ -150,6 +147,8 @@ class Workbench:
     def _handle(self, request: ask.Request) -> Events:
         if isinstance(request, ask.EDITS):
             return self._edited(request)  # type: ignore[arg-type]
+        if isinstance(request, Query):
+            return answered(request, self._subject.mechanism)
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
@@ -162,7 +161,7 @@ class Workbench:
         try:
             followed = applied(edit, drag.text, drag.before)
             text = drag.text.text
-            told = self._accepted(text, edit_title(edit), live=live)
+            told = self._accepted(text, edit_title(edit), live=live, refused=_refusing(edit))
         except InputError:
             drag.text = TextEdits(self.text)  # without traces of the failed change
             raise
@@ -187,7 +186,7 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.AssembleAt) -> Events:
-        return self._handle(ask.Together(edits=sketch_at(self._mechanism, request.at)))
+        return self._handle(ask.Together(edits=sketch_at(self._subject.mechanism, request.at)))
 
     @_handle.register
     def _(self, request: ask.SetText) -> Events:
@@ -216,36 +215,13 @@ class Workbench:
         return self._reloaded()
 
     @_handle.register
-    def _(self, request: ask.SolveAt) -> Events:
-        at = request.at or None
-        position = self._mechanism.solve(at, configuration=request.configuration)
-        events: Events = [telling.position_found(position)]
-        if not position.status.ok:
-            failure = position.failure
-            remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
-            events += self._open(at, position.message, remedies)
-        return events
-
-    @_handle.register
-    def _(self, request: ask.ListConfigurations) -> Events:
-        return [telling.configurations_found(self._mechanism.configurations(request.at or None))]
-
-    @_handle.register
-    def _(self, request: ask.NewtonSteps) -> Events:
-        if not 1 <= request.max_steps <= _MOST_ITERATIONS:
-            raise InputError(f"max_steps must be from 1 to {_MOST_ITERATIONS}")
-        options = NewtonOptions(max_steps=request.max_steps)
-        if request.full_steps:
-            options = replace(options, largest_turn=math.inf)
-        mechanism, guess, at = self._mechanism, request.guess, request.at or None
-        if request.pull:
-            guess = mechanism.pulled_guess(request.pull, (request.x, request.y), guess, at)
-        shown = mechanism.iterates(guess, at, options=options)
-        return [telling.newton_shown(shown, guess, mechanism.guessed_points())]
+    def _(self, request: ask.SetSheet) -> Events:
+        self._sheet = request.width
+        return [] if self._subject.solvable is not None else self._solved()
 
     @_handle.register
     def _(self, request: ask.MakeLink) -> Events:
-        return [link_made(self.text, self._mechanism.description.name, request.app)]
+        return [link_made(self.text, self._subject.description.name, request.app)]
 
     # The text and its results
 
@@ -257,13 +233,25 @@ class Workbench:
 
     def _before(self) -> Before:
         """The current mechanism, with its points at the assembled start."""
-        position = self._mechanism.solve()
-        places = {} if not position.status.ok else dict(position.points)
-        return Before(description=self._mechanism.description, places=places)
+        subject, places = self._subject, {}
+        if subject.solvable is not None:
+            position = subject.solvable.solve()
+            places = dict(position.points) if position.status.ok else {}
+        return Before(description=subject.description, places=places)
 
-    def _accepted(self, text: str, what: str, *, live: bool = False) -> Events:
-        """Read a text and adopt it if it is a valid mechanism; otherwise change nothing."""
-        self._mechanism, self._solution = self._read(text, self._file.name), []
+    def _accepted(
+        self, text: str, what: str, *, live: bool = False, refused: Refusing = lambda problem: False
+    ) -> Events:
+        """Read a text and adopt it if it is a mechanism or a draft; otherwise change nothing.
+
+        ``refused``: whether a mechanism may not become a draft with this problem.
+        """
+        subject = read_subject(text, self._file.name, self._read)
+        wrong = [problem for problem in subject.problems if refused(problem)]
+        before = self._subject
+        if wrong and (before.solvable is not None or not set(wrong) <= set(before.problems)):
+            raise MechanismError(wrong, self._file.name)
+        self._subject, self._solution = subject, []
         if live:
             return self._solved(live=True)
         self._drag = None
@@ -279,12 +267,13 @@ class Workbench:
 
     def _went(self) -> Events:
         text = self._history.text
-        self._mechanism, self._solution = self._read(text, self._file.name), []
+        self._subject = read_subject(text, self._file.name, self._read, whatever=True)
+        self._solution = []
         return [self._state(), *self._solved()]
 
-    def _reloaded(self) -> Events:
+    def _reloaded(self, refused: Refusing = lambda problem: False) -> Events:
         text = self._file.read()
-        events = self._accepted(text, "reload")
+        events = self._accepted(text, "reload", refused=refused)
         self._file.accept(text)
         self._conflict = None
         return [self._state(), *events[1:]]
@@ -293,7 +282,7 @@ class Workbench:
         """Load the changed file on disk, without loss of changes."""
         self._end_drag()
         try:
-            events = self._reloaded()
+            events = self._reloaded(refused=lambda problem: True)
         except MechanismError as error:
             return [telling.problems_found(error)]
         return [self._changed(f'"{self._file.name}" has been read again', reloaded=True), *events]
@@ -309,29 +298,32 @@ class Workbench:
         """Solve the cycle; if it cannot be closed, the gap; without input, one position."""
         if self._solution:
             return self._solution
-        if not self._mechanism.description.inputs:
-            return self._handle(ask.SolveAt(at={}))
+        mechanism = self._subject.solvable
+        if mechanism is None:
+            self._motion, self._owed = None, False
+            return [tell.DraftShown(page=self._subject.page(self._sheet / 2))]
+        if not mechanism.description.inputs:
+            return answered(ask.SolveAt(at={}), mechanism)
         try:
-            motion, message = self._swept(live)
+            motion, message = self._swept(mechanism, live)
         except GivenUpError:
             self._owed = True
             return []
         self._motion, self._owed = motion, False
-        equations = () if live else self._mechanism.equations().mathml()
-        page = self._picture.page(motion, equations, self._mechanism.moving_loops, brief=live)
+        equations = () if live else mechanism.equations().mathml()
+        page = self._picture.page(motion, equations, mechanism.moving_loops, brief=live)
         events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
-            events += self._handle(ask.SolveAt(at={}))
+            events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
             failure = motion.failure
             remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
-            elsewhere = {} if live else closing_input(self._mechanism)
-            events += self._open(None, motion.message, remedies, elsewhere)
+            elsewhere = {} if live else closing_input(mechanism)
+            events.append(nearest_closure(mechanism, None, motion.message, remedies, elsewhere))
         self._solution = [] if live else events
         return events
 
-    def _swept(self, live: bool) -> tuple[Motion, str]:
-        mechanism = self._mechanism
+    def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
         if live:
             return mechanism.approximate_sweep(self._motion), ""
         description = mechanism.description
@@ -347,25 +339,27 @@ class Workbench:
         if self.hurried():
             raise GivenUpError
 
-    def _open(
-        self,
-        at: Mapping[str, float] | None,
-        message: str,
-        remedies: Mapping[str, float],
-        elsewhere: Mapping[str, float] = MappingProxyType({}),
-    ) -> Events:
-        nearest = self._mechanism.nearest_assembly(at)
-        return [telling.cannot_close(nearest, message, remedies, elsewhere)]
-
     def _state(self) -> tell.FileState:
         return telling.file_state(
             self._file.name,
-            self.text,
-            self._mechanism.description,
-            self._mechanism.equations(),
+            self._subject,
             self._history,
+            text=self.text,
             unsaved=self.unsaved,
         )
+
+
+def _refusing(edit: ask.Edit) -> Refusing:
+    """The problems with which an edit is refused.
+
+    An edit that only changes numbers or choices may not cause any, and a new part may not be wrong
+    itself; other edits may leave a draft.
+    """
+    if isinstance(edit, _OF_NUMBERS):
+        return lambda problem: True
+    if isinstance(edit, ask.AddPart):
+        return lambda problem: problem.key[:1] == (edit.table,)
+    return lambda problem: False
 
 
 def _same_thing(edit: ask.Request) -> str:
@@ -381,7 +375,7 @@ def _same_thing(edit: ask.Request) -> str:
 
 def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
     """Whether a request belongs to an intermediate change or does not affect it."""
-    if drag is None or isinstance(request, ask.SolveAt | ask.ListConfigurations | ask.NewtonSteps):
+    if drag is None or isinstance(request, Query):
         return True
     return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
 

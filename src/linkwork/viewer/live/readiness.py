@@ -1,0 +1,140 @@
+"""What a draft lacks to be a mechanism, each with the thing concerned and its remedies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwork.foundation.errors import Problem, key_text
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.draft import Draft
+from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.file_state import Lack, Remedy
+from linkwork.viewer.live.subject import Subject
+
+__all__ = ["lacks_of"]
+
+_MOST = 12  # lacks that are listed
+_MOST_DRIVES = 4  # links offered as inputs
+
+
+def lacks_of(subject: Subject) -> tuple[Lack, ...]:
+    """What keeps a text from being a mechanism, in the order in which it is best mended."""
+    if subject.solvable is not None:
+        return ()
+    draft = subject.drawable
+    if not subject.readable:
+        return tuple(_of_problem(problem, draft) for problem in subject.problems[:_MOST])
+    if not any(map(len, draft.links.values())):
+        text = "Draw the first link: drag from one of its ends to the other."
+        return (Lack(message=text, key="", line=None, kind="", name="", remedies=()),)
+    found = [*_without_ground(draft)]
+    for problem in subject.problems:
+        if found and problem.key[:1] == ("links",) and len(problem.key) == 1:
+            continue  # ground is missing
+        if problem.key == ("links", GROUND):
+            continue
+        found.append(_of_problem(problem, draft))
+    return tuple(found[:_MOST])
+
+
+def _without_ground(draft: Draft) -> Iterator[Lack]:
+    if draft.links[GROUND]:
+        return
+    ends = _free_ends(draft)
+    remedies = []
+    if ends:
+        label = f"Fix {_listed(ends)}"
+        remedies.append(Remedy(label=label, edits=(ask.SetGround(points=ends),)))
+    yield Lack(
+        message="Nothing is fixed to the ground.",
+        key="",
+        line=None,
+        kind="",
+        name="",
+        remedies=tuple(remedies),
+    )
+
+
+def _free_ends(draft: Draft) -> tuple[str, ...]:
+    """Points of one link only, at which the link can still be joined to ground."""
+    carriers = draft.carriers()
+    held = {point for part in draft.parts for point in _guided(part)}
+    ends = []
+    for link, points in draft.links.items():
+        own = [point for point in points if len(carriers[point]) < 2 and point not in held]
+        # a link held at two points elsewhere needs no third
+        if link != GROUND and len(points) - len(own) < 2:
+            ends += own if len(points) <= 2 else own[:1]
+    return tuple(dict.fromkeys(ends))
+
+
+def _guided(part: object) -> Iterator[str]:
+    guided = getattr(part, "guided", None)
+    if guided is not None:
+        yield guided[1]
+    yield from getattr(part, "points", None) or ()
+
+
+def _of_problem(problem: Problem, draft: Draft) -> Lack:
+    kind, name = _thing(problem, draft)
+    key = key_text(problem.key) if kind == "" or problem.key[0] not in ("points", "links") else name
+    return Lack(
+        message=problem.message,
+        key=key,
+        line=problem.line,
+        kind=kind,
+        name=name,
+        remedies=tuple(_remedies(problem, draft, kind, name)),
+    )
+
+
+def _thing(problem: Problem, draft: Draft) -> tuple[str, str]:
+    """The kind and name of the thing with a problem: point, link or part."""
+    match problem.key:
+        case ("points", str(name), *_):
+            return "point", name
+        case ("links", str(name), *_):
+            return "link", name
+        case (str(table), int(row), *_) if table != "input":
+            parts = getattr(draft, table, ())
+            return ("part", parts[row].label) if row < len(parts) else ("", "")
+    return "", ""
+
+
+def _remedies(problem: Problem, draft: Draft, kind: str, name: str) -> Iterator[Remedy]:
+    carriers = draft.carriers()
+    if kind == "point" and name in draft.points and not carriers[name]:
+        yield Remedy(label=f"Remove {name}", edits=(ask.RemovePoint(name=name),))
+    if kind == "link" and name in draft.links and len(draft.links[name]) < 2:
+        yield Remedy(label=f"Remove {name}", edits=(ask.RemoveLink(name=name),))
+    if problem.key[:1] == ("input",) and len(problem.key) <= 2:
+        for drive, one in _drives(draft):
+            edit = ask.SetInput(number=len(draft.inputs), drive=drive, name=one)
+            yield Remedy(label=f"Drive {one}", edits=(edit,))
+
+
+def _drives(draft: Draft) -> list[tuple[str, str]]:
+    """Links and sliders that can be driven: those on ground that are driven by nothing yet."""
+    driven = {which.drives for which in draft.inputs}
+    ground = set(draft.links[GROUND])
+    carriers = draft.carriers()
+    cranks = [
+        ("link", link)
+        for link, points in draft.links.items()
+        if link != GROUND and len(ground & set(points)) == 1 and len(points) > 1
+    ]
+    sliding = [(p.drive, p.label) for p in draft.parts if p.drive and p.label]
+    # a crank is short, and moves other links
+    alone = {link for _, link in cranks if all(len(carriers[p]) < 2 for p in draft.links[link])}
+    cranks.sort(key=lambda pair: (pair[1] in alone, _span(draft, pair[1])))
+    return [pair for pair in (*cranks, *sliding) if pair not in driven][:_MOST_DRIVES]
+
+
+def _span(draft: Draft, link: str) -> float:
+    """The distance of a link's first two points: cranks are short."""
+    first, second = draft.links[link][:2]
+    return abs(draft.sketched(second) - draft.sketched(first))
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,102 @@
+"""The text under edit: a mechanism, or a draft with what it lacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from linkwork.foundation.errors import InputError, MechanismError, Problem
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.skeleton import Skeleton
+from linkwork.results.quantity import Units
+from linkwork.textfile.reader import read_draft
+from linkwork.viewer.live.solvable import Read, Solvable
+from linkwork.viewer.page_data import PageData
+from linkwork.viewer.still_page import still_page
+
+__all__ = ["Subject", "read_subject"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Subject:
+    """A text with its mechanism, or, without one, its draft and the problems.
+
+    ``readable``: whether edits other than of the whole text are possible.
+    """
+
+    text: str
+    solvable: Solvable | None = None
+    draft: Draft | None = None
+    problems: tuple[Problem, ...] = ()
+    readable: bool = True
+
+    @property
+    def mechanism(self) -> Solvable:
+        """The mechanism.
+
+        Raises
+        ------
+        InputError
+            If the text is a draft.
+        """
+        if self.solvable is None:
+            problem = self.problems[0].message if self.problems else "the draft is empty"
+            raise InputError(f"this draft is not a mechanism yet: {problem}")
+        return self.solvable
+
+    @property
+    def description(self) -> Description:
+        """What the text describes."""
+        if self.solvable is not None:
+            return self.solvable.description
+        assert self.draft is not None
+        return self.draft
+
+    @cached_property
+    def drawable(self) -> Draft:
+        """What can be drawn of the draft."""
+        assert self.draft is not None
+        return self.draft.drawable()
+
+    def page(self, size: float) -> PageData:
+        """The draft as drawn; ``size``: the least length by which symbols are sized."""
+        draft = self.drawable
+        places = {name: draft.sketched(name) for name in draft.points}
+        return still_page(
+            Skeleton.of_linkage(draft, {}),
+            {name: (place.real, place.imag) for name, place in places.items()},
+            units=Units(angle=draft.angle, length=draft.length),
+            title=draft.name,
+            size=size,
+        )
+
+
+def read_subject(text: str, name: str, read: Read, *, whatever: bool = False) -> Subject:
+    """Read a text.
+
+    Parameters
+    ----------
+    text, name : str
+        The text, and its name for messages.
+    read : callable
+        Builds a solvable mechanism from a text.
+    whatever : bool
+        Accept a text that is not even a draft, so that it can be corrected.
+
+    Raises
+    ------
+    MechanismError
+        If the text is neither a mechanism nor a draft.
+    """
+    try:
+        return Subject(text=text, solvable=read(text, name))
+    except MechanismError as error:
+        problem = error
+    try:
+        file = read_draft(text, name)
+    except MechanismError as error:
+        if not whatever:
+            raise problem from None
+        return Subject(text=text, draft=Draft(), problems=error.problems, readable=False)
+    return Subject(text=text, draft=file.draft, problems=file.problems or problem.problems)
