@@ -20,7 +20,7 @@ export class Bar {
     this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
     this.button("Reload", "Read the file again", () => desk.ask({ kind: "reload" }));
     this.link = new LinkDialog(desk);
-    this.button("Link", "Link to this mechanism", () => this.link.open(this.element.closest(".lw")!));
+    this.button("Share", "Share by link", () => this.link.open(this.element.closest(".lw")!));
     this.save = this.button("Save", "Save (Ctrl+S)", () => desk.ask({ kind: "save" }));
     this.save.classList.add("lw-save");
     document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });

@@ -38,7 +38,7 @@ function keep(address: string): void {
 }
 
 export class LinkDialog {
-  private readonly element = html("dialog", { class: "lw-link", "aria-labelledby": "lw-link-title" });
+  private readonly element = html("dialog", { class: "lw-share", "aria-labelledby": "lw-share-title" });
   private readonly address = html("label", {}, undefined, "Address of a Linkwork app");
   private readonly app: HTMLInputElement;
   private readonly link: HTMLTextAreaElement;
@@ -47,7 +47,7 @@ export class LinkDialog {
   private readonly note = html("p", { class: "lw-lead", role: "status" });
 
   constructor(private readonly desk: Desk) {
-    html("h2", { id: "lw-link-title" }, this.element, "Link to this mechanism");
+    html("h2", { id: "lw-share-title" }, this.element, "Share this mechanism");
     html("p", { class: "lw-lead" }, this.element, "The link contains the whole file, after the #: browsers do not send that part to a server.");
     this.element.append(this.address);
     this.app = html("input", { type: "text", inputmode: "url", autocomplete: "url", spellcheck: "false", placeholder: "https://…" }, this.address);

@@ -27,7 +27,6 @@ __all__ = [
     "CannotClose",
     "ChangeableNumber",
     "ConfigurationsFound",
-    "DraftShown",
     "Drive",
     "DrivenInput",
     "Event",
@@ -51,6 +50,7 @@ __all__ = [
     "Refused",
     "Remedy",
     "Saved",
+    "SketchShown",
     "Unknown",
     "Way",
 ]
@@ -64,8 +64,8 @@ class PaletteShown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DraftShown:
-    """The drawing of a draft."""
+class SketchShown:
+    """The drawing of the points as sketched, or assembled at the start."""
 
     page: PageData
 
@@ -266,7 +266,7 @@ class Saved:
 Event = (
     PaletteShown
     | FileState
-    | DraftShown
+    | SketchShown
     | MotionFound
     | PositionFound
     | CannotClose

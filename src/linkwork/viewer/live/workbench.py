@@ -13,12 +13,13 @@ from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
-from linkwork.viewer.live.edits import Before, Followed, applied, edit_title
+from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.link_making import link_made
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.queries import Query, answered, nearest_closure
 from linkwork.viewer.live.solvable import Read, Solvable
@@ -49,7 +50,10 @@ class _Drag:
 
 
 #: Edits that change numbers or choices, not what there is.
-_OF_NUMBERS = (ask.SetNumber, ask.MovePoint, ask.SetInput, ask.ChooseConfiguration, ask.TracePoint)
+_OF_NUMBERS = (
+    ask.SetNumber, ask.MovePoint, ask.MovePoints, ask.SetInput, ask.ChooseConfiguration,
+    ask.TracePoint,
+)  # fmt: skip
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
 
@@ -72,7 +76,7 @@ class Workbench:
         self._file, self._read = file, read
         self.hurried = hurried
         self._subject = read_subject(file.text, file.name, read, whatever=True)
-        self._sheet = 0.0  # width of the visible part of the plane, for the symbols of drafts
+        self._sheet = ask.SetSheet(width=0.0)
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
@@ -216,8 +220,8 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.SetSheet) -> Events:
-        self._sheet = request.width
-        return [] if self._subject.solvable is not None else self._solved()
+        self._sheet = request
+        return self._sketch()
 
     @_handle.register
     def _(self, request: ask.MakeLink) -> Events:
@@ -301,7 +305,7 @@ class Workbench:
         mechanism = self._subject.solvable
         if mechanism is None:
             self._motion, self._owed = None, False
-            return [tell.DraftShown(page=self._subject.page(self._sheet / 2))]
+            return self._sketch()
         if not mechanism.description.inputs:
             return answered(ask.SolveAt(at={}), mechanism)
         try:
@@ -312,7 +316,10 @@ class Workbench:
         self._motion, self._owed = motion, False
         equations = () if live else mechanism.equations().mathml()
         page = self._picture.page(motion, equations, mechanism.moving_loops, brief=live)
-        events: Events = [telling.motion_found(motion, live=live, message=message, page=page)]
+        events: Events = [
+            *self._sketch(),
+            telling.motion_found(motion, live=live, message=message, page=page),
+        ]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -322,6 +329,13 @@ class Workbench:
             events.append(nearest_closure(mechanism, None, motion.message, remedies, elsewhere))
         self._solution = [] if live else events
         return events
+
+    def _sketch(self) -> Events:
+        """The points as sketched, if they are edited in the drawing or there is no motion."""
+        if self._subject.solvable is not None and not self._sheet.edited:
+            return []
+        page = self._subject.page(self._sheet.width / 2)
+        return [] if page is None else [tell.SketchShown(page=page)]
 
     def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
         if live:
@@ -369,6 +383,8 @@ def _same_thing(edit: ask.Request) -> str:
             return f"number {edit.name}"
         case ask.MovePoint():
             return f"point {edit.point} {edit.lengths_follow}"
+        case ask.MovePoints():
+            return f"points {' '.join(edit.places)}"
         case _:
             return kind_of(type(edit))
 
