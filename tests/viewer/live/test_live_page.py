@@ -60,7 +60,7 @@ def shown_row(page: Any) -> int:
 
 def table(page: Any, name: str) -> float:
     """The value of a quantity in the table of the row that is shown."""
-    row = page.locator(".lw-side > .lw-table tr", has=page.locator("th", has_text=name)).first
+    row = page.locator(".lw-facts > .lw-table tr", has=page.locator("th", has_text=name)).first
     text = row.locator("td").first.text_content().replace("\u2212", "-")
     found = re.match(r"[-\d.]+", text)
     assert found is not None, text
