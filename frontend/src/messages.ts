@@ -179,12 +179,6 @@ export interface NewtonSteps {
   y?: number;
 }
 
-export interface MakeLink {
-  kind: "make_link";
-  id?: number;
-  app?: string;
-}
-
 export interface ListCircuits {
   kind: "list_circuits";
   id?: number;
@@ -201,6 +195,12 @@ export interface Export {
   format: string;
   row?: number | null;
   dark?: boolean;
+}
+
+export interface MakeLink {
+  kind: "make_link";
+  id?: number;
+  app?: string;
 }
 
 export interface Undo {
@@ -577,10 +577,10 @@ export type LiveRequest =
   | ShowQuantities
   | ListConfigurations
   | NewtonSteps
-  | MakeLink
   | ListCircuits
   | ListQuantities
   | Export
+  | MakeLink
   | Undo
   | Redo
   | Save

@@ -352,7 +352,7 @@ class MakeLink:
 
 
 #: A question about the mechanism and its motion, which changes nothing.
-Question = ListCircuits | ListQuantities | Export
+Question = ListCircuits | ListQuantities | Export | MakeLink
 
 Request = (
     Edit
@@ -364,7 +364,6 @@ Request = (
     | ShowQuantities
     | ListConfigurations
     | NewtonSteps
-    | MakeLink
     | Question
     | Undo
     | Redo
