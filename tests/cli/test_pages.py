@@ -261,6 +261,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "animate",
         "view",
         "web",
+        "link",
         "study",
         "compile",
         "examples",

@@ -193,6 +193,9 @@ export class LivePage {
       case "file_changed":
         this.notices.changed(event, this.decisions());
         break;
+      case "link_made":
+        this.bar.link.show(event);
+        break;
       case "saved":
         this.notices.done(`Saved in ${event.file}.`);
         break;
@@ -209,6 +212,10 @@ export class LivePage {
   }
 
   private refused(message: string): void {
+    if (this.bar.link.opened) {
+      this.bar.link.refuse(message);
+      return;
+    }
     const conflict = /overwrite/.test(message);
     this.notices.say(message, conflict ? this.decisions() : {});
     if (this.file) this.dimensions.show(this.file);

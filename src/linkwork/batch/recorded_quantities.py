@@ -55,7 +55,8 @@ class _RowRecording(Recording):
     def operand(self, number: object) -> RecordedNumber:
         """The second operand, which may be an array of no axes."""
         plain = number.item() if isinstance(number, np.ndarray) and not number.ndim else number
-        return super().operand(plain)
+        found: RecordedNumber = super().operand(plain)
+        return found
 
     def decide(self, truths: Any) -> bool:
         """Refused: rows differ."""
