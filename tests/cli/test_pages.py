@@ -259,6 +259,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "draw",
         "plot",
         "animate",
+        "new",
         "view",
         "web",
         "link",

@@ -26,6 +26,7 @@ _COMMANDS = (
     "draw",
     "plot",
     "animate",
+    "new",
     "view",
     "web",
     "link",
