@@ -4,6 +4,7 @@ arrays, recorded.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -56,6 +57,15 @@ class _RowRecording(Recording):
         """The second operand, which may be an array of no axes."""
         plain = number.item() if isinstance(number, np.ndarray) and not number.ndim else number
         return super().operand(plain)
+
+    def divide(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x / y; of 0 too it is no number where y is none."""
+        found, rec = super().divide(x, y), self.recorder
+        if y.im != 0.0 or not isinstance(y.re, Value):
+            return found
+        zero = rec.where(rec.at_most(y.re, y.re), 0.0, math.nan)
+        parts = ((x.re, found.re), (x.im, found.im))
+        return self.make(None, *(quotient if own else zero for own, quotient in parts))
 
     def decide(self, truths: Any) -> bool:
         """Refused: rows differ."""

@@ -43,6 +43,7 @@ from linkwork.viewer.page_shapes import places_of
 
 __all__ = ["solving_page"]
 
+_SYMBOLS = (Role.GROUND, Role.HATCH, Role.LABEL, Role.INPUT)
 _FINEST = 1e-8  # relative step to the end of a branch
 _RULES = StepRules(
     nodes=NODES,
@@ -308,6 +309,8 @@ def _is_moved(
     on_track = any(k >= len(motion.points) for k in anchors)
     if part.frame is None or (on_track and part.shape.role is Role.HATCH):
         return False  # as many strokes as its length has
+    if part.shape.role in _SYMBOLS and len(set(anchors)) <= 1:
+        return True  # it stays as it is at its point, whichever way the other drawing turns it
     before, after = _local(scene, part), _local(other, now)
     if len(before) != len(after) or getattr(part.shape, "radius", 0.0) != getattr(
         now.shape, "radius", 0.0
