@@ -155,6 +155,12 @@ export interface SolveAt {
   configuration?: string | null;
 }
 
+export interface ShowQuantities {
+  kind: "show_quantities";
+  id?: number;
+  names: readonly (string)[];
+}
+
 export interface ListConfigurations {
   kind: "list_configurations";
   id?: number;
@@ -171,6 +177,24 @@ export interface NewtonSteps {
   pull?: string;
   x?: number;
   y?: number;
+}
+
+export interface ListCircuits {
+  kind: "list_circuits";
+  id?: number;
+}
+
+export interface ListQuantities {
+  kind: "list_quantities";
+  id?: number;
+}
+
+export interface Export {
+  kind: "export";
+  id?: number;
+  format: string;
+  row?: number | null;
+  dark?: boolean;
 }
 
 export interface Undo {
@@ -284,6 +308,38 @@ export interface ConfigurationsFound {
   input: Record<string, number>;
   ways: readonly (Way)[];
   completeness: string;
+}
+
+export interface CircuitsFound {
+  kind: "circuits_found";
+  answers: number | null;
+  input: string;
+  input_unit: string;
+  circuits: readonly (CircuitFound)[];
+  message: string;
+  page: PageData | null;
+}
+
+export interface QuantitiesListed {
+  kind: "quantities_listed";
+  answers: number | null;
+  quantities: readonly (QuantityListed)[];
+  of_motion: readonly (string)[];
+}
+
+export interface Exported {
+  kind: "exported";
+  answers: number | null;
+  name: string;
+  media_type: string;
+  content: string;
+  notices: readonly (string)[];
+}
+
+export interface Working {
+  kind: "working";
+  answers: number | null;
+  fraction: number;
 }
 
 export interface NewtonShown {
@@ -420,6 +476,31 @@ export interface Way {
   points: Record<string, readonly [number, number]>;
 }
 
+export interface CircuitFound {
+  name: string;
+  current: boolean;
+  end: string;
+  certified: boolean;
+  input_range: readonly [number, number];
+  turns: number | null;
+  limits: readonly (LimitFound)[];
+  branches: readonly (BranchFound)[];
+}
+
+export interface BranchFound {
+  name: string;
+  start: string;
+  input_range: readonly [number, number];
+  certified: boolean;
+}
+
+export interface QuantityListed {
+  name: string;
+  unit: string;
+  about: string;
+  derivatives: number;
+}
+
 export interface NewtonIterate {
   equations: readonly (string)[];
   k: number;
@@ -478,8 +559,12 @@ export type LiveRequest =
   | SetText
   | SetSheet
   | SolveAt
+  | ShowQuantities
   | ListConfigurations
   | NewtonSteps
+  | ListCircuits
+  | ListQuantities
+  | Export
   | Undo
   | Redo
   | Save
@@ -493,6 +578,10 @@ export type LiveEvent =
   | PositionFound
   | CannotClose
   | ConfigurationsFound
+  | CircuitsFound
+  | QuantitiesListed
+  | Exported
+  | Working
   | NewtonShown
   | PointMoved
   | ProblemsFound

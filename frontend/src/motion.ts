@@ -1,6 +1,6 @@
 // A motion as arrays over its rows, for the drawing, the plots and the table.
 
-import type { Column, MotionData, PackedColumn, Part, PointData } from "./page_data";
+import type { Column, MotionData, PackedColumn, PageData, Part, PointData } from "./page_data";
 import { dense, unpacked } from "./unpack";
 
 /** A frame in one row: its origin and its angle [rad]. */
@@ -18,6 +18,8 @@ export interface Series {
   readonly values: Float64Array;
   readonly first: Float64Array | null;
   readonly firstUnit: string;
+  /** Recommended values: lowest and highest, or none. */
+  readonly band: readonly number[];
 }
 
 export interface Point {
@@ -51,8 +53,16 @@ export class MotionView {
   readonly radius: Float64Array;
   readonly iterations: Float64Array;
   readonly branch: Float64Array;
+  readonly lengthUnit: string;
+  /** The unit of the input in derivatives. */
+  readonly derivativeUnit: string;
 
-  constructor(readonly data: MotionData) {
+  constructor(
+    readonly data: MotionData,
+    units: Pick<PageData, "length_unit" | "derivative_unit">,
+  ) {
+    this.lengthUnit = units.length_unit;
+    this.derivativeUnit = units.derivative_unit;
     const evidence = data.evidence;
     this.found = Array.from(dense(evidence.found), (is) => is === 1);
     const own: Own = (column) => unpacked(column, this.found);
@@ -131,7 +141,7 @@ export class MotionView {
 }
 
 /** The input of a drawing of one position. */
-const STILL: Series = { name: "", shown: "", unit: "", group: "input", values: new Float64Array(1), first: null, firstUnit: "" };
+const STILL: Series = { name: "", shown: "", unit: "", group: "input", values: new Float64Array(1), first: null, firstUnit: "", band: [] };
 
 /** A difference of angles, within half a turn. */
 function shorter(angle: number, turn: number): number {
@@ -151,13 +161,14 @@ function seriesOf(column: Column, own: Own): Series {
   return {
     name: column.name,
     shown: column.shown,
-    unit: column.unit,
+    unit: column.unit.replace("^2", "²"),
     group: column.group,
     values: own(column.values),
     get first() {
       return first();
     },
-    firstUnit: column.first_unit,
+    firstUnit: column.first_unit.replace("^2", "²"),
+    band: column.band,
   };
 }
 

@@ -1,11 +1,13 @@
 // The front end mounted by offline pages, the live page and the notebook widget.
 
 import { ArrowSets } from "./arrow_sets";
-import { Chart } from "./chart";
+import { Charts } from "./charts";
 import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
 import { Drawing } from "./drawing";
+import { Ghost } from "./ghost";
 import { MotionView } from "./motion";
+import { MotionNumbers } from "./motion_numbers";
 import { measured } from "./numbers";
 import type { MotionData, PageData } from "./page_data";
 import { Player } from "./player";
@@ -26,6 +28,8 @@ export interface Hooks {
   readonly still?: boolean;
   /** Embedded in a page: keys work only while the focus is inside. */
   readonly embedded?: boolean;
+  /** The design can be changed. */
+  readonly changing?: boolean;
 }
 
 /** The mounted front end. */
@@ -42,8 +46,11 @@ export interface Mounted {
   readonly points: Readonly<Record<string, readonly [number, number]>>;
   /** Start or stop the motion. */
   play(on: boolean): void;
+  /** The displayed row of the table. */
+  readonly row: number;
   /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
+  readonly charts: Charts;
   /** The elements that accept additions. */
   readonly places: Places;
   /** Show a row of a motion by number; if it has no position, the first found row. */
@@ -95,7 +102,12 @@ class Page implements Mounted {
   private readonly drawing: Drawing;
   private readonly arrows: ArrowSets;
   private readonly transport: Transport;
-  private readonly charts: Chart[] = [];
+  readonly charts: Charts;
+  /** The design before, in pale lines: pinned, or that at the beginning of a drag. */
+  private past: MotionView | null = null;
+  private pinned = false;
+  private readonly ghost: Ghost;
+  private readonly whole: MotionNumbers;
   private readonly table: RowTable;
   private readonly player: Player;
   private readonly live: HTMLElement;
@@ -119,13 +131,14 @@ class Page implements Mounted {
     private data: PageData,
     private readonly hooks: Hooks,
   ) {
-    this.root = html("div", { class: "lw", id: `lw-${++mounted}`, tabindex: -1 });
+    this.root = html("div", { class: hooks.embedded ? "lw" : "lw lw-full", id: `lw-${++mounted}`, tabindex: -1 });
     element.replaceChildren(this.root);
     this.adopt();
     const head = this.heading();
     const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.root);
     const canvas = html("div", { class: "lw-canvas" }, stage);
     this.drawing = new Drawing(data, canvas);
+    this.ghost = new Ghost(data, this.drawing);
     this.arrows = new ArrowSets(data, this.drawing, canvas);
     this.player = new Player(1, true);
     this.transport = new Transport(stage, {
@@ -135,13 +148,13 @@ class Page implements Mounted {
     });
     const toggles = this.toggles(stage);
     const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.root);
-    const charts = html("div", { class: "lw-charts" }, side);
-    for (const name of this.plotted()) {
-      this.charts.push(new Chart(charts, name, (index) => this.hold(index)));
-    }
-    this.table = new RowTable(side, 1e-10 * (data.view[2]! - data.view[0]!));
-    this.equationBox = html("div", {}, side);
+    const facts = html("div", { class: "lw-facts" }, side);
+    this.charts = new Charts(hooks.embedded ? side : this.root, this.plotted(), (index) => this.hold(index));
+    this.table = new RowTable(facts, 1e-10 * (data.view[2]! - data.view[0]!));
+    this.whole = new MotionNumbers(facts);
+    this.equationBox = html("div", {}, facts);
     this.equations();
+    this.layOut();
     this.places = { head, stage, canvas, side, toggles, drawing: this.drawing };
     this.live = html("div", { class: "lw-unseen", role: "status", "aria-live": "polite" }, this.root);
     this.player.onChange(() => this.draw());
@@ -157,6 +170,7 @@ class Page implements Mounted {
     const here = this.input;
     const index = this.player.at;
     const { view, stroke, pin, text, motions } = this.data;
+    if (!this.pinned) this.past = steady ? (this.past ?? this.view) : null;
     this.data = checked(data);
     if (steady) {
       const kept = data.motions.map((motion, k) => withVectors(motion, motions[k]));
@@ -165,6 +179,7 @@ class Page implements Mounted {
     }
     this.views = [];
     this.dress();
+    if (!steady) this.layOut();
     say(this.title, data.title);
     this.drawing.renew(this.data);
     this.arrows.renew(this.data);
@@ -178,7 +193,7 @@ class Page implements Mounted {
   }
 
   get points(): Record<string, readonly [number, number]> {
-    const row = this.view.order[this.player.at]!;
+    const row = this.row;
     return Object.fromEntries(this.view.points.map(({ name, x, y }) => [name, [x[row]!, y[row]!] as const]));
   }
 
@@ -186,8 +201,12 @@ class Page implements Mounted {
     this.player.play(on);
   }
 
+  get row(): number {
+    return this.view.order[this.player.at]!;
+  }
+
   get values(): Record<string, number> {
-    const row = this.view.order[this.player.at]!;
+    const { row } = this;
     return Object.fromEntries(this.view.series.map((one) => [one.name, one.values[row]!]));
   }
 
@@ -212,11 +231,12 @@ class Page implements Mounted {
     const sheets = this.sheets();
     sheets.adoptedStyleSheets = sheets.adoptedStyleSheets.filter((sheet) => sheet !== this.style);
     cancelAnimationFrame(this.frame);
+    this.charts.destroy();
     this.root.remove();
   }
 
   private get view(): MotionView {
-    return (this.views[this.motion] ??= new MotionView(this.data.motions[this.motion]!));
+    return (this.views[this.motion] ??= new MotionView(this.data.motions[this.motion]!, this.data));
   }
 
   /** Show a motion, starting at one of its rows. */
@@ -224,13 +244,16 @@ class Page implements Mounted {
     this.motion = motion;
     const view = this.view;
     this.drawn = -1;
+    if (this.data.motions.length > 1) this.drawing.renew({ ...this.data, view: view.data.view });
     this.drawing.show(view);
+    this.ghost.show(this.past);
     this.arrows.show(view);
     this.transport.show(view);
     // During a drag, numbers are updated at half the rate of the drawing.
     if (!steady || this.updates++ % 2 === 0) {
-      for (const chart of this.charts) chart.show(view, steady);
+      this.charts.show(view, this.past, steady);
       this.table.show(view);
+      this.whole.show(view);
     }
     this.root.classList.toggle("lw-still", view.input.name === "");
     say(this.summary, view.data.summary);
@@ -249,7 +272,12 @@ class Page implements Mounted {
   /** The index with the nearest input; among equals, the one nearest to an index. */
   private nearest(value: number, index: number): number {
     const { input, order } = this.view;
-    const far = order.map((row) => Math.abs(input.values[row]! - value));
+    const turn = { deg: 360, rad: 2 * Math.PI }[input.unit];
+    const far = order.map((row) => {
+      const off = input.values[row]! - value;
+      // One turn further, an angle is the same; the same turn is preferred.
+      return turn ? Math.abs(off - turn * Math.round(off / turn)) + 1e-6 * Math.abs(off) : Math.abs(off);
+    });
     const least = Math.min(...far) * (1 + 1e-9) + 1e-12;
     const alike = far.flatMap((one, k) => (one <= least ? [k] : []));
     return alike.reduce((best, k) => (Math.abs(k - index) < Math.abs(best - index) ? k : best), alike[0] ?? 0);
@@ -284,8 +312,9 @@ class Page implements Mounted {
     if (row !== this.drawn) {
       this.drawn = row;
       this.drawing.draw(row, this.view.turned(this.player.at, this.player.back));
+      this.ghost.draw(this.view, row);
       this.arrows.draw(row);
-      for (const chart of this.charts) chart.draw(row);
+      this.charts.draw(row);
       this.transport.draw(this.view, this.player.at, row);
       this.table.draw(row);
       this.root.dataset.row = String(row);
@@ -326,8 +355,26 @@ class Page implements Mounted {
     toggle(box, "Paths", true, (on) => this.drawing.toggle("paths", on));
     toggle(box, "Names", true, (on) => this.drawing.toggle("names", on));
     this.arrows.switches(box);
+    if (this.hooks.changing || this.data.motions.length > 1) {
+      const compare = toggle(box, "Compare", false, (on) => this.compare(on));
+      compare.title = "Keep the design shown now in pale lines, to compare it with others";
+    }
     html("p", { class: "lw-hint" }, box, "Drag a pin or a link. Space plays, arrow keys step.");
     return box;
+  }
+
+  /** Keep the present design in pale lines, or forget it. */
+  private compare(on: boolean): void {
+    this.pinned = on;
+    this.past = on ? this.view : null;
+    this.show(this.motion, this.player.at);
+  }
+
+  /** A tall mechanism has its charts beside the drawing, a wide one below. */
+  private layOut(): void {
+    const [left, bottom, right, top] = this.data.view as [number, number, number, number];
+    const tall = this.root.classList.contains("lw-tall");
+    this.root.classList.toggle("lw-tall", (top - bottom) / (right - left) > (tall ? 0.7 : 0.85));
   }
 
   /** The default plots: outputs, unknowns, then derived quantities; lengths before angles. */

@@ -1,6 +1,6 @@
 // Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
 
-/** A quantity over the rows: its printed name and unit; `group` is its list: `input`, `unknown`, `output` or `derived`. */
+/** A quantity over the rows: its printed name and unit; `group` is its list: `input`, `unknown`, `output`, `derived`, or `asked` for any other quantity or rate. `band`: lowest and highest recommended value. */
 export interface Column {
   readonly name: string;
   readonly shown: string;
@@ -9,6 +9,7 @@ export interface Column {
   readonly values: PackedColumn;
   readonly first: PackedColumn | null;
   readonly first_unit: string;
+  readonly band: readonly number[];
 }
 
 /** A loop equation: its label and its MathML. */
@@ -36,7 +37,7 @@ export interface LimitMark {
   readonly text: string;
 }
 
-/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. */
+/** One displayed circuit or branch. `order` are the found rows in the order of the motion; `closed`: the first follows the last. `speed` is that of the leading input, 0 if it has none; `backwards`: its arrow points towards smaller values. `view` is the extent of its drawing, as that of the page. */
 export interface MotionData {
   readonly name: string;
   readonly summary: string;
@@ -54,6 +55,16 @@ export interface MotionData {
   readonly driven: readonly string[];
   readonly evidence: RowEvidence;
   readonly limits: readonly LimitMark[];
+  readonly numbers: readonly MotionNumber[];
+  readonly view: readonly number[];
+}
+
+/** One number of the whole motion, such as `stroke(s16)`; `None` if undefined. */
+export interface MotionNumber {
+  readonly name: string;
+  readonly shown: string;
+  readonly unit: string;
+  readonly value: number | null;
 }
 
 /** Numbers of the found rows: multiples of `step`, differenced `order` times, as zigzag integers of seven bits per byte, in base64. Order -1: plain little-endian floats of eight bytes; -2: of four. `gaps` are indices of rows without a number, such as derivatives at dead points; plain floats have NaN there. */

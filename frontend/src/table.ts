@@ -78,7 +78,7 @@ export class RowTable {
     this.fact("position", (row) => texts().status_texts[this.view.status[row]!] ?? "");
     this.fact("residual", (row) => `${powerOfTen(this.view.residual[row]!)} of the longest link`);
     this.fact("proof", (row) =>
-      this.view.certified[row] === 1
+      this.view.certified[row] === 1 && Number.isFinite(this.view.radius[row])
         ? `a true position lies within ${powerOfTen(this.view.radius[row]!)} of the longest link`
         : (texts().certification_texts[this.view.certification[row]!] ?? ""),
     );

@@ -25,6 +25,7 @@ const FIT = `
 .lw-side > * { flex: none; }
 @container (max-width: 720px) {
   .lw { display: block; }
+  .lw-side { display: flex; }
   .lw-stage { height: auto; padding-bottom: 14px; }
   .lw-canvas { height: 360px; flex: none; }
   .lw-side { max-height: none; }

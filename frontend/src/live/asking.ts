@@ -5,6 +5,8 @@ import type { FileState, LiveRequest } from "../messages";
 export interface Desk {
   /** Send a request. */
   readonly ask: (request: LiveRequest) => void;
+  /** Send a request that the visitor has not made: messages stay. */
+  readonly background: (request: LiveRequest) => void;
   /** Send frequent requests, as from a slider: only the latest needs an answer. */
   readonly latest: (request: LiveRequest) => void;
   /** The last received state of the file. */

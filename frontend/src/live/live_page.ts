@@ -1,21 +1,24 @@
 // The live page: drawing and player as on every page, with panels that edit the file.
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound, SketchShown } from "../messages";
-import { mount, type Mounted } from "../mount";
-import type { PageData } from "../page_data";
+import { mount, type Mounted, type PageData } from "../mount";
 import { html, svg } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
 import { Build } from "./build";
+import { Busy } from "./busy";
+import { CircuitsPanel } from "./circuits";
 import { blank, closing } from "./closing";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
+import { ExportMenu } from "./export_menu";
 import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
+import { Plots } from "./plots";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
 import { Ways } from "./ways";
@@ -25,6 +28,9 @@ const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "sket
 
 /** Widths of a blank sheet by unit; otherwise 240. */
 const SHEETS: Readonly<Record<string, number>> = { mm: 240, cm: 24, m: 0.24, in: 10, ft: 1 };
+
+/** Logarithm of the zoom at which symbols are drawn anew. */
+const RESIZED = 0.2;
 
 export class LivePage {
   private readonly connection: Connection;
@@ -37,6 +43,14 @@ export class LivePage {
   private readonly build: Build;
   private readonly editor: Editor;
   private readonly readiness: Readiness;
+  private readonly circuits: CircuitsPanel;
+  private readonly plots: Plots;
+  private readonly exports: ExportMenu;
+  private readonly busy = new Busy();
+  /** The row at which the motion of the file was left for a circuit. */
+  private left: number | null = null;
+  /** The last motion of the file. */
+  private found: MotionFound | null = null;
   private readonly tabs: Tabs;
   private file: FileState | null = null;
   private page: Mounted | null = null;
@@ -46,6 +60,9 @@ export class LivePage {
   /** Whether the page was made with plots. */
   private charted = false;
   private hint: Element | null = null;
+  /** The width of the sheet that was told last. */
+  private width = 1;
+  private resizing: ReturnType<typeof setTimeout> | undefined;
   /** Whether no row of the table has a position. */
   private rowless = false;
 
@@ -57,13 +74,20 @@ export class LivePage {
     this.newton = new Newton(desk);
     this.build = new Build(desk);
     this.editor = new Editor(desk, {
-      tool: (_, edited) => this.chosen(edited),
+      mode: (edited) => this.chosen(edited),
+      viewed: () => this.viewed(),
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
+    this.plots = new Plots(desk);
+    this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
+    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
+    this.bar.element.append(this.exports.element);
+    document.body.append(this.busy.element);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
+      { title: "Circuits", element: this.circuits.element, shown: (on) => this.circuits.shown(on) },
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
       { title: "Build", element: this.build.element },
     ]);
@@ -71,7 +95,7 @@ export class LivePage {
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
-    this.latest = new Latest((request) => this.connection.ask(request));
+    this.latest = new Latest((request) => this.send(request));
   }
 
   private desk(): Desk {
@@ -79,13 +103,37 @@ export class LivePage {
       ask: (request) => {
         this.latest.clear();
         this.notices.clear();
-        this.connection.ask(request);
+        this.send(request);
+      },
+      background: (request) => {
+        this.send(request);
       },
       latest: (request) => this.latest.put(request),
       file: () => this.file!,
       here: () => this.here(),
       values: () => this.page?.values ?? {},
     };
+  }
+
+  private send(request: LiveRequest): number {
+    const id = this.connection.ask(request);
+    if (!this.element.classList.contains("lw-lost")) this.busy.asked(id);
+    return id;
+  }
+
+  /** The displayed row of the motion of the file. */
+  private row(): number | null {
+    return this.page === null || this.circuits.elsewhere ? null : this.page.row;
+  }
+
+  /** Draw the motion of a circuit, or that of the file. */
+  private look(page: PageData | null): void {
+    const shown = page ?? this.found?.page ?? null;
+    if (shown === null || this.page === null) return;
+    if (page !== null) this.left ??= this.page.row;
+    this.page.update(shown);
+    if (page === null && this.left !== null) this.page.goToRow(this.left);
+    if (page === null) this.left = null;
   }
 
   private here(): Record<string, number> {
@@ -117,6 +165,18 @@ export class LivePage {
       case "configurations_found":
         this.ways.show(event);
         break;
+      case "circuits_found":
+        this.circuits.told(event);
+        break;
+      case "quantities_listed":
+        this.plots.told(event);
+        break;
+      case "exported":
+        void this.exports.show(event);
+        break;
+      case "working":
+        this.busy.progress(event.fraction);
+        return;
       case "newton_shown":
         this.newton.show(event);
         break;
@@ -137,13 +197,14 @@ export class LivePage {
         this.notices.done(`Saved in ${event.file}.`);
         break;
     }
+    this.busy.answered(event.answers);
     if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
   }
 
   private decisions(): Record<string, () => void> {
     return {
-      Reload: () => this.connection.ask({ kind: "reload" }),
-      Overwrite: () => this.connection.ask({ kind: "save", overwrite: true }),
+      Reload: () => this.send({ kind: "reload" }),
+      Overwrite: () => this.send({ kind: "save", overwrite: true }),
     };
   }
 
@@ -159,6 +220,8 @@ export class LivePage {
     this.dimensions.show(file);
     this.build.show(file);
     this.ways.renew();
+    this.circuits.renew();
+    this.plots.renew();
     this.newton.renew();
     this.editor.renew(file);
     this.readiness.show(file);
@@ -167,11 +230,16 @@ export class LivePage {
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
+    if (!found.live) this.found = found;
+    this.left = null;
+    this.circuits.left();
     this.rowless = found.page === null && found.missing === found.rows;
     this.moving = found.page;
     this.element.dataset.live = String(found.live);
-    if (found.page !== null) this.display(found.live);
-    else if (found.missing < found.rows) {
+    if (found.page !== null) {
+      this.display(found.live);
+      if (!found.live) this.plots.moved();
+    } else if (found.missing < found.rows) {
       this.still(null, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
     this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
@@ -192,13 +260,14 @@ export class LivePage {
     if (fresh) this.begin(page);
     else this.page!.update(page, live && page === this.moving);
     this.charted ||= moves;
-    this.editor.redraw();
+    this.editor.redraw(this.editor.edited ? this.moving : null);
   }
 
   private begin(data: PageData): void {
     const view = this.page && this.editor.edited ? this.page.places.drawing.window : null;
     this.page?.destroy();
-    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), still: data.motions[0]!.columns.length === 0 }));
+    const still = data.motions[0]!.columns.length === 0;
+    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), changing: true, still }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.readiness.element, this.notices.element);
@@ -206,6 +275,7 @@ export class LivePage {
     this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
     this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
+    this.plots.attach(page);
     this.editor.attach(page);
     if (view) page.places.drawing.see(view);
   }
@@ -225,9 +295,19 @@ export class LivePage {
     if (!edited) this.display();
   }
 
+  /** Symbols of a sketch have the size of the view. */
+  private viewed(): void {
+    if (!this.editor.edited || this.page === null) return;
+    const { width } = this.page.places.drawing.window;
+    if (Math.abs(Math.log(width / this.width)) < RESIZED) return;
+    clearTimeout(this.resizing);
+    this.resizing = setTimeout(() => this.sheet(), 150);
+  }
+
   /** Tell the width of the sheet, by which symbols are sized. */
   private sheet(): void {
     const { width } = this.page!.places.drawing.window;
+    this.width = width;
     this.connection.ask({ kind: "set_sheet", width, edited: this.editor.edited });
   }
 
@@ -266,7 +346,7 @@ export class LivePage {
     if (event.page === null) return;
     this.gaps(event);
     const { text, remedies } = closing(event, this.file!);
-    const choices = remedies.map(({ label, title, request }) => [label, title, () => void this.connection.ask(request)] as const);
+    const choices = remedies.map(({ label, title, request }) => [label, title, () => this.send(request)] as const);
     this.notices.open(text, choices);
     this.updated();
   }
@@ -280,6 +360,7 @@ export class LivePage {
   }
 
   private lost(message: string): void {
+    this.busy.stop();
     this.bar.close();
     if (this.page === null) {
       this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));

@@ -49,7 +49,7 @@ export class SolvedPages {
     this.march = new March(program, data);
     this.path = dense(data.path);
     this.rising = this.falls ? this.path.slice().reverse() : this.path;
-    this.base = new MotionView(page.motions[0]!);
+    this.base = new MotionView(page.motions[0]!, page);
     this.anchored = page.motions[0]!.parts.map((part, k) => this.places(this.base, part, k));
   }
 
@@ -198,6 +198,7 @@ export class SolvedPages {
         branch_names: [""],
       },
       limits,
+      numbers: [],
     };
     return { ...motion, parts: this.parts(motion, order.rows, numbers) };
   }
@@ -226,7 +227,7 @@ export class SolvedPages {
   }
 
   private parts(motion: MotionData, rows: readonly number[], numbers: readonly number[]): Part[] {
-    const view = new MotionView(motion);
+    const view = new MotionView(motion, this.page);
     const hidden = new Set(
       this.data.sliders.flatMap((slider, k) => (slider.value === numbers[k] ? [] : slider.hidden)),
     );

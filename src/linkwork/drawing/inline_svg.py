@@ -24,7 +24,7 @@ from linkwork.drawing.scene import (
 )
 from linkwork.drawing.theme import DARK, LIGHT
 
-__all__ = ["Inks", "inline_svg"]
+__all__ = ["FixedInks", "Inks", "inline_svg"]
 
 _FONT = "system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
 _FLATTEST = 0.36  # minimum ratio of the sides of a picture
@@ -61,6 +61,18 @@ class Inks:
             f"{_under(_LIGHT_PAGES, scope)}{{{light}}}"
             f"{_under(_DARK_PAGES, scope)}{{{dark}}}"
         )
+
+
+class FixedInks(Inks):
+    """The colours of the light or the dark theme alone, for files."""
+
+    def __init__(self, *, dark: bool = False) -> None:
+        super().__init__()
+        self._dark = dark
+
+    def of(self, light: str, dark: str) -> str:
+        """A colour in CSS; ``none`` for an empty one."""
+        return (dark if self._dark else light) or "none"
 
 
 _LIGHT_PAGES = ("[data-jp-theme-light=true]", "body.vscode-light", "html[theme=light]")

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
-    from linkwork.export.csv_file import (
-        csv_lines as csv_lines,
-        csv_text as csv_text,
-    )
     from linkwork.export.workbook.workbook import (
         WrittenWorkbook as WrittenWorkbook,
         workbook_of as workbook_of,
+    )
+    from linkwork.results.csv_text import (
+        csv_lines as csv_lines,
+        csv_text as csv_text,
     )
 else:
     __getattr__ = loader(__name__)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
 
@@ -18,12 +19,11 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.results.force import Force, check_forces, force_unit
 from linkwork.results.motion import Motion
-from linkwork.results.quantity import Rate
 from linkwork.results.vector_loop import MovingLoop
 from linkwork.viewer.loop_arrows import loop_arrows
 from linkwork.viewer.packing import Pack, packed
+from linkwork.viewer.page_columns import columns_of, numbers_of
 from linkwork.viewer.page_data import (
-    Column,
     Equation,
     ForceData,
     LimitMark,
@@ -104,16 +104,19 @@ def drawn_page(
     loops: Loops | None = None,
     forces: Sequence[Force] = (),
     pack: Pack = packed,
+    asked: Sequence[str] = (),
+    brief: bool = False,
 ) -> PageData:
     """The data of a page from drawn motions.
 
     ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is fast, for a page that
-    is replaced soon, but eight times as large.
+    is replaced soon, but eight times as large. ``asked`` are further quantities, rates and numbers
+    of motions by name; ``brief``: no numbers of motions.
     """
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
-    view = Box.around(corner for scene in scenes for corner in scene.view.corners)
-    view = view.grown(MARGIN * measures.size)
+    views = [scene.view.grown(MARGIN * measures.size) for scene in scenes]
+    view = Box.around(corner for own in views for corner in own.corners)
     lead = next(iter(first.inputs))
     light, dark = themes()
     return PageData(
@@ -128,8 +131,13 @@ def drawn_page(
         pin=measures.pin,
         text=measures.text,
         motions=tuple(
-            _motion(name, motion, scene, () if loops is None else loops(motion), pack)
-            for (name, motion), scene in zip(motions.items(), scenes, strict=True)
+            replace(
+                _motion(name, motion, scene, () if loops is None else loops(motion), pack),
+                columns=tuple(columns_of(motion, pack, asked)),
+                numbers=() if brief else tuple(numbers_of(motion, asked)),
+                view=own.edges,
+            )
+            for (name, motion), scene, own in zip(motions.items(), scenes, views, strict=True)
         ),
         light=light,
         dark=dark,
@@ -159,7 +167,7 @@ def _motion(
         closed=closed,
         speed=motion.speed or 0.0,
         backwards=any(part.backwards for part in motion.skeleton.driven[:1]),
-        columns=tuple(_columns(motion, pack)),
+        columns=(),
         points=tuple(_points(motion, pack)),
         turns=turns,
         frames=frames,
@@ -178,42 +186,6 @@ def _summary(motion: Motion) -> str:
     if proved == found:
         return f"{text}, each proved"
     return f"{text}, {proved} proved" if proved else text
-
-
-def columns_of(motion: Motion) -> dict[str, str]:
-    """The quantities of a page besides inputs, with their lists."""
-    everything = dict.fromkeys([*motion.unknowns, *motion.riding], "unknown")
-    everything |= dict.fromkeys(motion.outputs, "output")
-    traced = motion.skeleton.traced
-    for name, asked in motion.quantities.derived.items():
-        if asked.row is not None and (not asked.row.of_path or asked.part in traced):
-            everything[name] = "derived"
-    return everything
-
-
-def _columns(motion: Motion, pack: Pack) -> Iterator[Column]:
-    found = motion.found
-    for name, values in motion.inputs.items():
-        yield Column(
-            name=name,
-            shown=printed_name(name),
-            unit=motion.input_units[name],
-            group="input",
-            values=pack(values, found),
-            first=None,
-            first_unit="",
-        )
-    for name, group in columns_of(motion).items():
-        asked, series = motion.quantity(name), motion.series(name)
-        yield Column(
-            name=name,
-            shown=printed_name(name),
-            unit=asked.unit,
-            group=group,
-            values=pack(series.value, found),
-            first=pack(series.first, found, rate=True) if asked.needs < 2 else None,
-            first_unit=Rate.FIRST.unit(asked.own.kind, motion.units, motion.derivative_unit),
-        )
 
 
 def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:

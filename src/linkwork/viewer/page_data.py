@@ -15,6 +15,7 @@ __all__ = [
     "FrameData",
     "LimitMark",
     "MotionData",
+    "MotionNumber",
     "PackedColumn",
     "PageData",
     "Part",
@@ -49,7 +50,8 @@ class PackedColumn:
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """A quantity over the rows: its printed name and unit; ``group`` is its list: ``input``,
-    ``unknown``, ``output`` or ``derived``.
+    ``unknown``, ``output``, ``derived``, or ``asked`` for any other quantity or rate. ``band``:
+    lowest and highest recommended value.
     """
 
     name: str
@@ -59,6 +61,17 @@ class Column:
     values: PackedColumn
     first: PackedColumn | None
     first_unit: str
+    band: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionNumber:
+    """One number of the whole motion, such as ``stroke(s16)``; ``None`` if undefined."""
+
+    name: str
+    shown: str
+    unit: str
+    value: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,7 +183,7 @@ class MotionData:
 
     ``order`` are the found rows in the order of the motion; ``closed``: the first follows the last.
     ``speed`` is that of the leading input, 0 if it has none; ``backwards``: its arrow points
-    towards smaller values.
+    towards smaller values. ``view`` is the extent of its drawing, as that of the page.
     """
 
     name: str
@@ -189,6 +202,8 @@ class MotionData:
     driven: tuple[str, ...]
     evidence: RowEvidence
     limits: tuple[LimitMark, ...]
+    numbers: tuple[MotionNumber, ...] = ()
+    view: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

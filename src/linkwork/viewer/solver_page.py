@@ -28,7 +28,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import unpressed
-from linkwork.viewer.page_building import columns_of
+from linkwork.viewer.page_columns import usual_columns
 from linkwork.viewer.page_data import (
     FrameData,
     PackedColumn,
@@ -75,7 +75,7 @@ def solving_page(
     scene = moving_scene(motion)
     turns = _used_turns(scene)
     links = [name for name in turns if name in motion.links]
-    columns = [name for name in columns_of(motion) if name not in motion.inputs]
+    columns = [name for name, _ in usual_columns(motion)]
     printed = print_solver(
         design, JAVASCRIPT, points=list(motion.points), columns=columns, turns=links
     )

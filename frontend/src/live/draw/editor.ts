@@ -2,6 +2,7 @@
 
 import type { FileState, LiveEdit } from "../../messages";
 import type { Mounted } from "../../mount";
+import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
 import { clean } from "../ranges";
@@ -15,10 +16,13 @@ import { ToolBar, TOOLS } from "./tool_bar";
 const REACH = { mouse: 12, touch: 24 };
 /** A pointer that moves less has clicked [px]. */
 const STILL = 4;
+const ARROWS: Readonly<Record<string, Place>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export interface EditorHooks {
-  /** Another tool was chosen; the drawing is edited unless it is "move". */
-  readonly tool: (name: string, edited: boolean) => void;
+  /** The drawing begins or ends to be edited: all tools do that but "move". */
+  readonly mode: (edited: boolean) => void;
+  /** The view has changed. */
+  readonly viewed: () => void;
   /** Show a short hint. */
   readonly hint: (text: string) => void;
 }
@@ -42,6 +46,7 @@ export class Editor {
   private selected: ReadonlySet<string> = new Set();
   private chosen: Chosen | null = null;
   private gesture: Gesture | null = null;
+  private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
 
@@ -78,7 +83,11 @@ export class Editor {
     for (const [kind, act] of canvasEvents) drawing.element.addEventListener(kind, (event) => act(event as PointerEvent), options);
     drawing.element.addEventListener("wheel", (event) => this.wheel(event), { ...options, passive: false });
     document.addEventListener("keydown", (event) => this.key(event), options);
-    drawing.viewed = () => this.redraw();
+    drawing.viewed = () => {
+      if (this.gesture === null) this.overlay.clear();
+      this.redraw();
+      this.hooks.viewed();
+    };
     this.redraw();
   }
 
@@ -99,11 +108,12 @@ export class Editor {
 
   choose(name: string): void {
     if (name === this.tool) return;
+    const before = this.edited;
     this.tool = name;
     this.tools.show(name);
     if (name !== "select") this.select(null);
     this.overlay.clear();
-    this.hooks.tool(name, this.edited);
+    if (before !== this.edited) this.hooks.mode(this.edited);
     this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
     this.redraw();
   }
@@ -118,14 +128,16 @@ export class Editor {
     this.redraw();
   }
 
-  /** Draw grid and selection again. */
-  redraw(): void {
+  /** Draw grid and selection again, and the paths of another motion. */
+  redraw(motion?: PageData | null): void {
     if (this.page === null) return;
+    if (motion !== undefined) this.overlay.paths(motion);
     const { drawing } = this.page.places;
     drawing.element.classList.toggle("lw-edited", this.edited);
     this.grid = this.overlay.drawGrid(this.page, this.edited);
     const points = this.points;
     this.overlay.select([...this.selected].flatMap((name) => (points[name] ? [points[name]!] : [])), drawing.pixel);
+    this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
   }
 
   private get points(): Places {
@@ -160,6 +172,7 @@ export class Editor {
     event.preventDefault();
     (document.activeElement as HTMLElement | null)?.blur?.();
     this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    this.panned = panned;
     if (panned || this.touches.size > 1 || event.button !== 0) return;
     const [at, reach] = [this.place(event), this.reach(event)];
     const start = this.anchor(at, reach);
@@ -176,7 +189,8 @@ export class Editor {
 
   private isFree(event: PointerEvent): boolean {
     const target = event.target as Element;
-    return !target.hasAttribute("data-point") && !target.closest("[data-frame].lw-moving");
+    const frame = target.closest("[data-frame]");
+    return target === this.page!.places.drawing.element || (frame !== null && !frame.classList.contains("lw-moving"));
   }
 
   private move(event: PointerEvent): void {
@@ -206,7 +220,7 @@ export class Editor {
       const centre = drawing.placeAt({ clientX: (now[0] + other[0]) / 2, clientY: (now[1] + other[1]) / 2 });
       drawing.zoom(distance(now, other) / Math.max(1, distance(before, other)), centre);
       drawing.pan((-(now[0] - before[0]) / 2) * drawing.pixel, ((now[1] - before[1]) / 2) * drawing.pixel);
-    } else if (this.gesture === null && (event.buttons & 5) !== 0 && (event.buttons === 4 || !this.edited)) {
+    } else if (this.panned) {
       drawing.pan(-(now[0] - before[0]) * drawing.pixel, (now[1] - before[1]) * drawing.pixel);
     } else return false;
     this.touches.set(event.pointerId, now);
@@ -259,6 +273,7 @@ export class Editor {
 
   private up(event: PointerEvent): void {
     this.touches.delete(event.pointerId);
+    this.panned = false;
     const gesture = this.gesture;
     this.gesture = null;
     this.overlay.clear();
@@ -345,9 +360,22 @@ export class Editor {
     else if (event.key === "Escape") this.escape();
     else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
     else if (["Delete", "Backspace"].includes(event.key) && this.selected.size) this.remove();
+    else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);
     else return;
     event.preventDefault();
     event.stopImmediatePropagation();
+  }
+
+  /** Move the selected points by a step of the grid. */
+  private shift([dx, dy]: Place, far: boolean): void {
+    const step = (this.grid / 10) * (far ? 10 : 1);
+    const places = Object.fromEntries(
+      [...this.selected].flatMap((name) => {
+        const at = this.points[name];
+        return at ? [[name, [clean(at[0] + dx * step), clean(at[1] + dy * step)] as [number, number]] as const] : [];
+      }),
+    );
+    this.desk.ask({ kind: "move_points", places, keep: this.inspector.locked });
   }
 
   private escape(): void {

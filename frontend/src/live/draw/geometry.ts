@@ -83,7 +83,7 @@ export function anchorAt(sketch: Sketch, at: Place, { reach, grid, from, except 
   const point = pointAt(sketch, at, reach, except);
   if (point !== null) return { at: sketch.points[point]!, point };
   const on = except ? null : linkAt(sketch, at, 0.6 * reach);
-  if (on !== null) return on;
+  if (on !== null) return { ...on, at: [tidy(on.at[0], 0.1 * reach), tidy(on.at[1], 0.1 * reach)] };
   if (from) {
     const found = alongFrom(sketch, from, at, reach);
     if (found !== null) return found;

@@ -1,6 +1,7 @@
 // What is being drawn, over the drawing: grid, preview of a link, selection, names of snaps.
 
 import type { Mounted } from "../../mount";
+import type { PageData } from "../../page_data";
 import { pathOf, put, svg } from "../../svg";
 import { roundStep } from "../ranges";
 import type { Place, Places } from "./geometry";
@@ -8,7 +9,9 @@ import type { Place, Places } from "./geometry";
 export class Overlay {
   private readonly grid = svg("path", { class: "lw-sheet-grid" });
   private readonly group = svg("g", { class: "lw-draft" });
+  private readonly traced = svg("g", {}, this.group);
   private readonly marks = svg("g", {}, this.group);
+  private readonly handles = svg("g", {}, this.group);
   private readonly line = svg("path", { class: "lw-draft-line" }, this.group);
   private readonly box = svg("rect", { class: "lw-draft-box" }, this.group);
   private readonly end = svg("circle", { class: "lw-draft-end" }, this.group);
@@ -40,6 +43,14 @@ export class Overlay {
     return step;
   }
 
+  /** The paths of points over a motion; null: none. */
+  paths(motion: PageData | null): void {
+    this.traced.replaceChildren();
+    for (const part of motion?.motions[0]?.parts ?? []) {
+      if (part.role === "trace" && part.frame === -1) svg("path", { class: "r-trace", d: pathOf(part.points, false) }, this.traced);
+    }
+  }
+
   /** A line that is being drawn, with its length and angle. */
   preview(from: Place, to: Place, text: string, pixel: number): void {
     put(this.line, { d: pathOf([...from, ...to], false) });
@@ -52,6 +63,23 @@ export class Overlay {
     this.text.textContent = text;
     this.text.style.fontSize = `${13 * pixel}px`;
     put(this.text, { x: at[0] + 12 * pixel, y: -at[1] - 12 * pixel });
+  }
+
+  /** Points that are reached by the tabulator key. */
+  focusable(points: Places, pixel: number, chosen: (name: string) => void): void {
+    const names = Object.keys(points).join(" ");
+    if (this.handles.dataset.names !== names) {
+      this.handles.dataset.names = names;
+      this.handles.replaceChildren();
+      for (const name of Object.keys(points)) {
+        const handle = svg("circle", { class: "lw-focusable", "data-sketched": name, tabindex: 0, role: "button" }, this.handles);
+        handle.addEventListener("focus", () => chosen(name));
+      }
+    }
+    Object.entries(points).forEach(([name, [x, y]], k) => {
+      const handle = this.handles.children[k]!;
+      put(handle, { cx: x, cy: -y, r: 11 * pixel, "aria-label": `Point ${name} at ${round(x)}, ${round(y)}: arrow keys move it` });
+    });
   }
 
   rubber(one: Place, other: Place): void {
@@ -72,6 +100,8 @@ export class Overlay {
     this.text.textContent = "";
   }
 }
+
+const round = (value: number): number => Number(value.toPrecision(6));
 
 /** Names of points inside a box. */
 export function pointsWithin(points: Places, one: Place, other: Place): string[] {

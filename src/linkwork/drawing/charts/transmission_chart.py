@@ -18,12 +18,11 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import find_spelling
 from linkwork.mechanism.dyad import Dyad, dyads_of
 from linkwork.results.motion import Motion
-from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+from linkwork.results.quantities.transmission import RECOMMENDED, TRANSMISSION_ANGLE
 
 __all__ = ["transmission_chart"]
 
-_GOOD = (2 * math.pi / 9, 7 * math.pi / 9)  # 40° to 140°, the usual recommendation [rad]
-_TICKS = (0.0, _GOOD[0], math.pi / 2, _GOOD[1], math.pi)
+_TICKS = (0.0, RECOMMENDED[0], math.pi / 2, RECOMMENDED[1], math.pi)
 
 
 def transmission_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "") -> Chart:
@@ -80,7 +79,7 @@ def _axis(motion: Motion) -> Axis:
 
 def _band(motion: Motion) -> Band:
     unit = motion.units.angle
-    low, high = (bound / unit.radians for bound in _GOOD)
+    low, high = (bound / unit.radians for bound in RECOMMENDED)
     told = ("2π/9", "7π/9 rad")
     if unit is AngleUnit.DEGREE:
         told = (f"{low:.0f}°", f"{high:.0f}°")

@@ -21,7 +21,10 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved, folded
 from linkwork.results.quantity import Kind
 
-__all__ = ["TRANSMISSION", "TRANSMISSION_ANGLE"]
+__all__ = ["RECOMMENDED", "TRANSMISSION", "TRANSMISSION_ANGLE"]
+
+#: Recommended angles, 40° to 140° [rad].
+RECOMMENDED = (2 * np.pi / 9, 7 * np.pi / 9)
 
 
 def _pins(names: MechanismNames) -> Mapping[str, Kind]:

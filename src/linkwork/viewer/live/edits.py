@@ -20,6 +20,7 @@ from linkwork.viewer.live.palette import part_name, part_of
 __all__ = ["Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
+_LENGTHS = ("slider", "cylinder")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
 
 
@@ -52,6 +53,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         if (measured := _measured(description, edit.name)) is None:
             raise
         text.put(("lengths", measured), edit.value)
+        _stretch(measured, edit.value, text, before)
         return Followed()
     written = quantity.written(description)
     # a number in place of a formula would silently remove the dependence on dimensions
@@ -60,10 +62,26 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
             f'"{quantity.name}" is the formula {written}: change a dimension in '
             "it, or send another formula"
         )
-    if quantity.table == "lengths" and _move_pivot(quantity, edit.value, text, description):
-        return Followed()
+    if quantity.table == "lengths":
+        if _move_pivot(quantity, edit.value, text, description):
+            return Followed()
+        _stretch(quantity.key, edit.value, text, before)
     text.put(_path(quantity, text), edit.value)
     return Followed()
+
+
+def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> None:
+    """Give a length to a draft, which is not assembled: its freer end moves in the sketch."""
+    draft = before.description
+    if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
+        return
+    carriers = draft.drawable().carriers()
+    if not set(key.split()) <= carriers.keys():
+        return
+    fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
+    start, end = before.place(fixed), before.place(free)
+    if length > 0 and end != start and not any(isinstance(c, str) for c in draft.points[free]):
+        put_place(text, free, start + (end - start) / abs(end - start) * length)
 
 
 def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
@@ -81,7 +99,7 @@ def _measured(description: Description, name: str) -> str | None:
     if not isinstance(description, Draft):
         return None
     wanted = sorted(map(canonical, name.split()))
-    for measured in description.shapes.measured:
+    for measured in description.measured:
         if sorted(map(canonical, measured.points)) == wanted:
             return " ".join(measured.points)
     return None
@@ -158,10 +176,39 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
         for other in (*_DRIVES, "relative_to"):
             if other != edit.drive and text.has((*here, other)):
                 text.remove((*here, other))
+        _write_range(edit.drive, edit.name or "", here, text, before)
     for field, key in _RANGE.items():
         if (entry := getattr(edit, field)) is not None:
             text.put((*here, key), entry)
     return Followed()
+
+
+def _write_range(
+    drive: str, name: str, here: tuple[str | int, ...], text: TextEdits, before: Before
+) -> None:
+    """Replace a range that belongs to another kind of quantity; lengths have no natural one."""
+    number, inputs = here[-1], before.description.inputs
+    assert isinstance(number, int)
+    old = inputs[number].drives[0] if number < len(inputs) else "link"
+    if (old in _LENGTHS) == (drive in _LENGTHS):
+        return
+    for key in _RANGE.values():
+        if text.has((*here, key)):
+            text.remove((*here, key))
+    if drive in _LENGTHS:
+        span = _span_of(name, before)
+        for key, share in (("from", 0.25), ("to", 0.75), ("step", 0.005)):
+            text.put((*here, key), float(f"{share * span:.4g}"))
+
+
+def _span_of(name: str, before: Before) -> float:
+    """The length of a slider's line, or twice that of a cylinder."""
+    for part in getattr(before.description, "parts", ()):
+        if canonical(part.label) == canonical(name):
+            line = getattr(part, "line", None)
+            a, b = line or part.between
+            return abs(before.place(b) - before.place(a)) * (1.0 if line else 2.0) or 1.0
+    return 1.0
 
 
 @applied.register

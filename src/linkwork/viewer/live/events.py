@@ -7,6 +7,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.answer_events import (
+    BranchFound,
+    CircuitFound,
+    CircuitsFound,
+    Exported,
+    LimitFound,
+    QuantitiesListed,
+    QuantityListed,
+    Working,
+)
 from linkwork.viewer.live.file_state import (
     ChangeableNumber,
     Drive,
@@ -24,12 +34,16 @@ from linkwork.viewer.page_data import PageData
 
 __all__ = [
     "EVENTS",
+    "BranchFound",
     "CannotClose",
     "ChangeableNumber",
+    "CircuitFound",
+    "CircuitsFound",
     "ConfigurationsFound",
     "Drive",
     "DrivenInput",
     "Event",
+    "Exported",
     "FileChanged",
     "FileState",
     "Lack",
@@ -46,12 +60,15 @@ __all__ = [
     "PositionFound",
     "ProblemShown",
     "ProblemsFound",
+    "QuantitiesListed",
+    "QuantityListed",
     "Refused",
     "Remedy",
     "Saved",
     "SketchShown",
     "Unknown",
     "Way",
+    "Working",
 ]
 
 
@@ -67,16 +84,6 @@ class SketchShown:
     """The drawing of the points as sketched, or assembled at the start."""
 
     page: PageData
-
-
-@dataclass(frozen=True, kw_only=True)
-class LimitFound:
-    """An end of the motion: a dead point or change point of the input."""
-
-    what: str
-    input: float
-    located: bool
-    sentence: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -256,6 +263,10 @@ Event = (
     | PositionFound
     | CannotClose
     | ConfigurationsFound
+    | CircuitsFound
+    | QuantitiesListed
+    | Exported
+    | Working
     | NewtonShown
     | PointMoved
     | ProblemsFound

@@ -28,12 +28,13 @@ class MotionPicture:
         equations: Sequence[tuple[str, str]] = (),
         loops: Loops | None = None,
         *,
+        asked: Sequence[str] = (),
         brief: bool = False,
     ) -> PageData | None:
         """The data of a page; ``None`` without positions or points.
 
-        ``brief``: seven digits and no vectors, for a picture that is replaced soon; vectors
-        between points are kept.
+        ``asked``: further quantities by name. ``brief``: seven digits, no vectors and no numbers of
+        the motion, for a picture that is replaced soon; vectors between points are kept.
         """
         if not motion.found.any() or not motion.points:
             return None
@@ -48,4 +49,6 @@ class MotionPicture:
             equations,
             loops=None if brief else loops,
             pack=shortened if brief else unpressed,
+            asked=asked,
+            brief=brief,
         )

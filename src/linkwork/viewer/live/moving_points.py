@@ -61,7 +61,7 @@ def move_points(
             )
         put_place(text, point, place)
     # dimensions between points that move together do not change
-    measured = [m for m in linkage.shapes.measured if _is_cut(m.points, places)]
+    measured = [m for m in linkage.measured if _is_cut(m.points, places)]
     followed, stayed = [" ".join(m.points) for m in measured], []
     kept = set(map(_folded, keep))
     for table in ("lengths", "angles"):

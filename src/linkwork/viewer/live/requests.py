@@ -19,10 +19,14 @@ __all__ = [
     "AssembleAt",
     "ChooseConfiguration",
     "Edit",
+    "Export",
+    "ListCircuits",
     "ListConfigurations",
+    "ListQuantities",
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
+    "Question",
     "Redo",
     "Reload",
     "RemoveJoint",
@@ -37,6 +41,7 @@ __all__ = [
     "SetNumber",
     "SetSheet",
     "SetText",
+    "ShowQuantities",
     "SolveAt",
     "Together",
     "TracePoint",
@@ -270,6 +275,36 @@ class ListConfigurations:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ListCircuits:
+    """List all circuits of the mechanism, with their motions."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListQuantities:
+    """List all quantities that can be plotted."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShowQuantities:
+    """The quantities, rates and numbers of the motion that the page needs besides the usual ones;
+    replaces those of the request before.
+    """
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """A file for the visitor: ``toml``, ``svg``, ``csv``, ``xlsx``, ``html``, ``gif``, ``webp`` or
+    ``mp4``. A picture shows a row of the motion, by default the first with a position.
+    """
+
+    format: str
+    row: int | None = None
+    dark: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class NewtonSteps:
     """Newton-Raphson from a guess of some or all unknowns, in file units, step by step.
 
@@ -308,6 +343,9 @@ class Reload:
     """Read the file again; unsaved changes stay in the history."""
 
 
+#: A question about the mechanism and its motion, which changes nothing.
+Question = ListCircuits | ListQuantities | Export
+
 Request = (
     Edit
     | Together
@@ -315,8 +353,10 @@ Request = (
     | SetText
     | SetSheet
     | SolveAt
+    | ShowQuantities
     | ListConfigurations
     | NewtonSteps
+    | Question
     | Undo
     | Redo
     | Save

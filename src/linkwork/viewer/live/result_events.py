@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import PurePath
 
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
@@ -15,10 +17,12 @@ from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
 from linkwork.results.configurations import Configurations
 from linkwork.results.iterates import Iterate, Iterates
+from linkwork.results.limit import Limit
 from linkwork.results.motion import Motion
 from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
+from linkwork.viewer.live.exported_file import ExportedFile
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.readiness import lacks_of
 from linkwork.viewer.live.subject import Subject
@@ -28,7 +32,9 @@ from linkwork.viewer.still_page import still_page
 __all__ = [
     "cannot_close",
     "configurations_found",
+    "exported",
     "file_state",
+    "limit_found",
     "motion_found",
     "newton_shown",
     "position_found",
@@ -48,17 +54,29 @@ def motion_found(
         rows=len(motion),
         missing=int((motion.asked & ~motion.found).sum()),
         certified=int(motion.certified.sum()),
-        limits=tuple(
-            tell.LimitFound(
-                what=limit.kind.word,
-                input=limit.input,
-                located=limit.located,
-                sentence=limit.told(name, unit),
-            )
-            for limit in motion.limits
-        ),
+        limits=tuple(limit_found(limit, name, unit) for limit in motion.limits),
         message=message or motion.message,
         page=page,
+    )
+
+
+def limit_found(limit: Limit, name: str, unit: str) -> tell.LimitFound:
+    """A dead point or change point; ``name`` and ``unit`` are the leading input's."""
+    return tell.LimitFound(
+        what=limit.kind.word,
+        input=limit.input,
+        located=limit.located,
+        sentence=limit.told(name, unit),
+    )
+
+
+def exported(file: ExportedFile, source: str) -> tell.Exported:
+    """A file named like the mechanism file ``source``."""
+    return tell.Exported(
+        name=f"{PurePath(source).stem}.{file.suffix}",
+        media_type=file.media_type,
+        content=base64.b64encode(file.content).decode(),
+        notices=file.notices,
     )
 
 
@@ -195,7 +213,7 @@ def _changeable_numbers(
             formula=written if isinstance(written, str) else "",
         )
     if isinstance(description, Draft):
-        for measured in description.shapes.measured:
+        for measured in description.measured:
             yield tell.ChangeableNumber(
                 name=" ".join(measured.points),
                 value=measured.length,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 
-from linkwork.viewer.live.events import Event, Refused
+from linkwork.viewer.live.events import Event, Refused, Working
 from linkwork.viewer.live.requests import EDITS, Request
 from linkwork.viewer.live.workbench import Workbench
 
@@ -18,6 +19,7 @@ _log = logging.getLogger("linkwork.viewer")
 #: Receives events and the id of the request that they answer.
 Tell = Callable[[list[Event], int | None], None]
 
+_PACE = 0.25  # between reports of progress [s]
 _LOOK_AT_FILE = 0.5  # interval of checks of the file on disk [s]
 
 
@@ -40,7 +42,9 @@ class Desk:
         self._waiting: deque[tuple[Request | None, int | None]] = deque()
         self._changed = threading.Condition()
         self._closing = False
-        workbench.hurried = self._hurried
+        workbench.hurried, workbench.working = self._hurried, self._working
+        self._number: int | None = None  # id of the request being processed
+        self._told_at = 0.0
         self._thread = threading.Thread(target=self._work, name="linkwork desk", daemon=True)
         self._thread.start()
 
@@ -75,6 +79,13 @@ class Desk:
         with self._changed:
             return self._closing or any(isinstance(r, EDITS) for r, _ in self._waiting)
 
+    def _working(self, fraction: float) -> None:
+        """Tell the progress of an answer, a few times per second."""
+        now = time.monotonic()
+        if now - self._told_at >= _PACE:
+            self._told_at = now
+            self._tell([Working(fraction=min(1.0, max(0.0, fraction)))], self._number)
+
     def _work(self) -> None:
         while True:
             with self._changed:
@@ -97,6 +108,7 @@ class Desk:
         return request, number
 
     def _do(self, request: Request | None, number: int | None) -> None:
+        self._number, self._told_at = (number if (number or 0) >= 0 else None), time.monotonic()
         try:
             if (request, number) == _NOTHING:
                 number, events = None, self._workbench.poll()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Protocol
 
 from linkwork.equations.writing import EquationSheet
 from linkwork.mechanism.description import Description
 from linkwork.numerics.newton import NewtonOptions
+from linkwork.results.circuits import Circuits
 from linkwork.results.configurations import Configurations
 from linkwork.results.iterates import Iterates
 from linkwork.results.motion import Motion
@@ -43,6 +45,12 @@ class Solvable(Protocol):
 
     def configurations(self, at: At = None) -> Configurations:
         """All assembly configurations."""
+
+    def circuits(self, *, progress: Callable[[float], None] | None = None) -> Circuits:
+        """All circuits; ``progress`` may raise an error to cancel the search."""
+
+    def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
+        """Write a sweep as an Excel workbook; returns the parts with values only."""
 
     def iterates(
         self,

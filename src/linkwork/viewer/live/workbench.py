@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
@@ -13,10 +13,11 @@ from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
+from linkwork.viewer.live.answers import About, GivenUpError, check_quantities, reply
+from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
-from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
@@ -24,28 +25,13 @@ from linkwork.viewer.live.queries import Query, answered, nearest_closure
 from linkwork.viewer.live.solvable import Read, Solvable
 from linkwork.viewer.live.subject import read_subject
 
-__all__ = ["GivenUpError", "Workbench"]
+__all__ = ["Workbench"]
 
 _MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
 
 Events = list[tell.Event]
 Refusing = Callable[[Problem], bool]
-
-
-class GivenUpError(Exception):
-    """A cycle was cancelled because of a newer change."""
-
-
-@dataclass(kw_only=True)
-class _Drag:
-    """An intermediate change: the text it changes, and the mechanism at its start."""
-
-    kind: str
-    text: TextEdits
-    before: Before
-    what: str = ""
-    latest: str | None = None
 
 
 #: Edits that change numbers or choices, not what there is.
@@ -67,6 +53,11 @@ class Workbench:
         Builds a solvable mechanism from a text; ``linkwork.loads``.
     hurried : callable, optional
         Whether a newer change is waiting, which cancels a cycle.
+
+    Attributes
+    ----------
+    working : callable
+        Told the finished fraction of an answer that takes long.
     """
 
     def __init__(
@@ -74,14 +65,16 @@ class Workbench:
     ) -> None:
         self._file, self._read = file, read
         self.hurried = hurried
+        self.working: Callable[[float], None] = lambda fraction: None
         self._subject = read_subject(file.text, file.name, read, whatever=True)
         self._sheet = ask.SetSheet(width=0.0)
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
         self._solution: Events = []  # the cycle of the current mechanism, once solved
+        self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones
         self._owed = False  # a cycle was cancelled, and no other has been sent since
-        self._drag: _Drag | None = None
+        self._drag: Drag | None = None
         self._conflict: tell.FileChanged | None = None
 
     @property
@@ -102,7 +95,7 @@ class Workbench:
     def handle(self, request: ask.Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
         try:
-            if not _goes_on(request, self._drag):
+            if not goes_on(request, self._drag):
                 self._end_drag()
             return self._handle(request)
         except MechanismError as error:
@@ -152,6 +145,8 @@ class Workbench:
             return self._edited(request)  # type: ignore[arg-type]
         if isinstance(request, Query):
             return answered(request, self._subject.mechanism)
+        if isinstance(request, ask.Question):
+            return reply(request, self._about(proved=isinstance(request, ask.Export)))
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
@@ -159,7 +154,7 @@ class Workbench:
         live = bool(getattr(edit, "live", False))
         drag = self._drag
         if drag is None:
-            drag = _Drag(kind=_same_thing(edit), text=TextEdits(self.text), before=self._before())
+            drag = Drag(kind=same_thing(edit), text=TextEdits(self.text), before=self._before())
         self._drag = drag
         try:
             followed = applied(edit, drag.text, drag.before)
@@ -221,6 +216,16 @@ class Workbench:
     def _(self, request: ask.SetSheet) -> Events:
         self._sheet = request
         return self._sketch()
+
+    @_handle.register
+    def _(self, request: ask.ShowQuantities) -> Events:
+        if self._motion is not None:
+            check_quantities(self._motion, request.names)
+        self._shown = request.names
+        if self._motion is None or not self._solution:
+            return self._solved()
+        self._solution = [self._pictured(event, self._motion) for event in self._solution]
+        return self._solution
 
     # The text and its results
 
@@ -309,12 +314,8 @@ class Workbench:
             self._owed = True
             return []
         self._motion, self._owed = motion, False
-        equations = () if live else mechanism.equations().mathml()
-        page = self._picture.page(motion, equations, mechanism.moving_loops, brief=live)
-        events: Events = [
-            *self._sketch(),
-            telling.motion_found(motion, live=live, message=message, page=page),
-        ]
+        found = telling.motion_found(motion, live=live, message=message)
+        events: Events = [*self._sketch(), self._pictured(found, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -332,6 +333,33 @@ class Workbench:
         page = self._subject.page(self._sheet.width / 2)
         return [] if page is None else [tell.SketchShown(page=page)]
 
+    def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
+        """A found motion with the data of its page."""
+        if not isinstance(event, tell.MotionFound):
+            return event
+        mechanism, shown = self._subject.mechanism, self._shown
+        equations = () if event.live else mechanism.equations().mathml()
+        page = self._picture.page(
+            motion, equations, mechanism.moving_loops, asked=shown, brief=event.live
+        )
+        return replace(event, page=page)
+
+    def _about(self, *, proved: bool) -> About:
+        """What questions are about; with its ``proved`` motion, or the latest."""
+        mechanism = self._subject.solvable
+        driven = mechanism is not None and bool(mechanism.description.inputs)
+        if proved and driven and not self._solution:
+            self._solved()
+            if not self._solution:
+                raise InputError("the motion was ended by a change: ask again")
+        return About(
+            subject=self._subject,
+            motion=self._motion if driven else None,
+            text=self.text,
+            file=self._file.name,
+            progress=self._give_up,
+        )
+
     def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
         if live:
             return mechanism.approximate_sweep(self._motion), ""
@@ -347,6 +375,7 @@ class Workbench:
     def _give_up(self, fraction: float) -> None:
         if self.hurried():
             raise GivenUpError
+        self.working(fraction)
 
     def _state(self) -> tell.FileState:
         return telling.file_state(
@@ -369,26 +398,6 @@ def _refusing(edit: ask.Edit) -> Refusing:
     if isinstance(edit, ask.AddPart):
         return lambda problem: problem.key[:1] == (edit.table,)
     return lambda problem: False
-
-
-def _same_thing(edit: ask.Request) -> str:
-    """A key of the dragged object: changes with equal keys are merged."""
-    match edit:
-        case ask.SetNumber():
-            return f"number {edit.name}"
-        case ask.MovePoint():
-            return f"point {edit.point} {edit.lengths_follow}"
-        case ask.MovePoints():
-            return f"points {' '.join(edit.places)}"
-        case _:
-            return kind_of(type(edit))
-
-
-def _goes_on(request: ask.Request, drag: _Drag | None) -> bool:
-    """Whether a request belongs to an intermediate change or does not affect it."""
-    if drag is None or isinstance(request, Query):
-        return True
-    return isinstance(request, ask.EDITS) and _same_thing(request) == drag.kind
 
 
 def _followed(edit: ask.Edit, followed: Followed) -> Events:
