@@ -260,6 +260,8 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "plot",
         "animate",
         "view",
+        "web",
+        "link",
         "study",
         "compile",
         "examples",
