@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork import batch, drawing, export, motion, textfile, viewer
+from linkwork.api import solving
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_names
@@ -225,7 +226,7 @@ class Mechanism(SolvableMechanism):
         if not motion.found.any():
             raise InputError("there is no motion to change with sliders: no position was found")
         design = batch.record_design(self.model, as_names("sliders", sliders))
-        return viewer.solving_page(design, motion, design.changed())
+        return solving.solving_page(design, motion, design.changed())
 
     def widget(
         self,
