@@ -15,6 +15,7 @@ export interface TransportHooks {
 
 /** The row of buttons under the drawing. */
 export class Transport {
+  private readonly row: HTMLElement;
   private readonly button: HTMLButtonElement;
   private readonly icon: SVGPathElement;
   private readonly bar: HTMLInputElement;
@@ -23,6 +24,7 @@ export class Transport {
 
   constructor(parent: Element, hooks: TransportHooks) {
     const row = html("div", { class: "lw-transport", role: "group", "aria-label": "Motion" }, parent);
+    this.row = row;
     this.button = html("button", { type: "button", class: "lw-play" }, row);
     this.icon = svg("path", {}, svg("svg", { viewBox: "0 0 24 24", "aria-hidden": "true" }, this.button));
     const track = html("div", { class: "lw-track" }, row);
@@ -37,6 +39,7 @@ export class Transport {
 
   show(view: MotionView): void {
     const last = view.order.length - 1;
+    this.row.hidden = view.input.name === "";
     put(this.bar, { max: last });
     const marks = view.data.limits.map((limit) => ({ at: view.order.indexOf(limit.row), text: limit.text })).filter(({ at }) => at >= 0);
     const wanted = JSON.stringify([last, marks]);

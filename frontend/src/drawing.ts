@@ -4,6 +4,7 @@ import type { Course, MotionView } from "./motion";
 import type { PageData, Part } from "./page_data";
 import { pathOf, put, strokesOf, svg } from "./svg";
 import { toneClass } from "./theme";
+import { boxOf, viewOf, zoomed, type View } from "./view_box";
 
 /** The frame of a deforming shape. */
 const OWN_COURSE = -2;
@@ -38,6 +39,10 @@ export class Drawing {
   /** Points to include in the view, by purpose. */
   private readonly more = new Map<string, readonly (readonly [number, number])[]>();
   private motion!: MotionView;
+  /** The view chosen by zooming or panning; null: that of the data. */
+  private chosen: View | null = null;
+  /** Called after the view has changed. */
+  viewed: () => void = () => {};
 
   constructor(
     private data: PageData,
@@ -57,11 +62,48 @@ export class Drawing {
   /** Set other data: sizes of symbols and view. */
   renew(data: PageData): void {
     this.data = data;
-    const [left, bottom, right, top] = (this.view = around(data.view, [...this.more.values()].flat()));
+    const whole = around(data.view, [...this.more.values()].flat());
+    const { width, height } = this.size;
+    const [left, bottom, right, top] = (this.view = this.chosen ? boxOf(this.chosen, width, height) : whole);
     const box = `${left} ${-top} ${right - left} ${top - bottom}`;
     if (box === this.element.getAttribute("viewBox")) return;
     this.element.setAttribute("viewBox", box);
     this.fit();
+    this.viewed();
+  }
+
+  /** The size of the drawing on the screen [px]. */
+  private get size(): { width: number; height: number } {
+    const { clientWidth, clientHeight } = this.element;
+    return { width: clientWidth || 1, height: clientHeight || 1 };
+  }
+
+  /** The visible part of the plane. */
+  get window(): View {
+    const { width, height } = this.size;
+    return this.chosen ?? viewOf(this.view, width, height);
+  }
+
+  /** Keep a part of the plane visible; null: the whole drawing. */
+  see(view: View | null): void {
+    this.chosen = view;
+    this.renew(this.data);
+  }
+
+  /** Zoom by a factor about a place in the plane. */
+  zoom(factor: number, at: readonly [number, number]): void {
+    this.see(zoomed(this.window, factor, at));
+  }
+
+  /** Move the visible part of the plane. */
+  pan(dx: number, dy: number): void {
+    const { x, y, width } = this.window;
+    this.see({ x: x + dx, y: y + dy, width });
+  }
+
+  /** Length in the plane of one pixel. */
+  get pixel(): number {
+    return this.window.width / this.size.width;
   }
 
   /** Include these points in the view, unless the mechanism becomes too small; none: reset. */

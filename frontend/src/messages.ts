@@ -22,6 +22,14 @@ export interface MovePoint {
   live?: boolean;
 }
 
+export interface MovePoints {
+  kind: "move_points";
+  id?: number;
+  places: Record<string, readonly [number, number]>;
+  keep?: readonly (string)[];
+  live?: boolean;
+}
+
 export interface SetInput {
   kind: "set_input";
   id?: number;
@@ -58,6 +66,12 @@ export interface AddLink {
 
 export interface RemoveLink {
   kind: "remove_link";
+  id?: number;
+  name: string;
+}
+
+export interface ReverseLink {
+  kind: "reverse_link";
   id?: number;
   name: string;
 }
@@ -131,6 +145,7 @@ export interface SetSheet {
   kind: "set_sheet";
   id?: number;
   width: number;
+  edited?: boolean;
 }
 
 export interface SolveAt {
@@ -236,8 +251,8 @@ export interface FileState {
   readable: boolean;
 }
 
-export interface DraftShown {
-  kind: "draft_shown";
+export interface SketchShown {
+  kind: "sketch_shown";
   answers: number | null;
   page: PageData;
 }
@@ -507,11 +522,13 @@ export interface ProblemShown {
 export type LiveEdit =
   | SetNumber
   | MovePoint
+  | MovePoints
   | SetInput
   | AddPoint
   | RemovePoint
   | AddLink
   | RemoveLink
+  | ReverseLink
   | SetGround
   | AddJoint
   | RemoveJoint
@@ -523,11 +540,13 @@ export type LiveEdit =
 export type LiveRequest =
   | SetNumber
   | MovePoint
+  | MovePoints
   | SetInput
   | AddPoint
   | RemovePoint
   | AddLink
   | RemoveLink
+  | ReverseLink
   | SetGround
   | AddJoint
   | RemoveJoint
@@ -554,7 +573,7 @@ export type LiveRequest =
 export type LiveEvent =
   | PaletteShown
   | FileState
-  | DraftShown
+  | SketchShown
   | MotionFound
   | PositionFound
   | CannotClose

@@ -81,7 +81,7 @@ export class MotionView {
 
   /** The leading input. */
   get input(): Series {
-    return this.series[0]!;
+    return this.series[0] ?? STILL;
   }
 
   /** Whether the input decreases at a row in the order of the motion. */
@@ -139,6 +139,9 @@ export class MotionView {
     return way;
   }
 }
+
+/** The input of a drawing of one position. */
+const STILL: Series = { name: "", shown: "", unit: "", group: "input", values: new Float64Array(1), first: null, firstUnit: "", band: [] };
 
 /** A difference of angles, within half a turn. */
 function shorter(angle: number, turn: number): number {

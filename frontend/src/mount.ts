@@ -44,6 +44,10 @@ export interface Mounted {
   readonly input: number;
   /** The displayed row of the table. */
   readonly row: number;
+  /** The coordinates of all points in the displayed row. */
+  readonly points: Readonly<Record<string, readonly [number, number]>>;
+  /** Start or stop the motion. */
+  play(on: boolean): void;
   /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
   readonly charts: Charts;
@@ -192,6 +196,15 @@ class Page implements Mounted {
     return this.view.order[this.player.at]!;
   }
 
+  get points(): Record<string, readonly [number, number]> {
+    const row = this.view.order[this.player.at]!;
+    return Object.fromEntries(this.view.points.map(({ name, x, y }) => [name, [x[row]!, y[row]!] as const]));
+  }
+
+  play(on: boolean): void {
+    this.player.play(on);
+  }
+
   get values(): Record<string, number> {
     const { row } = this;
     return Object.fromEntries(this.view.series.map((one) => [one.name, one.values[row]!]));
@@ -242,6 +255,7 @@ class Page implements Mounted {
       this.table.show(view);
       this.whole.show(view);
     }
+    this.root.classList.toggle("lw-still", view.input.name === "");
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
     this.player.restart(view.order.length, view.data.closed, index);

@@ -79,20 +79,11 @@ export class Build {
   private readonly paths: HTMLElement;
   private readonly parts: HTMLElement;
   private readonly text: HTMLTextAreaElement;
-  private readonly collect: HTMLInputElement;
-  private readonly waiting: HTMLElement;
-  private collected: LiveEdit[] = [];
   private offered: readonly Piece[] = PLAIN;
 
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
-    const label = html("label", { class: "lw-toggle", title: "The states between queued changes need not be valid mechanisms" });
-    this.collect = html("input", { type: "checkbox" }, label);
-    label.append("Queue changes and apply them together");
-    this.waiting = html("div", { class: "lw-waiting" });
-    this.palette.append(label, this.waiting);
-    this.collect.addEventListener("change", () => this.pending());
     this.paths = this.group("Paths of points", false);
     this.parts = this.group("Remove", false);
     const box = this.group("Text of the file", false);
@@ -117,7 +108,7 @@ export class Build {
     this.paths.querySelectorAll("div").forEach((old) => old.remove());
     const box = html("div", { class: "lw-parts" }, this.paths);
     for (const point of file.traceable) {
-      toggle(box, point, file.traced.includes(point), (on) => this.make({ kind: "trace_point", point, on }));
+      toggle(box, point, file.traced.includes(point), (on) => this.desk.ask({ kind: "trace_point", point, on }));
     }
   }
 
@@ -125,47 +116,6 @@ export class Build {
     const box = html("details", { class: "lw-group", ...(open ? { open: "" } : {}) }, this.element);
     html("summary", {}, box, title);
     return box;
-  }
-
-  private make(edit: LiveEdit): void {
-    if (!this.collect.checked) {
-      this.desk.ask(edit);
-      return;
-    }
-    this.collected.push(edit);
-    this.pending();
-    this.pieces(this.desk.file()); // what was collected can be named
-  }
-
-  /** The file with queued points and links. */
-  private withCollected(file: FileState): FileState {
-    const points = { ...file.points };
-    const links = [...file.links];
-    for (const edit of this.collected) {
-      if (edit.kind === "add_point") points[edit.name] = [edit.x, edit.y];
-      if (edit.kind === "add_link") links.push({ name: edit.name, points: edit.points });
-    }
-    return { ...file, points, links };
-  }
-
-  private pending(): void {
-    this.waiting.replaceChildren();
-    if (!this.collect.checked) this.collected = [];
-    if (!this.collected.length) return;
-    const list = html("ol", {}, this.waiting);
-    for (const edit of this.collected) html("li", {}, list, described(edit));
-    const apply = html("button", { type: "button", class: "lw-wanted lw-save" }, this.waiting, `Apply ${this.collected.length} change${this.collected.length > 1 ? "s" : ""}`);
-    apply.addEventListener("click", () => {
-      this.desk.ask({ kind: "together", edits: this.collected });
-      this.collected = [];
-      this.pending();
-      this.pieces(this.desk.file());
-    });
-    const drop = html("button", { type: "button" }, this.waiting, "Discard");
-    drop.addEventListener("click", () => {
-      this.collected = [];
-      this.pending();
-    });
   }
 
   private inputs(file: FileState): void {
@@ -196,7 +146,7 @@ export class Build {
       event.preventDefault();
       const wanted = drives.find(({ text }) => text === driven.value);
       const changed = fields.filter(({ value, input }) => input.value.trim() && input.value !== value);
-      this.make({
+      this.desk.ask({
         kind: "set_input",
         number: k,
         ...(wanted && wanted !== now ? { drive: wanted.kind, name: wanted.name } : {}),
@@ -205,8 +155,7 @@ export class Build {
     });
   }
 
-  private pieces(known: FileState): void {
-    const file = this.withCollected(known);
+  private pieces(file: FileState): void {
     const open = Array.from(this.palette.querySelectorAll(".lw-piece[open] > summary"), (one) => one.textContent);
     this.palette.querySelectorAll("details, p").forEach((old) => old.remove());
     const sketched = file.form === "points-and-links";
@@ -233,7 +182,7 @@ export class Build {
     html("button", { type: "submit" }, form, `Add ${piece.title.toLowerCase()}`);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
-      this.make(piece.edit(Object.fromEntries(entries.map(([name, read]) => [name, read()]))));
+      this.desk.ask(piece.edit(Object.fromEntries(entries.map(([name, read]) => [name, read()]))));
     });
   }
 
@@ -242,7 +191,7 @@ export class Build {
     const box = html("div", { class: "lw-parts" }, this.parts);
     const chip = (text: string, edit: LiveEdit): void => {
       const button = html("button", { type: "button", "aria-label": `Remove ${text}` }, box, `${text} ×`);
-      button.addEventListener("click", () => this.make(edit));
+      button.addEventListener("click", () => this.desk.ask(edit));
     };
     for (const link of file.links) {
       chip(`link ${link.name}`, { kind: "remove_link", name: link.name });
@@ -308,12 +257,4 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   if (kind !== "numbers") return () => input.value.trim();
   input.placeholder = "20, 40";
   return () => [input.value].filter((text) => text.trim());
-}
-
-/** A short description of a change. */
-export function described(edit: LiveEdit): string {
-  const what = edit.kind.replace("_", " ");
-  const fields = edit as unknown as Readonly<Record<string, unknown>>;
-  const typed = fields.typed as Entries | undefined;
-  return `${what} ${String(fields.name ?? fields.point ?? typed?.name ?? "")}`.trim();
 }

@@ -1,30 +1,37 @@
 // The live page: drawing and player as on every page, with panels that edit the file.
 
-import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound } from "../messages";
-import { mount, type Mounted, type PageData } from "../mount";
-import { themeButton } from "../theme_button";
-import { unitText } from "../chart";
-import { shortNumber, trimmed } from "../numbers";
-import { html } from "../svg";
+import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound, SketchShown } from "../messages";
+import { mount, type Mounted } from "../mount";
+import type { PageData } from "../page_data";
+import { html, svg } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
 import { Build } from "./build";
 import { Busy } from "./busy";
 import { CircuitsPanel } from "./circuits";
+import { blank, closing } from "./closing";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { ExportMenu } from "./export_menu";
+import { Editor } from "./draw/editor";
+import { Readiness } from "./draw/readiness";
 import { Latest } from "./latest";
+import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { Plots } from "./plots";
-import { pictureOf, type Points } from "./schematic";
-import { Sketch } from "./sketch";
+import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
 import { Ways } from "./ways";
 
 /** Events that answer a request, so that the next can be sent. */
-const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "newton_shown", "refused", "problems_found"]);
+const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "sketch_shown", "newton_shown", "refused", "problems_found"]);
+
+/** Widths of a blank sheet by unit; otherwise 240. */
+const SHEETS: Readonly<Record<string, number>> = { mm: 240, cm: 24, m: 0.24, in: 10, ft: 1 };
+
+/** Logarithm of the zoom at which symbols are drawn anew. */
+const RESIZED = 0.2;
 
 export class LivePage {
   private readonly connection: Connection;
@@ -35,20 +42,26 @@ export class LivePage {
   private readonly ways: Ways;
   private readonly newton: Newton;
   private readonly build: Build;
-  private readonly sketch: Sketch;
   private readonly circuits: CircuitsPanel;
   private readonly plots: Plots;
   private readonly exports: ExportMenu;
   private readonly busy = new Busy();
   /** The row at which the motion of the file was left for a circuit. */
   private left: number | null = null;
-  /** The last motion of the file. */
-  private found: MotionFound | null = null;
+  private readonly editor: Editor;
+  private readonly readiness: Readiness;
   private readonly tabs: Tabs;
-  private readonly picture = html("div", { class: "lw-instead" });
   private file: FileState | null = null;
   private page: Mounted | null = null;
-  private plain: HTMLElement | null = null;
+  /** The pages of the motion and of the sketch. */
+  private moving: PageData | null = null;
+  private sketched: PageData | null = null;
+  /** Whether the page was made with plots. */
+  private charted = false;
+  private hint: Element | null = null;
+  /** The width of the sheet that was told last. */
+  private width = 1;
+  private resizing: ReturnType<typeof setTimeout> | undefined;
   /** Whether no row of the table has a position. */
   private rowless = false;
 
@@ -59,12 +72,17 @@ export class LivePage {
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
     this.build = new Build(desk);
-    this.sketch = new Sketch(desk);
     this.plots = new Plots(desk);
     this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
     this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
     this.bar.element.append(this.exports.element);
     document.body.append(this.busy.element);
+    this.editor = new Editor(desk, {
+      mode: (edited) => this.chosen(edited),
+      viewed: () => this.viewed(),
+      hint: (text) => this.hint && (this.hint.textContent = text),
+    });
+    this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
@@ -104,17 +122,21 @@ export class LivePage {
 
   /** The displayed row of the motion of the file. */
   private row(): number | null {
-    return this.page === null || this.circuits.elsewhere ? null : this.page.row;
+    const away = this.moving === null || this.editor.edited || this.circuits.elsewhere;
+    return this.page === null || away ? null : this.page.row;
   }
 
   /** Draw the motion of a circuit, or that of the file. */
   private look(page: PageData | null): void {
-    const shown = page ?? this.found?.page ?? null;
-    if (shown === null || this.page === null) return;
-    if (page !== null) this.left ??= this.page.row;
-    this.page.update(shown);
-    if (page === null && this.left !== null) this.page.goToRow(this.left);
-    if (page === null) this.left = null;
+    if (this.page === null) return;
+    if (page !== null) {
+      this.left ??= this.page.row;
+      this.page.update(page);
+      return;
+    }
+    this.display();
+    if (this.left !== null) this.page.goToRow(this.left);
+    this.left = null;
   }
 
   private here(): Record<string, number> {
@@ -134,11 +156,14 @@ export class LivePage {
       case "motion_found":
         this.motion(event);
         break;
+      case "sketch_shown":
+        this.sketch(event);
+        break;
       case "cannot_close":
         this.open(event);
         break;
       case "position_found":
-        if (this.page === null || this.rowless || !this.file!.inputs.length) this.still(event.points, this.rowless ? "" : event.message);
+        if (this.page === null || this.rowless || !this.file!.inputs.length) this.still(event.page, this.rowless ? "" : event.message);
         break;
       case "configurations_found":
         this.ways.show(event);
@@ -159,7 +184,7 @@ export class LivePage {
         this.newton.show(event);
         break;
       case "point_moved":
-        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.done(this.sketch.told(event));
+        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.done(moved(event));
         break;
       case "problems_found":
         this.notices.problems(event);
@@ -201,117 +226,143 @@ export class LivePage {
     this.circuits.renew();
     this.plots.renew();
     this.newton.renew();
-    this.sketch.renew();
+    this.editor.renew(file);
+    this.readiness.show(file);
+    this.page?.places.drawing.element.querySelector(".lw-gaps")?.remove();
   }
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
-    if (!found.live) this.found = found;
+    this.rowless = found.page === null && found.missing === found.rows;
     this.left = null;
     this.circuits.left();
-    this.rowless = found.page === null && found.missing === found.rows;
-    if (found.page !== null) {
-      this.picture.remove();
-      this.element.classList.remove("lw-stays-open");
-      if (this.page === null) this.begin(found);
-      else this.page.update(found.page, found.live);
-      this.element.dataset.live = String(found.live);
-      if (!found.live) this.plots.moved();
-    } else if (found.missing < found.rows) {
-      this.still({}, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
+    this.moving = found.page;
+    this.element.dataset.live = String(found.live);
+    if (found.page !== null) this.display(found.live);
+    else if (found.missing < found.rows) {
+      this.still(null, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
+    if (found.page !== null && !found.live) this.plots.moved();
     this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
+    this.updated();
+  }
+
+  /** Count updates, for whoever waits for one. */
+  private updated(): void {
     this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
   }
 
-  private begin(found: MotionFound): void {
-    this.plain = null;
-    const page = (this.page = mount(this.element, found.page!, { row: () => this.newton.moved(), changing: true }));
+  /** Show the motion, or the sketch while it is edited or does not move. */
+  private display(live = false): void {
+    const page = this.editor.edited || this.moving === null ? (this.sketched ?? this.moving) : this.moving;
+    if (page === null) return;
+    const moves = page.motions[0]!.columns.length > 0;
+    const fresh = this.page === null || (moves && !this.charted);
+    if (fresh) this.begin(page);
+    else this.page!.update(page, live && page === this.moving);
+    this.charted ||= moves;
+    this.editor.redraw(this.editor.edited ? this.moving : null);
+  }
+
+  private begin(data: PageData): void {
+    const view = this.page && this.editor.edited ? this.page.places.drawing.window : null;
+    this.page?.destroy();
+    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), still: data.motions[0]!.columns.length === 0, changing: true }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
-    canvas.after(this.notices.element);
+    canvas.after(this.readiness.element, this.notices.element);
     side.prepend(this.tabs.element);
-    head.closest(".lw")!.querySelector(".lw-hint")!.textContent = "Drag a pin or a link.";
+    this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
+    this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
     this.plots.attach(page);
-    this.sketch.attach(page);
+    this.editor.attach(page);
+    if (view) page.places.drawing.see(view);
   }
 
-  /** The same layout without a motion. */
-  private places(): { canvas: HTMLElement } {
-    if (this.page !== null) return this.page.places;
-    if (this.plain === null) {
-      this.plain = html("div", { class: "lw" });
-      this.element.replaceChildren(this.plain);
-      const head = html("header", { class: "lw-head" }, this.plain);
-      html("h1", {}, head, this.file!.title);
-      head.append(this.bar.element);
-      themeButton(head, this.plain);
-      const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.plain);
-      html("div", { class: "lw-canvas" }, stage);
-      stage.append(this.notices.element);
-      const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.plain);
-      side.append(this.tabs.element);
+  /** Another tool: the sketch is asked for while it is edited. */
+  private chosen(edited: boolean): void {
+    const { drawing } = this.page!.places;
+    if (edited) {
+      this.page!.play(false);
+      const empty = Object.keys(this.file!.points).length === 0;
+      drawing.see(empty ? { x: 0, y: 0, width: SHEETS[this.file!.length_unit] ?? 240 } : wider(drawing.window));
+    } else {
+      drawing.see(null);
+      this.sketched = null;
     }
-    return { canvas: this.plain.querySelector(".lw-canvas")! };
+    this.sheet();
+    if (!edited) this.display();
   }
 
-  /** Show a picture of points instead of a motion. */
-  private still(points: Points, text: string): void {
-    const { canvas } = this.places();
-    const drawn = Object.keys(points).length > 0;
-    this.picture.replaceChildren(drawn ? pictureOf(this.file!.links, points) : this.equations());
-    canvas.append(this.picture);
-    if (this.rowless) this.element.classList.add("lw-stays-open");
+  /** Symbols of a sketch have the size of the view. */
+  private viewed(): void {
+    if (!this.editor.edited || this.page === null) return;
+    const { width } = this.page.places.drawing.window;
+    if (Math.abs(Math.log(width / this.width)) < RESIZED) return;
+    clearTimeout(this.resizing);
+    this.resizing = setTimeout(() => this.sheet(), 150);
+  }
+
+  /** Tell the width of the sheet, by which symbols are sized. */
+  private sheet(): void {
+    const { width } = this.page!.places.drawing.window;
+    this.width = width;
+    this.send({ kind: "set_sheet", width, edited: this.editor.edited });
+  }
+
+  private sketch(event: SketchShown): void {
+    this.sketched = event.page;
+    const first = this.page === null;
+    if (this.file!.lacks.length) {
+      this.moving = null;
+      this.notices.calm();
+    }
+    this.display();
+    if (first) this.editor.choose(Object.keys(this.file!.points).length ? "select" : "link");
+    this.updated();
+  }
+
+  /** Show a position instead of a motion. */
+  private still(page: PageData | null, text: string): void {
+    this.sketched = page;
+    this.moving = null;
+    if (page !== null) this.display();
+    else this.instead();
     if (text) this.notices.open(text, []);
   }
 
   /** Show equations if there is nothing to draw. */
-  private equations(): HTMLElement {
-    const box = html("div", { class: "lw-plain-equations" });
+  private instead(): void {
+    if (this.page === null) this.begin(blank(this.file!));
+    const box = html("div", { class: "lw-instead lw-plain-equations" });
     for (const equation of this.file!.equations) html("p", {}, box, equation);
-    return box;
+    this.page!.places.canvas.querySelector(".lw-instead")?.remove();
+    this.page!.places.canvas.append(box);
   }
 
   private open(event: CannotClose): void {
-    if (!Object.keys(event.points).length) {
-      this.still({}, event.message);
-      return;
-    }
-    const { canvas } = this.places();
-    this.picture.replaceChildren(pictureOf(this.file!.links, event.points, event.open_ends));
-    canvas.append(this.picture);
-    this.element.classList.add("lw-stays-open");
-    const unit = this.file!.length_unit;
-    const gap = `${trimmed(shortNumber(event.gap, 4))} ${unit}`.trim();
-    const remedies = Object.entries(event.remedies).map(([name, needed]) => {
-      const now = this.file!.numbers.find((one) => one.name === name)?.value ?? needed;
-      const value = Number((needed + 0.03 * (needed - now)).toPrecision(6)); // a little beyond where the loops just close
-      const rounded = trimmed(shortNumber(value));
-      const set = (): void => {
-        this.send({ kind: "set_number", name, value });
-      };
-      return [`${name} = ${rounded}`, "Changing only this length closes the loops", set] as const;
-    });
-    const help = remedies.length ? " Any one of these changes closes the loops:" : "";
-    const at = Object.entries(event.input).map(([name, value]) => `${name} = ${trimmed(shortNumber(value, 5))}${unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "")}`);
-    const where = at.length ? `At ${at.join(", ")} the loops` : "The loops";
-    const elsewhere = Object.entries(event.elsewhere).map(([name, value]) => {
-      const begin = (): void => {
-        this.send({ kind: "assemble_at", at: event.elsewhere });
-      };
-      const unit = unitText(this.file!.inputs.find((one) => one.name === name)?.unit ?? "");
-      return [`begin at ${name} = ${trimmed(shortNumber(value, 5))}${unit}`, "The loops close at this input: move the points of the sketch to that position", begin] as const;
-    });
-    const there = elsewhere.length ? (remedies.length ? " Or:" : " The loops close elsewhere:") : "";
-    this.notices.open(`${where} cannot close: a gap of ${gap} remains.${help}${remedies.length ? "" : there}`, [...remedies, ...elsewhere]);
-    this.element.dataset.updates = String(Number(this.element.dataset.updates ?? 0) + 1);
+    this.still(event.page, event.page === null ? event.message : "");
+    if (event.page === null) return;
+    this.gaps(event);
+    const { text, remedies } = closing(event, this.file!);
+    const choices = remedies.map(({ label, title, request }) => [label, title, () => void this.send(request)] as const);
+    this.notices.open(text, choices);
+    this.updated();
+  }
+
+  /** Dashed lines between ends of links that do not meet. */
+  private gaps({ open_ends }: CannotClose): void {
+    const { drawing } = this.page!.places;
+    drawing.element.querySelector(".lw-gaps")?.remove();
+    const group = svg("g", { class: "lw-gaps" }, drawing.element);
+    drawGaps(group, open_ends, drawing.pixel);
   }
 
   private lost(message: string): void {
     this.busy.stop();
     this.bar.close();
-    if (this.page === null && this.plain === null) {
+    if (this.page === null) {
       this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));
       return;
     }
@@ -321,4 +372,9 @@ export class LivePage {
     }
     this.notices.say(message, { "Reload": () => location.reload() }, false);
   }
+}
+
+/** A view with room around it, to draw on. */
+function wider({ x, y, width }: { x: number; y: number; width: number }): { x: number; y: number; width: number } {
+  return { x, y, width: 1.3 * width };
 }

@@ -44,6 +44,12 @@ export class Notices {
     }
   }
 
+  /** No statement about the motion. */
+  calm(): void {
+    this.motion.replaceChildren();
+    this.motion.hidden = true;
+  }
+
   problems(found: ProblemsFound): void {
     this.clear();
     const several = found.problems.length > 1;

@@ -52,17 +52,22 @@ export function drawLinks(group: SVGGElement, links: readonly Link[], points: Po
     const kind = ground ? "ground" : places.length > 2 ? "plate" : "bar";
     svg("path", { class: `lw-plain-${kind}`, d, "stroke-width": (ground ? 1 : 2.4) * stroke }, group);
   }
-  for (const { joint, end } of ends) {
-    svg("path", { class: "lw-gap", d: pathOf([...joint, ...end], false), "stroke-width": 2 * stroke }, group);
-    for (const [x, y] of [joint, end]) {
-      svg("circle", { class: "lw-gap-end", cx: x, cy: -y, r: 4.5 * stroke, "stroke-width": 1.5 * stroke }, group);
-    }
-  }
+  drawGaps(group, ends, stroke);
   for (const [name, [x, y]] of Object.entries(points)) {
     svg("circle", { class: "lw-plain-pin", cx: x, cy: -y, r: 2.6 * stroke, "stroke-width": 1.2 * stroke }, group);
     if (!look.names) continue;
     const text = svg("text", { x: x + 0.6 * look.names, y: -y - 0.6 * look.names, "font-size": look.names }, group);
     text.textContent = printedName(name);
+  }
+}
+
+/** Dashed lines between ends of links that do not meet. */
+export function drawGaps(group: SVGGElement, ends: readonly OpenEnd[], stroke: number): void {
+  for (const { joint, end } of ends) {
+    svg("path", { class: "lw-gap", d: pathOf([...joint, ...end], false), "stroke-width": 2 * stroke }, group);
+    for (const [x, y] of [joint, end]) {
+      svg("circle", { class: "lw-gap-end", cx: x, cy: -y, r: 4.5 * stroke, "stroke-width": 1.5 * stroke }, group);
+    }
   }
 }
 

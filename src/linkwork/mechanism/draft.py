@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import cmath
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
 from typing import Self
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND, canonical
-from linkwork.mechanism.bodies import Shapes
+from linkwork.mechanism.bodies import Measured, Shapes
 from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.link_shapes import link_shapes
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.part.index import PARTS, JoinedBodies
-from linkwork.mechanism.part.part import Part, PartChecks, carriers, turning_links
+from linkwork.mechanism.part.part import LARGEST, Part, PartChecks, carriers, turning_links
 
 __all__ = ["Draft"]
 
@@ -76,6 +77,20 @@ class Draft(JoinedBodies):
         """The links and cylinders at every point, in the file's order."""
         return carriers(self)
 
+    @cached_property
+    def measured(self) -> tuple[Measured, ...]:
+        """Lengths that are not given; of a draft, those between neighbouring points of links."""
+        if not self.problems:
+            return self.shapes.measured
+        draft = self.drawable()
+        given = {frozenset(key.split()) for key in self.lengths}
+        return tuple(
+            Measured(link=link, points=(a, b), length=abs(draft.sketched(b) - draft.sketched(a)))
+            for link, points in draft.links.items()
+            for a, b in pairwise(points)
+            if link != GROUND and frozenset((a, b)) not in given
+        )
+
     def drawable(self) -> Self:
         """The points with coordinates, and the links and parts that exist between them, shaped as
         sketched.
@@ -117,7 +132,7 @@ class Draft(JoinedBodies):
     def _is_placed(self, point: str) -> bool:
         place = self.points[point]
         try:
-            return len(place) == 2 and all(math.isfinite(self.numbers(c)) for c in place)
+            return len(place) == 2 and all(abs(self.numbers(c)) <= LARGEST for c in place)
         except ExpressionError:
             return False
 

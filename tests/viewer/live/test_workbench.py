@@ -335,7 +335,7 @@ def test_joints_sliders_and_gears_come_and_go(bench: Workbench) -> None:
         ask.AddPart(table="gears", typed={**wheels, "wheels": ("wheel", "pinion")}),
     )
     events = bench.handle(ask.Together(edits=edits))
-    assert kinds(events) == ["FileState", "DraftShown"]  # nothing turns the wheels
+    assert kinds(events) == ["FileState", "SketchShown"]  # nothing turns the wheels
     bench.handle(ask.Undo())
     crank = ask.Together(
         edits=(
@@ -706,7 +706,7 @@ def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path:
     bench = Workbench(MechanismFile(path, blank_sheet("new")), lw.loads)
     state, shown = bench.opened()[1:]
     assert isinstance(state, tell.FileState)
-    assert isinstance(shown, tell.DraftShown)
+    assert isinstance(shown, tell.SketchShown)
     assert (state.title, state.points, state.unsaved) == ("new", {}, False)
     assert [lack.message[:20] for lack in state.lacks] == ["Draw the first link:"]
     assert bench.poll() == []

@@ -22,14 +22,15 @@ from linkwork.mechanism.figures import Disc, Figure, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
 
 __all__ = [
-    "AGREE", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
+    "AGREE", "LARGEST", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
     "Inversion", "NamedPart", "Part", "PartChecks", "carriers", "pinned", "turning_links",
 ]  # fmt: skip
 
 #: Relative tolerance of redundant numbers.
 AGREE = 1e-9
 _MOST_UNEVEN = 1e6  # distances of neighbouring points of a curve, from the smallest to the largest
-_LARGEST = 1e100  # keeps squares and quotients of lengths finite
+#: The largest length: it keeps squares and quotients finite.
+LARGEST = 1e100
 
 POINT, LINK, SLIDER = Text(of="point"), Text(of="link"), Text(of="slider")
 POINT_PAIR = ListOf(Text(), "point", 2, 2)
@@ -304,8 +305,8 @@ class PartChecks:
     def length(self, number: Number, *field: str | int) -> float:
         """A length or coordinate, limited so that its square is finite."""
         amount = self.number(number, *field)
-        if abs(amount) > _LARGEST:
-            self.add(f"{amount:g} is too large: at most {_LARGEST:g} {self.linkage.length}", *field)
+        if abs(amount) > LARGEST:
+            self.add(f"{amount:g} is too large: at most {LARGEST:g} {self.linkage.length}", *field)
         return amount
 
     def positive(self, number: Number, noun: str, *field: str | int) -> float:
@@ -343,5 +344,5 @@ class PartChecks:
                 self.add(f"is more than {times} points are from each other", field, k)
         if all(step <= _MOST_UNEVEN * least_step for step in steps):
             for k, place in enumerate(places):
-                if max(abs(place.real), abs(place.imag)) > _LARGEST:
-                    self.add(f"is too far from the origin: at most {_LARGEST:g}", field, k)
+                if max(abs(place.real), abs(place.imag)) > LARGEST:
+                    self.add(f"is too far from the origin: at most {LARGEST:g}", field, k)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live.edits import Before
 from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.queries import Query
 
 __all__ = ["Drag", "goes_on", "same_thing"]
@@ -31,6 +31,8 @@ def same_thing(edit: ask.Request) -> str:
             return f"number {edit.name}"
         case ask.MovePoint():
             return f"point {edit.point} {edit.lengths_follow}"
+        case ask.MovePoints():
+            return f"points {' '.join(edit.places)}"
         case _:
             return kind_of(type(edit))
 

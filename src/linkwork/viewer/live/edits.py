@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import singledispatch
 
-from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.description import Description
@@ -16,28 +14,14 @@ from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
+from linkwork.viewer.live.moving_points import Before, held_places, move_points, put_place, rounded
 from linkwork.viewer.live.palette import part_name, part_of
 
-__all__ = ["Before", "Followed", "applied", "edit_title"]
+__all__ = ["Followed", "applied", "edit_title"]
 
 _DRIVES = ("link", "joint", "slider", "cylinder", "variable")
+_LENGTHS = ("slider", "cylinder")
 _RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
-_DIGITS = 12  # digits of measured dimensions; redundant ones must agree to nine
-
-
-@dataclass(frozen=True, kw_only=True)
-class Before:
-    """The mechanism before a change, and coordinates of its points at the start (x, y)."""
-
-    description: Description
-    places: Mapping[str, tuple[float, float]]
-
-    def place(self, point: str) -> complex:
-        """The coordinates of a point: assembled, or as sketched if it cannot be assembled."""
-        if point in self.places:
-            return complex(*self.places[point])
-        assert isinstance(self.description, Draft)
-        return self.description.sketched(point)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +53,7 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
         if (measured := _measured(description, edit.name)) is None:
             raise
         text.put(("lengths", measured), edit.value)
+        _stretch(measured, edit.value, text, before)
         return Followed()
     written = quantity.written(description)
     # a number in place of a formula would silently remove the dependence on dimensions
@@ -77,10 +62,26 @@ def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
             f'"{quantity.name}" is the formula {written}: change a dimension in '
             "it, or send another formula"
         )
-    if quantity.table == "lengths" and _move_pivot(quantity, edit.value, text, description):
-        return Followed()
+    if quantity.table == "lengths":
+        if _move_pivot(quantity, edit.value, text, description):
+            return Followed()
+        _stretch(quantity.key, edit.value, text, before)
     text.put(_path(quantity, text), edit.value)
     return Followed()
+
+
+def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> None:
+    """Give a length to a draft, which is not assembled: its freer end moves in the sketch."""
+    draft = before.description
+    if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
+        return
+    carriers = draft.drawable().carriers()
+    if not set(key.split()) <= carriers.keys():
+        return
+    fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
+    start, end = before.place(fixed), before.place(free)
+    if length > 0 and end != start and not any(isinstance(c, str) for c in draft.points[free]):
+        put_place(text, free, start + (end - start) / abs(end - start) * length)
 
 
 def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
@@ -98,7 +99,7 @@ def _measured(description: Description, name: str) -> str | None:
     if not isinstance(description, Draft):
         return None
     wanted = sorted(map(canonical, name.split()))
-    for measured in description.shapes.measured:
+    for measured in description.measured:
         if sorted(map(canonical, measured.points)) == wanted:
             return " ".join(measured.points)
     return None
@@ -117,59 +118,35 @@ def _move_pivot(
     base = description.sketched(first)
     span = description.sketched(second) - base
     # lengths on ground follow from coordinates: both change together
-    _put_place(text, second, base + span / abs(span) * length)
+    put_place(text, second, base + span / abs(span) * length)
     text.put(("lengths", quantity.key), length)
     return True
 
 
 @applied.register
 def _(edit: ask.MovePoint, text: TextEdits, before: Before) -> Followed:
-    linkage = before.description
-    if not isinstance(linkage, Draft):
-        raise InputError(
-            "the points of this file follow from its equations: change a dimension instead"
-        )
+    linkage = _sketched(before)
     point = _known_point(linkage, edit.point)
-    place = complex(edit.x, edit.y)
-    if formulas := [c for c in linkage.points[point] if isinstance(c, str)]:
-        raise InputError(
-            f'"{point}" has the formula {formulas[0]}: change a dimension in it instead'
-        )
-    _put_place(text, point, place)
-    measured = [m for m in linkage.shapes.measured if point in m.points]
-    followed, stayed = [" ".join(m.points) for m in measured], []
-    for table in ("lengths", "angles"):
-        for key, number in getattr(linkage, table).items():
-            if point not in key.split():
-                continue
-            # a formula keeps its dependence on dimensions
-            if isinstance(number, str) or not edit.lengths_follow:
-                stayed.append(key)
-                continue
-            places = {p: place if p == point else before.place(p) for p in key.split()}
-            text.put((table, key), _measure(key, places, linkage))
-            followed.append(key)
-    return Followed(followed=tuple(followed), stayed=tuple(stayed))
+    places = {point: complex(edit.x, edit.y)}
+    followed, stayed = move_points(text, before, linkage, places, follow=edit.lengths_follow)
+    return Followed(followed=followed, stayed=stayed)
 
 
-def _measure(key: str, places: Mapping[str, complex], linkage: Draft) -> float:
-    """A measured length, or angle in the file's unit, between points with coordinates."""
-    match key.split():
-        case [a, b]:
-            return _rounded(abs(places[b] - places[a]))
-        case [a, vertex, b]:
-            rays = (places[b] - places[vertex]) * (places[a] - places[vertex]).conjugate()
-            return _rounded(linkage.angle.from_radians(phase(rays)))
-    raise ValueError(f"{key} names neither two nor three points")
+@applied.register
+def _(edit: ask.MovePoints, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    wanted = {_known_point(linkage, name): complex(*place) for name, place in edit.places.items()}
+    places = held_places(linkage, before, wanted, edit.keep)
+    followed, stayed = move_points(text, before, linkage, places, keep=edit.keep)
+    return Followed(followed=followed, stayed=stayed)
 
 
-def _rounded(number: float) -> float:
-    return float(f"{number:.{_DIGITS}g}")
-
-
-def _put_place(text: TextEdits, point: str, place: complex) -> None:
-    text.put(("points", point, 0), _rounded(place.real))
-    text.put(("points", point, 1), _rounded(place.imag))
+def _sketched(before: Before) -> Draft:
+    if isinstance(before.description, Draft):
+        return before.description
+    raise InputError(
+        "the points of this file follow from its equations: change a dimension instead"
+    )
 
 
 def _known_point(linkage: Draft, name: str) -> str:
@@ -199,15 +176,44 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
         for other in (*_DRIVES, "relative_to"):
             if other != edit.drive and text.has((*here, other)):
                 text.remove((*here, other))
+        _write_range(edit.drive, edit.name or "", here, text, before)
     for field, key in _RANGE.items():
         if (entry := getattr(edit, field)) is not None:
             text.put((*here, key), entry)
     return Followed()
 
 
+def _write_range(
+    drive: str, name: str, here: tuple[str | int, ...], text: TextEdits, before: Before
+) -> None:
+    """Replace a range that belongs to another kind of quantity; lengths have no natural one."""
+    number, inputs = here[-1], before.description.inputs
+    assert isinstance(number, int)
+    old = inputs[number].drives[0] if number < len(inputs) else "link"
+    if (old in _LENGTHS) == (drive in _LENGTHS):
+        return
+    for key in _RANGE.values():
+        if text.has((*here, key)):
+            text.remove((*here, key))
+    if drive in _LENGTHS:
+        span = _span_of(name, before)
+        for key, share in (("from", 0.25), ("to", 0.75), ("step", 0.005)):
+            text.put((*here, key), float(f"{share * span:.4g}"))
+
+
+def _span_of(name: str, before: Before) -> float:
+    """The length of a slider's line, or twice that of a cylinder."""
+    for part in getattr(before.description, "parts", ()):
+        if canonical(part.label) == canonical(name):
+            line = getattr(part, "line", None)
+            a, b = line or part.between
+            return abs(before.place(b) - before.place(a)) * (1.0 if line else 2.0) or 1.0
+    return 1.0
+
+
 @applied.register
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
-    _add(text, "points", edit.name, [_rounded(edit.x), _rounded(edit.y)])
+    _add(text, "points", edit.name, [rounded(edit.x), rounded(edit.y)])
     for link in edit.links:
         _carry(text, link, edit.name)
     return Followed()
@@ -258,6 +264,15 @@ def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
     _points_of(text, edit.name)
     text.remove(("links", edit.name))
     _drop_loose_dimensions(text)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
+    first, second, *rest = [*_points_of(text, edit.name), "", ""]
+    if not second:
+        raise InputError(f'"{edit.name}" has no direction: it has one point')
+    text.put(("links", edit.name), [second, first, *filter(None, rest)])
     return Followed()
 
 
@@ -368,6 +383,8 @@ def edit_title(edit: ask.Edit) -> str:
             return f"{edit.name} = {value}"
         case ask.MovePoint():
             return f"move {edit.point}"
+        case ask.MovePoints():
+            return f"move {', '.join(edit.places)}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

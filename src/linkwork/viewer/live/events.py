@@ -40,7 +40,6 @@ __all__ = [
     "CircuitFound",
     "CircuitsFound",
     "ConfigurationsFound",
-    "DraftShown",
     "Drive",
     "DrivenInput",
     "Event",
@@ -66,6 +65,7 @@ __all__ = [
     "Refused",
     "Remedy",
     "Saved",
+    "SketchShown",
     "Unknown",
     "Way",
     "Working",
@@ -80,8 +80,8 @@ class PaletteShown:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DraftShown:
-    """The drawing of a draft."""
+class SketchShown:
+    """The drawing of the points as sketched, or assembled at the start."""
 
     page: PageData
 
@@ -258,7 +258,7 @@ class Saved:
 Event = (
     PaletteShown
     | FileState
-    | DraftShown
+    | SketchShown
     | MotionFound
     | PositionFound
     | CannotClose

@@ -161,6 +161,10 @@ def _value(entry: Any, kind: Any, where: str, longest: int) -> Any:
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin in (types.UnionType, typing.Union):
         return _one_of(entry, parts, where, longest)
+    if origin is tuple and parts[-1] is not Ellipsis:
+        if len(_listed(entry, where)) != len(parts):
+            _refuse(f"{where}: must have {len(parts)} entries, got {len(entry)}")
+        return tuple(_each(entry, parts[0], where, longest))
     if origin is tuple:
         return tuple(_each(_listed(entry, where), parts[0], where, longest))
     if origin is dict:

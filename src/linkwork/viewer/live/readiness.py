@@ -40,19 +40,20 @@ def lacks_of(subject: Subject) -> tuple[Lack, ...]:
 def _without_ground(draft: Draft) -> Iterator[Lack]:
     if draft.links[GROUND]:
         return
-    ends = _free_ends(draft)
-    remedies = []
-    if ends:
-        label = f"Fix {_listed(ends)}"
-        remedies.append(Remedy(label=label, edits=(ask.SetGround(points=ends),)))
     yield Lack(
         message="Nothing is fixed to the ground.",
         key="",
         line=None,
         kind="",
         name="",
-        remedies=tuple(remedies),
+        remedies=tuple(_fixings(draft)),
     )
+
+
+def _fixings(draft: Draft) -> Iterator[Remedy]:
+    """The free ends of links, to be fixed to the ground."""
+    if ends := _free_ends(draft):
+        yield Remedy(label=f"Fix {_listed(ends)}", edits=(ask.SetGround(points=ends),))
 
 
 def _free_ends(draft: Draft) -> tuple[str, ...]:
@@ -108,6 +109,7 @@ def _remedies(problem: Problem, draft: Draft, kind: str, name: str) -> Iterator[
     if kind == "link" and name in draft.links and len(draft.links[name]) < 2:
         yield Remedy(label=f"Remove {name}", edits=(ask.RemoveLink(name=name),))
     if problem.key[:1] == ("input",) and len(problem.key) <= 2:
+        yield from _fixings(draft)
         for drive, one in _drives(draft):
             edit = ask.SetInput(number=len(draft.inputs), drive=drive, name=one)
             yield Remedy(label=f"Drive {one}", edits=(edit,))

@@ -24,6 +24,7 @@ __all__ = [
     "ListConfigurations",
     "ListQuantities",
     "MovePoint",
+    "MovePoints",
     "NewtonSteps",
     "Question",
     "Redo",
@@ -33,6 +34,7 @@ __all__ = [
     "RemovePart",
     "RemovePoint",
     "Request",
+    "ReverseLink",
     "Save",
     "SetGround",
     "SetInput",
@@ -73,6 +75,19 @@ class MovePoint:
     x: float
     y: float
     lengths_follow: bool = False
+    live: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovePoints:
+    """Move points of the drawing to other coordinates [length]; lengths between them and others
+    follow.
+
+    ``keep``: lengths that stay: a single point then moves along the circles that they leave to it.
+    """
+
+    places: dict[str, tuple[float, float]]
+    keep: tuple[str, ...] = ()
     live: bool = False
 
 
@@ -121,6 +136,13 @@ class AddLink:
 @dataclass(frozen=True, kw_only=True)
 class RemoveLink:
     """Remove a link, with the lengths and angles of this link only."""
+
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReverseLink:
+    """Exchange the first two points of a link: its angle then has the opposite direction."""
 
     name: str
 
@@ -189,11 +211,13 @@ class ChooseConfiguration:
 Edit = (
     SetNumber
     | MovePoint
+    | MovePoints
     | SetInput
     | AddPoint
     | RemovePoint
     | AddLink
     | RemoveLink
+    | ReverseLink
     | SetGround
     | AddJoint
     | RemoveJoint
@@ -227,9 +251,12 @@ class SetText:
 
 @dataclass(frozen=True, kw_only=True)
 class SetSheet:
-    """Tell the width of the visible part of the plane [length], by which symbols are sized."""
+    """Tell the width of the visible part of the plane [length], by which symbols are sized, and
+    whether the mechanism is ``edited`` in the drawing, which is then sent at its start.
+    """
 
     width: float
+    edited: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

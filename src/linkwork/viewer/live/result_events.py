@@ -213,7 +213,7 @@ def _changeable_numbers(
             formula=written if isinstance(written, str) else "",
         )
     if isinstance(description, Draft):
-        for measured in description.shapes.measured:
+        for measured in description.measured:
             yield tell.ChangeableNumber(
                 name=" ".join(measured.points),
                 value=measured.length,

@@ -55,12 +55,24 @@ class Subject:
 
     @cached_property
     def drawable(self) -> Draft:
-        """What can be drawn of the draft."""
-        assert self.draft is not None
-        return self.draft.drawable()
+        """What can be drawn of points and links."""
+        assert isinstance(self.description, Draft)
+        return self.description.drawable()
 
-    def page(self, size: float) -> PageData:
-        """The draft as drawn; ``size``: the least length by which symbols are sized."""
+    def page(self, size: float) -> PageData | None:
+        """The drawing at the start, or as sketched if it cannot be assembled; ``None`` without a
+        sketch.
+
+        ``size``: the least length by which symbols are sized.
+        """
+        if self.solvable is not None:
+            position = self.solvable.solve()
+            if position.status.ok and position.points:
+                title, units = position.mechanism, position.units
+                found = position.skeleton, position.points
+                return still_page(*found, units=units, title=title, size=size)
+        if not isinstance(self.description, Draft):
+            return None
         draft = self.drawable
         places = {name: draft.sketched(name) for name in draft.points}
         return still_page(

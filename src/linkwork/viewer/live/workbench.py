@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
-from linkwork.foundation.errors import InputError, MechanismError, Problem
+from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.status import Status
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
@@ -15,12 +15,14 @@ from linkwork.viewer.live import events as tell, requests as ask, result_events 
 from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
 from linkwork.viewer.live.answers import About, GivenUpError, check_quantities, reply
 from linkwork.viewer.live.drag import Drag, goes_on, same_thing
-from linkwork.viewer.live.edits import Before, Followed, applied, edit_title
+from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.queries import Query, answered, nearest_closure
+from linkwork.viewer.live.refusals import Refusing, refusing
 from linkwork.viewer.live.solvable import Read, Solvable
 from linkwork.viewer.live.subject import read_subject
 
@@ -30,11 +32,8 @@ _MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
 
 Events = list[tell.Event]
-Refusing = Callable[[Problem], bool]
 
 
-#: Edits that change numbers or choices, not what there is.
-_OF_NUMBERS = (ask.SetNumber, ask.MovePoint, ask.SetInput, ask.ChooseConfiguration, ask.TracePoint)
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
 
@@ -63,7 +62,7 @@ class Workbench:
         self.hurried = hurried
         self.working: Callable[[float], None] = lambda fraction: None
         self._subject = read_subject(file.text, file.name, read, whatever=True)
-        self._sheet = 0.0  # width of the visible part of the plane, for the symbols of drafts
+        self._sheet = ask.SetSheet(width=0.0)
         self._history = History(file.text)
         self._motion: Motion | None = None
         self._picture = MotionPicture()
@@ -155,7 +154,7 @@ class Workbench:
         try:
             followed = applied(edit, drag.text, drag.before)
             text = drag.text.text
-            told = self._accepted(text, edit_title(edit), live=live, refused=_refusing(edit))
+            told = self._accepted(text, edit_title(edit), live=live, refused=refusing(edit))
         except InputError:
             drag.text = TextEdits(self.text)  # without traces of the failed change
             raise
@@ -210,8 +209,8 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.SetSheet) -> Events:
-        self._sheet = request.width
-        return [] if self._subject.solvable is not None else self._solved()
+        self._sheet = request
+        return self._sketch()
 
     @_handle.register
     def _(self, request: ask.ShowQuantities) -> Events:
@@ -301,7 +300,7 @@ class Workbench:
         mechanism = self._subject.solvable
         if mechanism is None:
             self._motion, self._owed = None, False
-            return [tell.DraftShown(page=self._subject.page(self._sheet / 2))]
+            return self._sketch()
         if not mechanism.description.inputs:
             return answered(ask.SolveAt(at={}), mechanism)
         try:
@@ -311,7 +310,7 @@ class Workbench:
             return []
         self._motion, self._owed = motion, False
         found = telling.motion_found(motion, live=live, message=message)
-        events: Events = [self._pictured(found, motion)]
+        events: Events = [*self._sketch(), self._pictured(found, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -349,6 +348,13 @@ class Workbench:
             progress=self._give_up,
         )
 
+    def _sketch(self) -> Events:
+        """The points as sketched, if they are edited in the drawing or there is no motion."""
+        if self._subject.solvable is not None and not self._sheet.edited:
+            return []
+        page = self._subject.page(self._sheet.width / 2)
+        return [] if page is None else [tell.SketchShown(page=page)]
+
     def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
         if live:
             return mechanism.approximate_sweep(self._motion), ""
@@ -374,19 +380,6 @@ class Workbench:
             text=self.text,
             unsaved=self.unsaved,
         )
-
-
-def _refusing(edit: ask.Edit) -> Refusing:
-    """The problems with which an edit is refused.
-
-    An edit that only changes numbers or choices may not cause any, and a new part may not be wrong
-    itself; other edits may leave a draft.
-    """
-    if isinstance(edit, _OF_NUMBERS):
-        return lambda problem: True
-    if isinstance(edit, ask.AddPart):
-        return lambda problem: problem.key[:1] == (edit.table,)
-    return lambda problem: False
 
 
 def _followed(edit: ask.Edit, followed: Followed) -> Events:

@@ -1,0 +1,397 @@
+// Drawing on the canvas: tools, pointer and keys change the file.
+
+import type { FileState, LiveEdit } from "../../messages";
+import type { Mounted } from "../../mount";
+import type { PageData } from "../../page_data";
+import { shortNumber, trimmed } from "../../numbers";
+import type { Desk } from "../asking";
+import { clean } from "../ranges";
+import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
+import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
+import { Inspector, type Chosen } from "./inspector";
+import { Overlay, pointsWithin } from "./overlay";
+import { ToolBar, TOOLS } from "./tool_bar";
+
+/** Attraction of points and links [px]: of a mouse, of a finger. */
+const REACH = { mouse: 12, touch: 24 };
+/** A pointer that moves less has clicked [px]. */
+const STILL = 4;
+const ARROWS: Readonly<Record<string, Place>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+export interface EditorHooks {
+  /** The drawing begins or ends to be edited: all tools do that but "move". */
+  readonly mode: (edited: boolean) => void;
+  /** The view has changed. */
+  readonly viewed: () => void;
+  /** Show a short hint. */
+  readonly hint: (text: string) => void;
+}
+
+interface Gesture {
+  readonly start: Anchor;
+  readonly reach: number;
+  readonly from: Place;
+  moved: boolean;
+  readonly drag: Places | null;
+}
+
+export class Editor {
+  readonly tools = new ToolBar((name) => this.choose(name));
+  readonly inspector: Inspector;
+  private readonly overlay = new Overlay();
+  private page: Mounted | null = null;
+  private file: FileState | null = null;
+  private tool = "move";
+  private grid = 0;
+  private selected: ReadonlySet<string> = new Set();
+  private chosen: Chosen | null = null;
+  private gesture: Gesture | null = null;
+  private panned = false;
+  private readonly touches = new Map<number, Place>();
+  private gone = new AbortController();
+
+  constructor(
+    private readonly desk: Desk,
+    private readonly hooks: EditorHooks,
+  ) {
+    this.inspector = new Inspector(desk, () => this.select(null));
+  }
+
+  get edited(): boolean {
+    return this.tool !== "move";
+  }
+
+  /** The tool in use. */
+  get inUse(): string {
+    return this.tool;
+  }
+
+  attach(page: Mounted): void {
+    this.gone.abort();
+    this.gone = new AbortController();
+    this.page = page;
+    this.overlay.attach(page);
+    const { canvas, drawing } = page.places;
+    canvas.append(this.tools.element, this.inspector.element);
+    const options = { capture: true, signal: this.gone.signal };
+    const canvasEvents: [string, (event: PointerEvent) => void][] = [
+      ["pointerdown", (event) => this.down(event)],
+      ["pointermove", (event) => this.move(event)],
+      ["pointerup", (event) => this.up(event)],
+      ["pointercancel", (event) => this.cancel(event)],
+    ];
+    for (const [kind, act] of canvasEvents) drawing.element.addEventListener(kind, (event) => act(event as PointerEvent), options);
+    drawing.element.addEventListener("wheel", (event) => this.wheel(event), { ...options, passive: false });
+    document.addEventListener("keydown", (event) => this.key(event), options);
+    drawing.viewed = () => {
+      if (this.gesture === null) this.overlay.clear();
+      this.redraw();
+      this.hooks.viewed();
+    };
+    this.redraw();
+  }
+
+  /** Another state of the file. */
+  renew(file: FileState): void {
+    this.file = file;
+    const drawn = file.form === "points-and-links" && file.readable;
+    const edits = TOOLS.map((tool) => tool.name).filter((name) => name !== "move");
+    const ready = file.lacks.length === 0;
+    if (!drawn) this.tools.disable(edits, "the points of this file follow from its equations");
+    else this.tools.disable(ready ? [] : ["move"], "this draft does not move yet");
+    const known = new Set([...Object.keys(file.points)]);
+    this.selected = new Set([...this.selected].filter((name) => known.has(name)));
+    if (this.chosen && !(this.chosen.kind === "point" ? known : new Set(file.links.map((link) => link.name))).has(this.chosen.name)) this.chosen = null;
+    this.inspector.show(this.chosen, file);
+    this.redraw();
+  }
+
+  choose(name: string): void {
+    if (name === this.tool) return;
+    const before = this.edited;
+    this.tool = name;
+    this.tools.show(name);
+    if (name !== "select") this.select(null);
+    this.overlay.clear();
+    if (before !== this.edited) this.hooks.mode(this.edited);
+    this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
+    this.redraw();
+  }
+
+  /** Select a point or link, as a message asks. */
+  select(chosen: Chosen | null): void {
+    if (chosen) this.choose("select");
+    this.chosen = chosen;
+    const link = chosen?.kind === "link" ? this.file?.links.find((one) => one.name === chosen.name) : undefined;
+    this.selected = new Set(chosen === null ? [] : chosen.kind === "point" ? [chosen.name] : (link?.points ?? []));
+    if (this.file) this.inspector.show(chosen, this.file);
+    this.redraw();
+  }
+
+  /** Draw grid and selection again, and the paths of another motion. */
+  redraw(motion?: PageData | null): void {
+    if (this.page === null) return;
+    if (motion !== undefined) this.overlay.paths(motion);
+    const { drawing } = this.page.places;
+    drawing.element.classList.toggle("lw-edited", this.edited);
+    this.grid = this.overlay.drawGrid(this.page, this.edited);
+    const points = this.points;
+    this.overlay.select([...this.selected].flatMap((name) => (points[name] ? [points[name]!] : [])), drawing.pixel);
+    this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+  }
+
+  private get points(): Places {
+    return this.page?.points ?? {};
+  }
+
+  private get sketch(): Sketch {
+    return { points: this.points, links: this.file?.links ?? [] };
+  }
+
+  private place(event: PointerEvent): Place {
+    return this.page!.places.drawing.placeAt(event);
+  }
+
+  private reach(event: PointerEvent): number {
+    return (event.pointerType === "mouse" ? REACH.mouse : REACH.touch) * this.page!.places.drawing.pixel;
+  }
+
+  private anchor(at: Place, reach: number, from?: Place): Anchor {
+    return anchorAt(this.sketch, at, { reach, grid: this.grid / 10, ...(from ? { from } : {}) });
+  }
+
+  private down(event: PointerEvent): void {
+    this.touches.set(event.pointerId, [event.clientX, event.clientY]);
+    if (this.touches.size === 2) {
+      this.gesture = null;
+      this.overlay.clear();
+    }
+    const panned = event.button === 1 || (this.tool === "move" && this.isFree(event));
+    if (!this.edited && !panned && this.touches.size < 2) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    (document.activeElement as HTMLElement | null)?.blur?.();
+    this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    this.panned = panned;
+    if (panned || this.touches.size > 1 || event.button !== 0) return;
+    const [at, reach] = [this.place(event), this.reach(event)];
+    const start = this.anchor(at, reach);
+    let drag: Places | null = null;
+    if (this.tool === "select") {
+      if (start.point && !this.selected.has(start.point)) this.select({ kind: "point", name: start.point });
+      else if (!start.point && start.link) this.select({ kind: "link", name: start.link });
+      const held = [...this.selected].flatMap((name) => (this.points[name] ? [[name, this.points[name]!] as const] : []));
+      drag = start.point || start.link ? Object.fromEntries(held) : null;
+    }
+    this.gesture = { start, reach, from: at, moved: false, drag };
+    if (this.tool === "link") this.overlay.mark(start.at, start.hint ?? "", this.page!.places.drawing.pixel);
+  }
+
+  private isFree(event: PointerEvent): boolean {
+    const target = event.target as Element;
+    const frame = target.closest("[data-frame]");
+    return target === this.page!.places.drawing.element || (frame !== null && !frame.classList.contains("lw-moving"));
+  }
+
+  private move(event: PointerEvent): void {
+    const before = this.touches.get(event.pointerId);
+    if (before && this.touched(event, before)) return;
+    if (!this.edited || this.page === null) return;
+    event.stopImmediatePropagation();
+    const { pixel } = this.page.places.drawing;
+    const at = this.place(event);
+    const gesture = this.gesture;
+    if (gesture === null) {
+      this.hover(at, this.reach(event), pixel);
+      return;
+    }
+    gesture.moved ||= distance(at, gesture.from) > STILL * pixel;
+    if (!gesture.moved) return;
+    if (this.tool === "select") this.drag(gesture, at, true);
+    else if (["link", "slider", "point"].includes(this.tool)) this.draft(gesture, at, pixel);
+  }
+
+  /** Pan with one pointer that holds nothing, zoom with two; whether that was done. */
+  private touched(event: PointerEvent, before: Place): boolean {
+    const now: Place = [event.clientX, event.clientY];
+    const { drawing } = this.page!.places;
+    if (this.touches.size === 2) {
+      const other = [...this.touches].find(([id]) => id !== event.pointerId)![1];
+      const centre = drawing.placeAt({ clientX: (now[0] + other[0]) / 2, clientY: (now[1] + other[1]) / 2 });
+      drawing.zoom(distance(now, other) / Math.max(1, distance(before, other)), centre);
+      drawing.pan((-(now[0] - before[0]) / 2) * drawing.pixel, ((now[1] - before[1]) / 2) * drawing.pixel);
+    } else if (this.panned) {
+      drawing.pan(-(now[0] - before[0]) * drawing.pixel, (now[1] - before[1]) * drawing.pixel);
+    } else return false;
+    this.touches.set(event.pointerId, now);
+    event.stopImmediatePropagation();
+    return true;
+  }
+
+  private hover(at: Place, reach: number, pixel: number): void {
+    this.overlay.clear();
+    if (this.tool === "select") return;
+    const found = this.anchor(at, reach);
+    const wanted = this.tool === "link" || found.point || (found.link && this.tool !== "ground" && this.tool !== "slider");
+    if (wanted) this.overlay.mark(found.at, found.point ?? found.link ?? "", pixel);
+  }
+
+  private draft(gesture: Gesture, at: Place, pixel: number): void {
+    const { start, reach } = gesture;
+    const end = this.end(gesture, at, reach);
+    const [dx, dy] = [end.at[0] - start.at[0], end.at[1] - start.at[1]];
+    const unit = this.file?.length_unit ?? "";
+    const angle = trimmed(shortNumber((Math.atan2(dy, dx) * 180) / Math.PI, 4));
+    const parts = [`${trimmed(shortNumber(Math.hypot(dx, dy), 4))} ${unit}`.trim(), `${angle}°`, end.point ?? end.link ?? end.hint ?? ""];
+    this.overlay.preview(start.at, end.at, parts.filter(Boolean).join("  "), pixel);
+  }
+
+  private end({ start }: Gesture, at: Place, reach: number): Anchor {
+    const found = this.anchor(at, reach, start.at);
+    // a point of a link may be placed anywhere, also on the link itself
+    return this.tool === "point" ? { at: found.at } : found;
+  }
+
+  private drag(gesture: Gesture, at: Place, live: boolean): void {
+    if (gesture.drag === null) {
+      this.overlay.rubber(gesture.from, at);
+      this.selected = new Set(pointsWithin(this.points, gesture.from, at));
+      this.redraw();
+      return;
+    }
+    const names = Object.keys(gesture.drag);
+    const step = this.grid / 10;
+    const snapped = anchorAt(this.sketch, at, { reach: 0, grid: step, except: new Set(names) });
+    const by: Place = [snapped.at[0] - gesture.start.at[0], snapped.at[1] - gesture.start.at[1]];
+    const places = Object.fromEntries(
+      names.map((name) => [name, gesture.drag![name]!.map((c, k) => clean(tidy(c + by[k]!, step))) as [number, number]] as const),
+    );
+    const edit = { kind: "move_points", places, keep: this.inspector.locked } as const;
+    if (live) this.desk.latest({ ...edit, live });
+    else this.desk.ask(edit);
+  }
+
+  private up(event: PointerEvent): void {
+    this.touches.delete(event.pointerId);
+    this.panned = false;
+    const gesture = this.gesture;
+    this.gesture = null;
+    this.overlay.clear();
+    if (!this.edited || gesture === null) return;
+    event.stopImmediatePropagation();
+    const at = this.place(event);
+    if (this.tool === "select") this.dropped(gesture, at);
+    else this.made(gesture, at);
+  }
+
+  private dropped(gesture: Gesture, at: Place): void {
+    if (gesture.moved) this.drag(gesture, at, false);
+    else if (gesture.start.point) this.select({ kind: "point", name: gesture.start.point });
+    else if (!gesture.start.link) this.select(null);
+    if (gesture.moved && gesture.drag === null) this.inspector.showMany([...this.selected], this.file!);
+  }
+
+  /** The edit made by a click or a drag with a tool. */
+  private made(gesture: Gesture, at: Place): void {
+    const { start, reach, moved } = gesture;
+    const file = this.file!;
+    const end = this.end(gesture, at, reach);
+    const known = { points: file.points, links: file.links, parts: file.parts };
+    const send = (edits: readonly LiveEdit[] | null): void => {
+      if (edits?.length) this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
+    };
+    switch (this.tool) {
+      case "link":
+        if (moved) send(linkBetween(known, start, end));
+        else this.hooks.hint("Drag: press at one end of the link, release at the other.");
+        return;
+      case "point": {
+        const on = start.link ?? file.links.find(({ name, points }) => name !== "ground" && points.includes(start.point ?? ""))?.name;
+        if (on) send(pointOn(known, on, moved ? end.at : start.at));
+        else this.hooks.hint("Begin on the link that the point belongs to.");
+        return;
+      }
+      case "slider":
+        if (start.point) send(sliderAt(known, start.point, start.at, moved ? end.at : start.at, 4 * this.grid));
+        else this.hooks.hint("Begin at the pin that slides.");
+        return;
+      case "ground":
+        if (start.point) send([{ kind: "set_ground", points: [start.point], on: !this.isFixed(start.point) }]);
+        else this.hooks.hint("Click a pin.");
+        return;
+      case "drive":
+        if (start.link || start.point) send(this.driven(start));
+        return;
+      case "trace":
+        if (start.point) send([{ kind: "trace_point", point: start.point, on: !file.traced.includes(start.point) }]);
+        else if (start.link) send(pointOn(known, start.link, start.at, true));
+        else this.hooks.hint("Click a pin or a link.");
+    }
+  }
+
+  private isFixed(point: string): boolean {
+    return this.file!.links.some(({ name, points }) => name === "ground" && points.includes(point));
+  }
+
+  private driven({ link, point }: Anchor): LiveEdit[] {
+    const own = this.file!.links.filter(({ name, points }) => name !== "ground" && points.includes(point ?? ""));
+    const name = link ?? own[0]?.name;
+    return name ? [{ kind: "set_input", drive: "link", name }] : [];
+  }
+
+  private cancel(event: PointerEvent): void {
+    this.touches.delete(event.pointerId);
+    this.gesture = null;
+    this.overlay.clear();
+  }
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    const { drawing } = this.page!.places;
+    drawing.zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode === 1 ? 30 : 1)), drawing.placeAt(event));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if (event.ctrlKey || event.metaKey || event.altKey || this.page === null) return;
+    if (target.closest("input, textarea, select") && event.key !== "Escape") return;
+    const tool = TOOLS.find(({ key }) => key === event.key.toLowerCase());
+    if (tool) this.tools.element.querySelector<HTMLButtonElement>(`[aria-keyshortcuts="${tool.key.toUpperCase()}"]`)!.click();
+    else if (event.key === "Escape") this.escape();
+    else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
+    else if (["Delete", "Backspace"].includes(event.key) && this.selected.size) this.remove();
+    else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);
+    else return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  }
+
+  /** Move the selected points by a step of the grid. */
+  private shift([dx, dy]: Place, far: boolean): void {
+    const step = (this.grid / 10) * (far ? 10 : 1);
+    const places = Object.fromEntries(
+      [...this.selected].flatMap((name) => {
+        const at = this.points[name];
+        return at ? [[name, [clean(at[0] + dx * step), clean(at[1] + dy * step)] as [number, number]] as const] : [];
+      }),
+    );
+    this.desk.ask({ kind: "move_points", places, keep: this.inspector.locked });
+  }
+
+  private escape(): void {
+    this.gesture = null;
+    this.overlay.clear();
+    this.select(null);
+  }
+
+  /** Remove the selected link or points. */
+  private remove(): void {
+    const edits: LiveEdit[] =
+      this.chosen?.kind === "link"
+        ? [{ kind: "remove_link", name: this.chosen.name }]
+        : [...this.selected].map((name) => ({ kind: "remove_point", name }));
+    this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
+    this.select(null);
+  }
+}
+

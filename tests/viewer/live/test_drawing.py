@@ -1,0 +1,238 @@
+"""Mechanisms drawn on the canvas of the live page, in a real browser."""
+
+from __future__ import annotations
+
+import random
+import threading
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import linkwork as lw
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.viewer.live.server import LiveServer
+from linkwork.viewer.live.workbench import Workbench
+from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
+
+Place = tuple[float, float]
+
+
+class Sheet:
+    """A blank sheet in a browser; every action counts."""
+
+    def __init__(self, page: Any, bench: Workbench, scale: float) -> None:
+        self.page, self.bench, self.scale, self.actions = page, bench, scale, 0
+
+    def _on_screen(self, place: Place) -> Place:
+        a, d, e, f = self.page.evaluate(
+            """() => {
+              const { a, d, e, f } = document.querySelector(".lw-drawing").getScreenCTM();
+              return [a, d, e, f];
+            }"""
+        )
+        return a * self.scale * place[0] + e, -d * self.scale * place[1] + f
+
+    def _done(self, act: Callable[[], object]) -> None:
+        self.actions += 1
+        updates = "document.getElementById('linkwork').dataset.updates"
+        before = self.page.evaluate(updates)
+        act()
+        self.page.wait_for_function(f"before => {updates} !== before", arg=before)
+        self.page.wait_for_timeout(100)  # the last of several answers
+
+    def drag(self, start: Place, end: Place) -> None:
+        mouse = self.page.mouse
+
+        def act() -> None:
+            mouse.move(*self._on_screen(start))
+            mouse.down()
+            mouse.move(*self._on_screen(end), steps=4)
+            mouse.up()
+
+        self._done(act)
+
+    def click(self, place: Place) -> None:
+        self._done(lambda: self.page.mouse.click(*self._on_screen(place)))
+
+    def remedy(self, label: str) -> None:
+        self._done(self.page.get_by_role("button", name=label, exact=True).click)
+
+    def key(self, key: str) -> None:
+        self.actions += 1
+        self.page.keyboard.press(key)
+
+    @property
+    def mechanism(self) -> lw.Mechanism:
+        return lw.loads(self.bench.text)
+
+
+@pytest.fixture
+def open_sheet(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Sheet]]:
+    """Opens a blank sheet; fails on any message of the console."""
+    said: list[str] = []
+    ends: list[Callable[[], object]] = []
+
+    def opened(scale: float = 1.0, unit: str = "mm") -> Sheet:
+        text = blank_sheet("drawn").replace('"mm"', f'"{unit}"')
+        bench = Workbench(MechanismFile(tmp_path / "drawn.toml", text), lw.loads)
+        server = LiveServer(bench)
+        thread = threading.Thread(target=server.run)
+        thread.start()
+        ends.append(server.stop)
+        size = {"width": 1440, "height": 900}
+        context = browser.new_context(viewport=size, reduced_motion="reduce")
+        ends.append(context.close)
+        page = context.new_page()
+        page.set_default_timeout(10_000)
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.goto(server.address)
+        page.locator(".lw-tools [aria-pressed=true]", has_text="Link").wait_for()
+        width = page.locator(".lw-drawing").evaluate("svg => svg.viewBox.baseVal.width")
+        return Sheet(page, bench, scale * width / 240)
+
+    yield opened
+    for end in reversed(ends):
+        end()
+    assert said == []
+
+
+@pytest.mark.parametrize("unit", ["mm", "in", "m"])
+def test_a_crank_rocker_with_a_path_takes_eight_actions(
+    unit: str, open_sheet: Callable[..., Sheet]
+) -> None:
+    sheet = open_sheet(unit=unit)
+    sheet.drag((-80, -20), (-60, 20))
+    sheet.drag((-60, 20), (30, 50))
+    sheet.drag((30, 50), (40, -20))
+    sheet.remedy("Fix A and D")
+    sheet.remedy("Drive link2")
+    sheet.key("t")
+    sheet.click((-15, 35))
+    sheet.key("m")
+    sheet.page.locator("[data-role=trace]").first.wait_for(state="attached")
+    motion = sheet.mechanism.sweep()
+    assert (len(motion), int(motion.certified.sum())) == (361, 361)
+    assert motion.units.length == unit
+    assert len(sheet.mechanism.description.trace) == 1
+    assert sheet.actions <= 8
+
+
+def test_a_slider_crank_takes_eight_actions(open_sheet: Callable[..., Sheet]) -> None:
+    sheet = open_sheet()
+    sheet.drag((-80, -20), (-60, 20))
+    sheet.drag((-60, 20), (40, -20))
+    sheet.key("s")
+    sheet.click((40, -20))
+    sheet.remedy("Fix A")
+    sheet.remedy("Drive link2")
+    sheet.key("m")
+    motion = sheet.mechanism.sweep()
+    assert int(motion.certified.sum()) == 361
+    assert list(motion.sliders) == ["s1"]
+    assert sheet.actions <= 8
+
+
+def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    sheet.drag((-80, -20), (-70, 0))
+    sheet.drag((-70, 0), (0, 40))
+    sheet.drag((0, 40), (10, -20))
+    sheet.key("l")
+    sheet.drag((-35, 20), (40, 50))  # from the middle of the coupler
+    sheet.drag((40, 50), (70, -20))
+    sheet.remedy("Fix A, D and H")
+    sheet.remedy("Drive link2")
+    sheet.key("m")
+    motion = sheet.mechanism.sweep()
+    assert int(motion.found.sum()) > 10
+    assert len(motion.unknowns) == 4
+    assert sheet.actions <= 20
+    sheet.key("d")
+    sheet.click((55, 15))
+    assert sheet.mechanism.description.inputs[0].link == "link6"
+    assert sheet.mechanism.sweep().found.any()
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_a_mechanism_is_drawn_at_any_scale(scale: float, open_sheet: Callable[..., Sheet]) -> None:
+    sheet = open_sheet()
+    sheet.page.mouse.move(*sheet._on_screen((0, 0)))
+    for _ in range(46):
+        sheet.page.mouse.wheel(0, 100 if scale > 1 else -100)
+    sheet.page.wait_for_timeout(300)  # symbols have the size of the view
+    sheet.scale *= scale
+    sheet.drag((-80, -20), (-60, 20))
+    sheet.drag((-60, 20), (30, 50))
+    sheet.drag((30, 50), (40, -20))
+    sheet.remedy("Fix A and D")
+    sheet.remedy("Drive link2")
+    motion = sheet.mechanism.sweep()
+    assert int(motion.certified.sum()) == 361
+    x, y = lw_point(sheet.bench.text, "A")
+    assert abs(complex(x, y) / scale - complex(-80, -20)) < 5
+
+
+def test_pins_are_dragged_with_locked_lengths_and_steps_are_undone_by_name(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    sheet.drag((-80, -20), (-60, 20))
+    sheet.drag((-60, 20), (30, 50))
+    sheet.key("v")
+    sheet.page.mouse.click(*sheet._on_screen((-60, 20)))
+    sheet.page.get_by_label("Lock A B").check()
+    sheet.drag((-60, 20), (-40, 40))
+    a, b = (complex(*lw_point(sheet.bench.text, name)) for name in "AB")
+    assert abs(b - a) == pytest.approx(abs(complex(20, 40)), rel=1e-9)
+    assert b != complex(-60, 20)
+    sheet.page.locator("[aria-label='Undo: move B']").wait_for()
+    field = sheet.page.locator(".lw-inspector [data-number='B.x']")
+    field.fill("12")
+    field.press("Control+z")
+    sheet.page.wait_for_function(
+        "() => document.querySelector(\".lw-inspector [data-number='B.x']\").value !== '12'"
+    )
+    sheet.page.locator("[aria-label='Undo: add link link3']").wait_for()
+
+
+def lw_point(text: str, name: str) -> tuple[float, float]:
+    x, y = tomllib.loads(text)["points"][name]
+    return x, y
+
+
+def test_any_actions_leave_a_page_that_agrees_with_its_file(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    rng, page = random.Random(3), sheet.page
+    box = page.locator(".lw-drawing").bounding_box()
+
+    def somewhere() -> Place:
+        x, y = rng.random(), rng.random()
+        return box["x"] + box["width"] * (0.1 + 0.6 * x), box["y"] + box["height"] * y
+
+    for _ in range(60):
+        match rng.randrange(6):
+            case 0 | 1:
+                page.keyboard.press(rng.choice("vlpsgdtmf"))
+            case 2:
+                page.mouse.click(*somewhere())
+            case 3:
+                page.keyboard.press(rng.choice(["Delete", "Escape", "Control+z", "ArrowLeft", " "]))
+            case _:
+                page.mouse.move(*somewhere())
+                page.mouse.down()
+                page.mouse.move(*somewhere(), steps=2)
+                page.mouse.up()
+    page.wait_for_timeout(500)
+    page.get_by_role("tab", name="Build").click()
+    page.wait_for_function(
+        "text => document.querySelector('.lw-build textarea').value === text",
+        arg=sheet.bench.text,
+    )
