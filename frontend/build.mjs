@@ -15,6 +15,13 @@ const common = {
 };
 await Promise.all([
   build({ ...common, entryPoints: ["src/offline.ts"], format: "iife", outfile: join(folder, "offline.js") }),
+  build({
+    ...common,
+    entryPoints: ["src/solving/solving.ts"],
+    format: "iife",
+    outfile: join(folder, "solving.js"),
+  }),
+  build({ ...common, entryPoints: ["src/solving/solving.css"], outfile: join(folder, "solving.css") }),
   build({ ...common, entryPoints: ["src/live/live.ts"], format: "iife", outfile: join(folder, "live.js") }),
   build({ ...common, entryPoints: ["src/live/live.css"], outfile: join(folder, "live.css") }),
   build({ ...common, entryPoints: ["src/mount.ts"], format: "esm", outfile: join(folder, "linkwork.js") }),

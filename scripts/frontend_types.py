@@ -28,7 +28,7 @@ def typescript(kind: object) -> str:
     origin, inside = typing.get_origin(kind), typing.get_args(kind)
     if origin is tuple and len(inside) == 2 and inside[1] is Ellipsis:
         own = typescript(inside[0])
-        return f"readonly ({own})[]" if " | " in own else f"readonly {own}[]"
+        return f"readonly ({own})[]" if " " in own else f"readonly {own}[]"
     if origin in (typing.Union, types.UnionType):
         return " | ".join(map(typescript, inside))
     if origin is dict and inside[0] is str:

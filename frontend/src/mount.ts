@@ -42,12 +42,12 @@ export interface Mounted {
   goToInput(value: number): void;
   /** The input of the displayed row. */
   readonly input: number;
-  /** The displayed row of the table. */
-  readonly row: number;
   /** The coordinates of all points in the displayed row. */
   readonly points: Readonly<Record<string, readonly [number, number]>>;
   /** Start or stop the motion. */
   play(on: boolean): void;
+  /** The displayed row of the table. */
+  readonly row: number;
   /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
   readonly charts: Charts;
@@ -192,17 +192,17 @@ class Page implements Mounted {
     return this.view.input.values[this.view.order[this.player.at]!]!;
   }
 
-  get row(): number {
-    return this.view.order[this.player.at]!;
-  }
-
   get points(): Record<string, readonly [number, number]> {
-    const row = this.view.order[this.player.at]!;
+    const row = this.row;
     return Object.fromEntries(this.view.points.map(({ name, x, y }) => [name, [x[row]!, y[row]!] as const]));
   }
 
   play(on: boolean): void {
     this.player.play(on);
+  }
+
+  get row(): number {
+    return this.view.order[this.player.at]!;
   }
 
   get values(): Record<string, number> {

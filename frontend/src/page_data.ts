@@ -152,6 +152,55 @@ export interface RowEvidence {
   readonly branch_names: readonly string[];
 }
 
+/** A number that can be changed in the page; `unit` is empty where it is unknown. `hidden`: parts that are not drawn while it differs from `value`. */
+export interface SliderData {
+  readonly name: string;
+  readonly unit: string;
+  readonly value: number;
+  readonly hidden: readonly number[];
+}
+
+/** What a page needs to solve, besides its printed functions. `unknowns` to `options`: layout of the functions' arrays, see `batch.printed_solver`. `steps`: first, largest and smallest step; `turn`: a whole turn of the input, 0 where it does not turn freely; `apart`: rounding of an input a turn away; `path`: values of the table's line of inputs, `rates` and `origins` of all inputs on it, and their `inputs` in the unit of the file, row by row. `columns`: names of computed columns. `frames` replace those of the motion; `anchors`: points that the corners of each part move with, -1 for none. */
+export interface SolverData {
+  readonly title: string;
+  readonly sliders: readonly SliderData[];
+  readonly unknowns: number;
+  readonly size: number;
+  readonly blocks: number;
+  readonly coefficients: number;
+  readonly spread: readonly number[];
+  readonly state: number;
+  readonly design: number;
+  readonly drawn: number;
+  readonly options: readonly number[];
+  readonly rules: StepRules;
+  readonly steps: readonly number[];
+  readonly turn: number;
+  readonly apart: number;
+  readonly path: PackedColumn;
+  readonly origins: readonly number[];
+  readonly rates: readonly number[];
+  readonly inputs: readonly PackedColumn[];
+  readonly input_unit: number;
+  readonly columns: readonly string[];
+  readonly turns: readonly TurnSource[];
+  readonly tracks: readonly TrackData[];
+  readonly frames: readonly FrameData[];
+  readonly anchors: readonly (readonly number[])[];
+}
+
+/** Constants of `marching` and of the programs; see there. */
+export interface StepRules {
+  readonly nodes: number;
+  readonly growth: number;
+  readonly half: number;
+  readonly nearly_full: number;
+  readonly far: number;
+  readonly same: number;
+  readonly newton_steps: number;
+  readonly start_steps: number;
+}
+
 /** Colours of a page, light or dark. */
 export interface ThemeData {
   readonly background: string;
@@ -162,10 +211,25 @@ export interface ThemeData {
   readonly styles: readonly RoleStyle[];
 }
 
+/** A track: the point guided by it and its frame, given by index (-1: the ground), and its direction there. The ends of the point's path count as two more points, after the named ones. */
+export interface TrackData {
+  readonly point: number;
+  readonly frame: number;
+  readonly x: number;
+  readonly y: number;
+}
+
 /** The angle [rad] of a link or line with which shapes rotate. */
 export interface TurnData {
   readonly name: string;
   readonly angle: PackedColumn;
+}
+
+/** Where the angle of a turn comes from: the number of a computed angle, or -1 and the points of a line, given by index. */
+export interface TurnSource {
+  readonly angle: number;
+  readonly start: number;
+  readonly end: number;
 }
 
 /** A vector of a loop equation with its name, between two points given by index. If it is not between points, these are -1, and `course` has x and y of its tail and tip. */

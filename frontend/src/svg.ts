@@ -52,7 +52,7 @@ export function pathOf(points: ArrayLike<number>, closed: boolean): string {
   for (let k = 0; k + 1 < points.length; k += 2) {
     pieces.push(`${k ? "L" : "M"}${short(points[k]!)} ${short(-points[k + 1]!)}`);
   }
-  return pieces.join("") + (closed ? "Z" : "");
+  return pieces.join("") + (closed && pieces.length ? "Z" : "");
 }
 
 /** Strokes x, y to x, y, … as one path. */

@@ -35,8 +35,20 @@ export function wholeNumbers(bytes: Uint8Array): number[] {
   return numbers;
 }
 
+/** Columns that were computed in the page. */
+const computed = new WeakMap<PackedColumn, Float64Array>();
+
+/** Numbers as a column, as they are. */
+export function ready(numbers: Float64Array): PackedColumn {
+  const column: PackedColumn = { step: 1, order: PLAIN, content: "", gaps: [] };
+  computed.set(column, numbers);
+  return column;
+}
+
 /** The numbers of the found rows, in order. */
 export function dense(column: PackedColumn): Float64Array {
+  const known = computed.get(column);
+  if (known) return known;
   const bytes = bytesOf(column.content);
   if (column.order === PLAIN) return new Float64Array(bytes.buffer as ArrayBuffer);
   if (column.order === SHORT) return Float64Array.from(new Float32Array(bytes.buffer as ArrayBuffer));

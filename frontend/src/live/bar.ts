@@ -3,6 +3,7 @@
 import type { FileState } from "../messages";
 import { html } from "../svg";
 import type { Desk } from "./asking";
+import { begin, restored } from "./fields";
 
 export class Bar {
   readonly element = html("div", { class: "lw-bar", role: "toolbar", "aria-label": "File" });
@@ -20,6 +21,7 @@ export class Bar {
     this.save = this.button("Save", "Save (Ctrl+S)", () => desk.ask({ kind: "save" }));
     this.save.classList.add("lw-save");
     document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });
+    for (const kind of ["focusin", "change"]) document.addEventListener(kind, (event) => begin(event.target), { signal: this.gone.signal });
     window.addEventListener("beforeunload", (event) => {
       if (this.element.dataset.unsaved === "true" && !this.save.disabled) event.preventDefault();
     });
@@ -53,7 +55,7 @@ export class Bar {
   private key(event: KeyboardEvent): void {
     if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
     const key = event.key.toLowerCase();
-    const typing = (event.target as HTMLElement).matches("textarea, input[type=text]");
+    const typing = (event.target as HTMLElement).matches("textarea") || (key === "z" && restored(event.target));
     if (key === "s") this.desk.ask({ kind: "save" });
     else if (key === "z" && !typing) this.desk.ask({ kind: event.shiftKey ? "redo" : "undo" });
     else if (key === "y" && !typing) this.desk.ask({ kind: "redo" });

@@ -5,6 +5,7 @@ import { unitText } from "../chart";
 import { shortNumber, trimmed } from "../numbers";
 import { html } from "../svg";
 import type { Desk } from "./asking";
+import { fill } from "./fields";
 import { clean, rangeAround, typed } from "./ranges";
 
 /** Listed tables of the file with their headings; others are edited in the text. */
@@ -108,7 +109,7 @@ function sliderRow(number: ChangeableNumber, desk: Desk): Row {
       }
       slider.value = String(now.value);
       slider.setAttribute("aria-valuetext", `${trimmed(shortNumber(now.value))}${unitText(now.unit)}`);
-      input.value = trimmed(shortNumber(now.value));
+      fill(input, trimmed(shortNumber(now.value)));
       input.title = String(now.value);
     },
   };
@@ -128,7 +129,7 @@ function formulaRow(number: ChangeableNumber, desk: Desk): Row {
   return {
     element,
     show: (now) => {
-      input.value = now.formula;
+      fill(input, now.formula);
       value.textContent = `= ${trimmed(shortNumber(now.value))}${unitText(now.unit)}`;
     },
   };

@@ -1,8 +1,7 @@
 // The live page: drawing and player as on every page, with panels that edit the file.
 
 import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound, SketchShown } from "../messages";
-import { mount, type Mounted } from "../mount";
-import type { PageData } from "../page_data";
+import { mount, type Mounted, type PageData } from "../mount";
 import { html, svg } from "../svg";
 import type { Desk } from "./asking";
 import { Bar } from "./bar";
@@ -12,9 +11,9 @@ import { CircuitsPanel } from "./circuits";
 import { blank, closing } from "./closing";
 import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
-import { ExportMenu } from "./export_menu";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
+import { ExportMenu } from "./export_menu";
 import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
@@ -42,14 +41,16 @@ export class LivePage {
   private readonly ways: Ways;
   private readonly newton: Newton;
   private readonly build: Build;
+  private readonly editor: Editor;
+  private readonly readiness: Readiness;
   private readonly circuits: CircuitsPanel;
   private readonly plots: Plots;
   private readonly exports: ExportMenu;
   private readonly busy = new Busy();
   /** The row at which the motion of the file was left for a circuit. */
   private left: number | null = null;
-  private readonly editor: Editor;
-  private readonly readiness: Readiness;
+  /** The last motion of the file. */
+  private found: MotionFound | null = null;
   private readonly tabs: Tabs;
   private file: FileState | null = null;
   private page: Mounted | null = null;
@@ -72,17 +73,17 @@ export class LivePage {
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
     this.build = new Build(desk);
-    this.plots = new Plots(desk);
-    this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
-    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
-    this.bar.element.append(this.exports.element);
-    document.body.append(this.busy.element);
     this.editor = new Editor(desk, {
       mode: (edited) => this.chosen(edited),
       viewed: () => this.viewed(),
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
+    this.plots = new Plots(desk);
+    this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
+    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
+    this.bar.element.append(this.exports.element);
+    document.body.append(this.busy.element);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
@@ -128,15 +129,12 @@ export class LivePage {
 
   /** Draw the motion of a circuit, or that of the file. */
   private look(page: PageData | null): void {
-    if (this.page === null) return;
-    if (page !== null) {
-      this.left ??= this.page.row;
-      this.page.update(page);
-      return;
-    }
-    this.display();
-    if (this.left !== null) this.page.goToRow(this.left);
-    this.left = null;
+    const shown = page ?? this.found?.page ?? null;
+    if (shown === null || this.page === null) return;
+    if (page !== null) this.left ??= this.page.row;
+    this.page.update(shown);
+    if (page === null && this.left !== null) this.page.goToRow(this.left);
+    if (page === null) this.left = null;
   }
 
   private here(): Record<string, number> {
@@ -233,16 +231,18 @@ export class LivePage {
 
   private motion(found: MotionFound): void {
     const unit = this.file!.inputs[0]?.unit ?? "";
-    this.rowless = found.page === null && found.missing === found.rows;
+    if (!found.live) this.found = found;
     this.left = null;
     this.circuits.left();
+    this.rowless = found.page === null && found.missing === found.rows;
     this.moving = found.page;
     this.element.dataset.live = String(found.live);
-    if (found.page !== null) this.display(found.live);
-    else if (found.missing < found.rows) {
+    if (found.page !== null) {
+      this.display(found.live);
+      if (!found.live) this.plots.moved();
+    } else if (found.missing < found.rows) {
       this.still(null, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
-    if (found.page !== null && !found.live) this.plots.moved();
     this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
     this.updated();
   }
@@ -267,7 +267,8 @@ export class LivePage {
   private begin(data: PageData): void {
     const view = this.page && this.editor.edited ? this.page.places.drawing.window : null;
     this.page?.destroy();
-    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), still: data.motions[0]!.columns.length === 0, changing: true }));
+    const still = data.motions[0]!.columns.length === 0;
+    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), changing: true, still }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
     canvas.after(this.readiness.element, this.notices.element);
@@ -308,7 +309,7 @@ export class LivePage {
   private sheet(): void {
     const { width } = this.page!.places.drawing.window;
     this.width = width;
-    this.send({ kind: "set_sheet", width, edited: this.editor.edited });
+    this.connection.ask({ kind: "set_sheet", width, edited: this.editor.edited });
   }
 
   private sketch(event: SketchShown): void {
@@ -346,7 +347,7 @@ export class LivePage {
     if (event.page === null) return;
     this.gaps(event);
     const { text, remedies } = closing(event, this.file!);
-    const choices = remedies.map(({ label, title, request }) => [label, title, () => void this.send(request)] as const);
+    const choices = remedies.map(({ label, title, request }) => [label, title, () => this.send(request)] as const);
     this.notices.open(text, choices);
     this.updated();
   }

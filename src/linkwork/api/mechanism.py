@@ -7,15 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwork import drawing, export, motion, textfile, viewer
+from linkwork import batch, drawing, export, motion, textfile, viewer
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import as_names
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import given_or
 from linkwork.results.force import Force
 
 if TYPE_CHECKING:
     from linkwork.results.motion import Motion
+    from linkwork.viewer.page_data import SolvingPage
 
 __all__ = ["Mechanism"]
 
@@ -152,6 +154,7 @@ class Mechanism(SolvableMechanism):
         *,
         all_circuits: bool = False,
         forces: Sequence[Force] = (),
+        sliders: Sequence[str] = (),
         options: viewer.FilmOptions | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
@@ -171,6 +174,10 @@ class Mechanism(SolvableMechanism):
             Whether a page contains all circuits.
         forces : sequence of Force
             Forces that a page draws as arrows at their points.
+        sliders : sequence of str
+            Numbers of the mechanism, by the names that :meth:`family` takes, that can be changed in
+            a page: it contains the solver of this mechanism, and proves every position that it
+            draws. It shows :meth:`sweep`.
         options : FilmOptions, optional
             Frames per second, number of positions and size of a film.
         progress : callable, optional
@@ -179,10 +186,10 @@ class Mechanism(SolvableMechanism):
         Raises
         ------
         InputError
-            If the suffix is unknown, there is nothing to draw, or an option does not fit the
-            format.
+            If the suffix is unknown, there is nothing to draw, an option does not fit the
+            format, or a page cannot solve the mechanism with these sliders.
         UnknownNameError
-            If a force is at a point that does not exist.
+            If a force is at a point that does not exist, or a slider's number does not exist.
         MissingPackageError
             If the package that writes the format is not installed.
         """
@@ -191,6 +198,15 @@ class Mechanism(SolvableMechanism):
             raise InputError("all circuits need the page of a mechanism: use the suffix .html")
         if forces and kind != "html":
             raise InputError("only a page shows forces: use the suffix .html")
+        solver = None
+        if sliders:
+            if kind != "html" or all_circuits or motion is not None:
+                raise InputError(
+                    "sliders are for a page of one sweep: use the suffix .html, and leave out "
+                    "motion and all_circuits"
+                )
+            motion = self.sweep(progress=progress)
+            solver = self.solving_page(sliders, motion)
         motions = self._shown(motion, all_circuits, progress)
         content = viewer.animation(
             motions,
@@ -199,9 +215,17 @@ class Mechanism(SolvableMechanism):
             equations=self.equations().mathml(),
             loops=self.moving_loops,
             forces=forces,
+            solver=solver,
             progress=progress,
         )
         as_path(path).write_bytes(content)
+
+    def solving_page(self, sliders: Sequence[str], motion: Motion) -> SolvingPage:
+        """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""
+        if not motion.found.any():
+            raise InputError("there is no motion to change with sliders: no position was found")
+        design = batch.record_design(self.model, as_names("sliders", sliders))
+        return viewer.solving_page(design, motion, design.changed())
 
     def widget(
         self,

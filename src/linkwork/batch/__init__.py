@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     )
     from linkwork.batch.family_motion import FamilyMotion as FamilyMotion
     from linkwork.batch.limits import FamilyLimits as FamilyLimits
+    from linkwork.batch.recorded_design import (
+        RecordedDesign as RecordedDesign,
+        record_design as record_design,
+    )
     from linkwork.batch.sampling import (
         Plan as Plan,
         from_table as from_table,

@@ -36,6 +36,12 @@ __all__ = ["animate"]
 )
 @click.option("--all", "every", is_flag=True, help="Write a page with all circuits.")
 @click.option(
+    "--sliders",
+    metavar="NAME",
+    multiple=True,
+    help='A number that can be changed in the page, as "O2 A" (repeatable).',
+)
+@click.option(
     "--fps", type=float, default=25.0, show_default=True, help="Frames per second of a film."
 )
 @click.option("--rows", type=int, help="Number of positions in a film.")
@@ -51,6 +57,7 @@ def animate(
     file: str,
     output: str,
     every: bool,
+    sliders: tuple[str, ...],
     fps: float,
     rows: int | None,
     no_certificates: bool,
@@ -69,6 +76,10 @@ def animate(
       linkwork animate jansen.toml -o jansen.html --all
       linkwork animate jansen.toml -o jansen.gif --fps 20 --rows 60
       linkwork animate fourbar.toml -o crossed.mp4 --configuration crossed
+      linkwork animate fourbar.toml -o page.html --sliders "O2 A" --sliders "A B"
+
+    A page with sliders contains the solver of this mechanism: dragging a
+    length solves and proves the whole cycle again, without a network.
     """
     options = FilmOptions(fps=fps, rows=rows)
     kind = check_animation(output, options)
@@ -76,6 +87,11 @@ def animate(
         raise InputError("--all needs a page: use the suffix .html")
     if every and configuration is not None:
         raise InputError("--all shows every circuit: leave out --configuration")
+    if sliders and (kind != "html" or every or configuration is not None):
+        raise InputError(
+            "--sliders needs a page of the sketch's own branch: use the suffix .html, and leave "
+            "out --all and --configuration"
+        )
     if rows is not None and kind == "html":
         raise InputError("--rows is for films only: a page shows all rows")
     if forces and kind != "html":
@@ -84,10 +100,14 @@ def animate(
     mechanism = read_mechanism(file, changes)
     picture.check_points(mechanism)
     shown = forces_of(mechanism, forces)
-    motions = _motions(mechanism, every, configuration, certify=not no_certificates)
+    if sliders:
+        motions = {"motion": mechanism.sweep(certify=not no_certificates)}
+    else:
+        motions = _motions(mechanism, every, configuration, certify=not no_certificates)
     if not any(motion.found.any() for motion in motions.values()):
         print_lines([f"Did not write {output}: there is no position to draw."], err=True)
         context.exit(1)
+    solver = mechanism.solving_page(sliders, motions["motion"]) if sliders else None
     with progress("drawing") as tell:
         content = animation(
             motions,
@@ -96,6 +116,7 @@ def animate(
             equations=mechanism.equations().mathml(),
             loops=mechanism.moving_loops,
             forces=shown,
+            solver=solver,
             progress=tell,
         )
     write_bytes(output, [content])

@@ -156,7 +156,7 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     if isinstance(truths, Truths):
         lanes = _first_of_many((yes, no))
         if lanes is None:
-            picked: _Number = truths.consensus.pick(np.where(truths.values, yes, no))
+            picked: _Number = truths.consensus.pick(truths, yes, no)
             return picked
         return cast(_Number, lanes.apply(np.where, truths, yes, no))
     return yes if condition else no

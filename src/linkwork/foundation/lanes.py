@@ -71,9 +71,9 @@ class Consensus(Arithmetic[Any]):
         """Values (n,) as one number."""
         raise NotElementwise
 
-    def pick(self, values: AnyArray) -> float:
-        """Values (n,) that are each one of two plain numbers as one number."""
-        return self.lanes(values)
+    def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
+        """One of two plain numbers, lane by lane."""
+        return self.lanes(np.where(truths.values, yes, no))
 
     def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A NumPy function of plain numbers and lanes, lane by lane."""

@@ -16,4 +16,5 @@ These loops step along a path, each for a reason:
   prediction.
 * ``kernels.march.rowwise``: rows of one mechanism side by side; the distance of rows is the step.
 * ``kernels.gpu.march``: one thread follows one mechanism.
+* ``frontend/src/solving/march.ts``: a page follows its mechanism, as that thread does.
 """

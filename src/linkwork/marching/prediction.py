@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from linkwork.foundation.arrays import Array
 
-__all__ = ["SAME", "hermite_weights", "is_same_spacing", "keep_spacing", "trusted_nodes"]
+__all__ = ["FAR", "SAME", "hermite_weights", "is_same_spacing", "keep_spacing", "trusted_nodes"]
 
 SAME = 1e-9  # relative: steps so nearly equal share the weights of their prediction
-_FAR = 2.5  # times the step before: beyond this distance fewer nodes are trusted
+FAR = 2.5  # times the step before: beyond this distance fewer nodes are trusted
 
 
 def trusted_nodes(t: float, times: Array, known: int) -> int:
@@ -15,7 +15,7 @@ def trusted_nodes(t: float, times: Array, known: int) -> int:
     step, used = abs(t - times[0]), min(known, len(times))
     for k in range(len(times) - 1, 0, -1):
         # a polynomial far outside its nodes is worse than one through fewer of them
-        if used > k and step > _FAR * abs(times[k - 1] - times[k]):
+        if used > k and step > FAR * abs(times[k - 1] - times[k]):
             used = k
     return used
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["GROWTH", "HALF", "aim", "by_error", "grow", "is_lost", "stride"]
+__all__ = ["GROWTH", "HALF", "NEARLY_FULL", "aim", "by_error", "grow", "is_lost", "stride"]
 
 GROWTH = 2.0  # largest factor from one step to the next
 HALF = 0.5  # the next attempt after a step that failed, as a part of it
 # A step often ends early, at a row of the table, and then tests only a part of its bound. The bound
 # grows where that part is half or more: it is then at most 4 (GROWTH / 0.5) times a step that
 # succeeded, while rows just short of the bound do not keep it from growing.
-_NEARLY_FULL = 0.5
+NEARLY_FULL = 0.5
 
 
 def aim(goal: float, here: float, h: float) -> float:
@@ -34,7 +34,7 @@ def is_lost(t: float, here: float, goal: float) -> bool:
 
 def grow(h: float, moved: float, largest: float) -> float:
     """The bound of the next step after a successful step of length ``moved``."""
-    return min(GROWTH * h, largest) if moved >= _NEARLY_FULL * h else h
+    return min(GROWTH * h, largest) if moved >= NEARLY_FULL * h else h
 
 
 def by_error(error: float, target: float, order: int) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import Loops, motion_page
+from linkwork.viewer.page_data import PageData, SolvingPage
 from linkwork.viewer.play_order import falling, play_order
 
 __all__ = [
@@ -92,6 +93,7 @@ def animation(
     equations: Sequence[tuple[str, str]] = (),
     loops: Loops | None = None,
     forces: Sequence[Force] = (),
+    solver: SolvingPage | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> bytes:
     """The content of a file that shows motions of one mechanism.
@@ -110,6 +112,8 @@ def animation(
         See :func:`~linkwork.viewer.page_building.motion_page`.
     forces : sequence of Force
         Drawn as arrows, for a page.
+    solver : SolvingPage, optional
+        For a page of one motion, with sliders.
     progress : callable, optional
         Called with the finished fraction of a film, 0 to 1.
 
@@ -120,11 +124,21 @@ def animation(
     """
     if kind == "html":
         page = motion_page(motions, equations=equations, loops=loops, forces=forces)
-        return offline_page(page).encode()
+        if solver is not None:
+            page = _computed_in_page(page, solver)
+        return offline_page(page, solver).encode()
     motion = next((motion for motion in motions.values() if motion.found.any()), None)
     if motion is None:
         raise InputError("there is no motion to show: no position was found")
     return _film(motion, kind, given_or(FilmOptions(), "options", options), progress)
+
+
+def _computed_in_page(page: PageData, solver: SolvingPage) -> PageData:
+    """The page without columns that it cannot compute again."""
+    (motion,) = page.motions
+    known = set(solver.data.columns)
+    columns = tuple(c for c in motion.columns if c.group == "input" or c.name in known)
+    return replace(page, motions=(replace(motion, columns=columns),))
 
 
 def animate_motion(

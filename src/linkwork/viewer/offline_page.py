@@ -8,23 +8,27 @@ import json
 import zlib
 from importlib import resources
 
-from linkwork.viewer.page_data import PageData
+from linkwork.viewer.page_data import PageData, SolverData, SolvingPage
 
 __all__ = ["offline_page", "page_json"]
 
 _POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 
 
-def offline_page(page: PageData) -> str:
-    """The HTML file.
+def offline_page(page: PageData, solver: SolvingPage | None = None) -> str:
+    """The HTML file; with a ``solver`` numbers of the mechanism can be changed in it.
 
     It contains its data as JSON, deflated if that is shorter, and the scripts and styles of
     ``static/``, which ``scripts/frontend build`` writes. It loads no other file.
     """
     static = resources.files("linkwork.viewer") / "static"
-    script = (static / "offline.js").read_text(encoding="utf-8")
+    script = (static / ("solving.js" if solver else "offline.js")).read_text(encoding="utf-8")
     style = (static / "linkwork.css").read_text(encoding="utf-8")
-    encoding, content = _shortest(page_json(page))
+    data = _holder("linkwork-data", page_json(page))
+    if solver is not None:
+        style += (static / "solving.css").read_text(encoding="utf-8")
+        data += _holder("linkwork-solver", page_json(solver.data))
+        data += f"<script>{solver.script}</script>\n"
     title = html.escape(page.title)
     return f"""<!doctype html>
 <html lang="en">
@@ -40,14 +44,19 @@ def offline_page(page: PageData) -> str:
 </head>
 <body>
 <main id="linkwork"><noscript>This page needs JavaScript to move.</noscript></main>
-<script id="linkwork-data" type="text/plain" data-encoding="{encoding}">{content}</script>
-<script>{script}</script>
+{data}<script>{script}</script>
 </body>
 </html>
 """
 
 
-def page_json(page: PageData) -> str:
+def _holder(name: str, text: str) -> str:
+    """Data as an element of the page."""
+    encoding, content = _shortest(text)
+    return f'<script id="{name}" type="text/plain" data-encoding="{encoding}">{content}</script>\n'
+
+
+def page_json(page: PageData | SolverData) -> str:
     """The data as JSON, including fields with empty default values."""
     return json.dumps(
         page, default=vars, ensure_ascii=False, separators=(",", ":"), allow_nan=False

@@ -17,7 +17,7 @@ from linkwork.results.quantity import Rate
 from linkwork.viewer.packing import Pack
 from linkwork.viewer.page_data import Column, MotionNumber
 
-__all__ = ["columns_of", "numbers_of"]
+__all__ = ["columns_of", "numbers_of", "usual_columns"]
 
 _MOST_NUMBERED = 5  # quantities with numbers of the motion by default
 
@@ -38,7 +38,7 @@ def columns_of(motion: Motion, pack: Pack, asked: Sequence[str] = ()) -> Iterato
             first=None,
             first_unit="",
         )
-    groups = dict(_usual(motion))
+    groups = dict(usual_columns(motion))
     for name, group in groups.items():
         yield _column(motion, motion.quantity(name), group, pack)
     given = {*motion.inputs, *groups}
@@ -49,7 +49,7 @@ def columns_of(motion: Motion, pack: Pack, asked: Sequence[str] = ()) -> Iterato
             yield _column(motion, quantity, "asked", pack)
 
 
-def _usual(motion: Motion) -> Iterator[tuple[str, str]]:
+def usual_columns(motion: Motion) -> Iterator[tuple[str, str]]:
     """The columns of every page, and their groups."""
     yield from ((name, "unknown") for name in (*motion.unknowns, *motion.riding))
     yield from ((name, "output") for name in motion.outputs)

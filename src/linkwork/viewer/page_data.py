@@ -22,8 +22,13 @@ __all__ = [
     "PointData",
     "RoleStyle",
     "RowEvidence",
+    "SliderData",
+    "SolverData",
+    "StepRules",
     "ThemeData",
+    "TrackData",
     "TurnData",
+    "TurnSource",
     "VectorData",
 ]
 
@@ -254,3 +259,100 @@ class PageData:
     forces: tuple[ForceData, ...]
     force_unit: str
     equations: tuple[Equation, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SliderData:
+    """A number that can be changed in the page; ``unit`` is empty where it is unknown.
+
+    ``hidden``: parts that are not drawn while it differs from ``value``.
+    """
+
+    name: str
+    unit: str
+    value: float
+    hidden: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepRules:
+    """Constants of ``marching`` and of the programs; see there."""
+
+    nodes: int
+    growth: float
+    half: float
+    nearly_full: float
+    far: float
+    same: float
+    newton_steps: int
+    start_steps: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnSource:
+    """Where the angle of a turn comes from: the number of a computed angle, or -1 and the points
+    of a line, given by index.
+    """
+
+    angle: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackData:
+    """A track: the point guided by it and its frame, given by index (-1: the ground), and its
+    direction there. The ends of the point's path count as two more points, after the named ones.
+    """
+
+    point: int
+    frame: int
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolverData:
+    """What a page needs to solve, besides its printed functions.
+
+    ``unknowns`` to ``options``: layout of the functions' arrays, see ``batch.printed_solver``.
+    ``steps``: first, largest and smallest step; ``turn``: a whole turn of the input, 0 where it
+    does not turn freely; ``apart``: rounding of an input a turn away; ``path``: values of the
+    table's line of inputs, ``rates`` and ``origins`` of all inputs on it, and their ``inputs`` in
+    the unit of the file, row by row. ``columns``: names of computed columns. ``frames`` replace
+    those of the motion; ``anchors``: points that the corners of each part move with, -1 for none.
+    """
+
+    title: str
+    sliders: tuple[SliderData, ...]
+    unknowns: int
+    size: int
+    blocks: int
+    coefficients: int
+    spread: tuple[int, ...]
+    state: int
+    design: int
+    drawn: int
+    options: tuple[float, ...]
+    rules: StepRules
+    steps: tuple[float, ...]
+    turn: float
+    apart: float
+    path: PackedColumn
+    origins: tuple[float, ...]
+    rates: tuple[float, ...]
+    inputs: tuple[PackedColumn, ...]
+    input_unit: float
+    columns: tuple[str, ...]
+    turns: tuple[TurnSource, ...]
+    tracks: tuple[TrackData, ...]
+    frames: tuple[FrameData, ...]
+    anchors: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvingPage:
+    """The data of a page's solver, and its printed functions as a script."""
+
+    data: SolverData
+    script: str

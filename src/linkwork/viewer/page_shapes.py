@@ -17,7 +17,7 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.packing import Pack
 from linkwork.viewer.page_data import FrameData, PackedColumn, Part, TurnData
 
-__all__ = ["OWN_COURSE", "shapes_of", "still_shape"]
+__all__ = ["OWN_COURSE", "places_of", "shapes_of", "still_shape"]
 
 #: Gives x, y, x, y, … of places in the frame of a shape.
 Local = Callable[[tuple[XY, ...]], tuple[float, ...]]
@@ -91,7 +91,7 @@ def _shape(shape: Primitive, frame: int, local: Local) -> Part:
         of=shape.of,
         tone=shape.tone,
         frame=frame,
-        points=local(_places(shape)),
+        points=local(places_of(shape)),
         radius=shape.radius if isinstance(shape, Disc) else 0.0,
         head=local(shape.arrow_head) if isinstance(shape, Polyline | Arc) else (),
         text=text.text if text else "",
@@ -103,7 +103,7 @@ def _shape(shape: Primitive, frame: int, local: Local) -> Part:
     )
 
 
-def _places(shape: Primitive) -> tuple[XY, ...]:
+def places_of(shape: Primitive) -> tuple[XY, ...]:
     """The points of a drawn shape."""
     match shape:
         case Polyline() | Arc():

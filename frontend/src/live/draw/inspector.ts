@@ -4,6 +4,7 @@ import type { FileState, LiveEdit } from "../../messages";
 import { shortNumber, trimmed } from "../../numbers";
 import { html } from "../../svg";
 import type { Desk } from "../asking";
+import { fill } from "../fields";
 import { typed } from "../ranges";
 
 export interface Chosen {
@@ -133,7 +134,7 @@ export class Inspector {
   private refresh(file: FileState): void {
     for (const input of this.element.querySelectorAll<HTMLInputElement>("input[data-number]")) {
       const number = find(file, input.dataset.number!);
-      if (number && input !== document.activeElement) input.value = number.formula || trimmed(shortNumber(number.value, 6));
+      if (number) fill(input, number.formula || trimmed(shortNumber(number.value, 6)));
     }
   }
 

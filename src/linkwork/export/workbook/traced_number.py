@@ -59,9 +59,9 @@ class Trace(Consensus):
         z = complex(number)
         return self.make([number], LinearForm(z.real), LinearForm(z.imag))
 
-    def pick(self, values: AnyArray) -> float:
+    def pick(self, truths: Truths, yes: complex, no: complex) -> TracedNumber:
         """One of two plain numbers."""
-        return self.number(values[0], LinearForm(float(values[0])))
+        return self.plain(yes if truths.values[0] else no)
 
     def settle(self, number: TracedNumber) -> Any:
         """The plain number, noted as such."""

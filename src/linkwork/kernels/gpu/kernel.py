@@ -11,7 +11,8 @@ import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.kernels.gpu.compiling import graphics_card
-from linkwork.kernels.gpu.printing import ThreadState, device_source
+from linkwork.kernels.gpu.printing import device_source
+from linkwork.kernels.march.printed_sections import ThreadState
 from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.march.work_arrays import MarchResult
 from linkwork.kernels.program.code_cache import load_compiled

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
-from linkwork.kernels.march.march_programs import WEIGHTS, MarchPrograms
+from linkwork.kernels.march.march_programs import MarchPrograms
+from linkwork.kernels.march.printed_sections import ThreadState, printed_sections
 from linkwork.kernels.march.step_control import START_STEPS, STEPS
-from linkwork.kernels.program.printing import Body
-from linkwork.kernels.program.program import Program
+from linkwork.kernels.program.languages import PYTHON
 
-__all__ = ["ThreadState", "device_source"]
+__all__ = ["device_source"]
 
 _HEAD = """\
 import math
@@ -49,40 +48,6 @@ def march(design, options, node, begun, rows, steps, v, radius, reached, end, la
 """
 
 
-@dataclass(frozen=True, kw_only=True)
-class ThreadState:
-    """The registers that a thread keeps, laid out as in :class:`linkwork.kernels.gpu.march.Shape`.
-
-    Parameters
-    ----------
-    place : Mapping[int, int]
-        By register.
-    coefficients, options : tuple of str
-        Names of registers that are filled before a program runs.
-    blocks : int
-    """
-
-    place: Mapping[int, int]
-    coefficients: tuple[str, ...]
-    options: tuple[str, ...]
-    blocks: int
-
-    @classmethod
-    def of(cls, programs: MarchPrograms, options: Sequence[str]) -> ThreadState:
-        """The state that the programs of a topology need; ``options``: names that may be read."""
-        named, blocks = programs.registers.named, len(programs.begin)
-        own = {*programs.nodes.ravel().tolist(), *(named[name] for name in programs.noted)}
-        noted = ["good.0", "radius.0", *(f"live{b}.0" for b in range(blocks))]
-        more = [name for name in programs.noted if name not in noted]
-        given = [name for name in named if named[name] not in own and name not in WEIGHTS]
-        coefficients = tuple(name for name in given if name not in options)
-        used = tuple(name for name in options if name in named)
-        order = [named[name] for name in (*WEIGHTS, *noted, *coefficients, *used, *more)]
-        order = [*programs.nodes.ravel().tolist(), *order]
-        place = {register: k for k, register in enumerate(order)}
-        return cls(place=place, coefficients=coefficients, options=used, blocks=blocks)
-
-
 def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) -> str:
     """A module with the kernels ``begin`` and ``march`` of one topology.
 
@@ -99,13 +64,9 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
         f"coefficients={len(state.coefficients)}, options={len(state.options)}, "
         f"certified={certified})"
     )
-    named = {"reach": programs.predict, "given": programs.given, "agree": programs.judge}
-    for kind in ("begin", "damped", "iterate", "prove"):
-        named |= {f"{kind}{b}": program for b, program in enumerate(getattr(programs, kind))}
-    constants = {register: value for value, register in programs.registers.constants.items()}
     live = [state.place[programs.registers.named[f"live{b}.0"]] for b in range(state.blocks)]
     functions = [
-        *(_section(name, program, state, constants) for name, program in named.items()),
+        *(f"@on_device\n{text}" for text in printed_sections(programs, state, PYTHON)),
         _function("predict", ["reach(w)", "given(w)"]),
         _function("correct", *map(_newton, range(state.blocks), live)),
         _function("correct_slowly", *map(_slowly, range(state.blocks), live)),
@@ -118,15 +79,6 @@ def device_source(programs: MarchPrograms, state: ThreadState, certified: bool) 
 def _function(name: str, *parts: Sequence[str]) -> str:
     body = "\n".join(f"    {line}" for lines in parts for line in lines)
     return f"@on_device\ndef {name}(w):\n{body}\n"
-
-
-def _section(
-    name: str, program: Program, state: ThreadState, constants: Mapping[int, float]
-) -> str:
-    body = Body(lambda register: f"w[{state.place[register]}]", constants)
-    body.add(program.code)
-    body.end(state.place.keys())
-    return _function(name, body.lines)
 
 
 def _newton(block: int, live: int) -> list[str]:

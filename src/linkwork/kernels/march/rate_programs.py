@@ -29,7 +29,7 @@ from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
-__all__ = ["PlaceProgram", "evidence_program", "rate_program", "row_program"]
+__all__ = ["PlaceProgram", "drawn_program", "evidence_program", "rate_program", "row_program"]
 
 
 Number = Value | float
@@ -105,18 +105,28 @@ class _RateWriter:
     def evidence(self, lengths: Set[int]) -> list[str]:
         """Condition and residual; ``lengths``: the linear rows that are equations of lengths."""
         rec = self.rec
-        conditions, residuals = [rec.constant(1.0)], [rec.constant(0.0)]
+        conditions = [rec.constant(1.0)]
+        conditions += [self._condition(c, self._scales(c, lengths)) for c in self.closures]
+        rec.write("condition", rec.largest(conditions))
+        return ["condition", *self.residual(lengths)]
+
+    def residual(self, lengths: Set[int]) -> list[str]:
+        """The largest residual alone."""
+        rec = self.rec
+        residuals = [rec.constant(0.0)]
         for closure in self.closures:
-            lines = [rec.input("length") if r in lengths else 1.0 for r in closure.lines]
-            scales = [*[rec.input("length")] * (2 * len(closure.loops)), *lines]
-            conditions.append(self._condition(closure, scales))
             residuals += [
                 rec.divide(rec.absolute(f), scale)
-                for f, scale in zip(closure.residual(), scales, strict=True)
+                for f, scale in zip(closure.residual(), self._scales(closure, lengths), strict=True)
             ]
-        rec.write("condition", rec.largest(conditions))
         rec.write("residual", rec.largest(residuals))
-        return ["condition", "residual"]
+        return ["residual"]
+
+    def _scales(self, closure: Closure, lengths: Set[int]) -> list[Number]:
+        """Of the residuals of a block."""
+        length = self.rec.input("length")
+        lines = [length if r in lengths else 1.0 for r in closure.lines]
+        return [*[length] * (2 * len(closure.loops)), *lines]
 
     def _weight(self, k: int) -> Value:
         """Of a variable: 1 for angles."""
@@ -203,6 +213,17 @@ def evidence_program(
     """
     writer = _RateWriter(table, parts, zeros)
     return writer.finish(writer.evidence(lengths))
+
+
+def drawn_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    lengths: Set[int],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """Rates and residual, for a page that solves; see :func:`evidence_program`."""
+    writer = _RateWriter(table, parts, zeros)
+    return writer.finish([*writer.rates(), *writer.residual(lengths)])
 
 
 def row_program(

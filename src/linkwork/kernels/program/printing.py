@@ -1,39 +1,18 @@
-"""Programs written out as Python source: one statement for each instruction.
+"""Programs written out as source text of a language: one statement for each instruction.
 
 The code names registers only, so no text of a mechanism's file gets into it.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
 from linkwork.kernels.program.interpreter import LANES
+from linkwork.kernels.program.languages import PYTHON, Language
 from linkwork.kernels.program.program import ROLES, Code, Op
 
 __all__ = ["Body", "trial_source"]
-
-_STATEMENT = {
-    Op.COPY: "{a}",
-    Op.ADD: "{a} + {b}",
-    Op.SUB: "{a} - {b}",
-    Op.MUL: "{a} * {b}",
-    Op.DIV: "{a} / {b}",
-    Op.FMA: "{a} * {b} + {c}",
-    Op.FMS: "{a} * {b} - {c}",
-    Op.FNMA: "{c} - {a} * {b}",
-    Op.NEG: "-{a}",
-    Op.ABS: "abs({a})",
-    Op.MAX: "{a} if ({a} > {b}) | ({a} != {a}) else {b}",
-    Op.MIN: "{a} if ({a} < {b}) | ({a} != {a}) else {b}",
-    Op.SQRT: "math.sqrt({a})",
-    Op.WHERE: "{b} if {a} > 0.5 else {c}",
-    Op.LE: "1.0 if {a} <= {b} else 0.0",
-    Op.AND: "{a} * {b}",
-    Op.KEEP: "{b} if {a} > 0.5 else {d}",
-    Op.LESS: "{d} - {a}",
-}
 
 
 @dataclass
@@ -42,53 +21,59 @@ class Body:
 
     place: Callable[[int], str]
     constants: Mapping[int, float]
+    language: Language = PYTHON
     lines: list[str] = field(default_factory=list)
     known: set[int] = field(default_factory=set)
     changed: set[int] = field(default_factory=set)
+    turns: int = 0
 
     def value(self, register: int) -> str:
         """The expression that a register holds now."""
         if register in self.constants:
-            return _number(self.constants[register])
+            return self.language.number(self.constants[register])
         if register not in self.known:
-            self.known.add(register)
-            self.lines.append(f"r{register} = {self.place(register)}")
+            self._assign(register, self.place(register))
         return f"r{register}"
 
-    def _set(self, *registers: int) -> None:
-        self.known.update(registers)
-        self.changed.update(registers)
+    def _assign(self, register: int, value: str) -> None:
+        form = self.language.later if register in self.known else self.language.first
+        self.lines.append(form.format(name=f"r{register}", value=value))
+        self.known.add(register)
 
     def add(self, code: Code) -> None:
         """The statements of a program."""
         for number, d, a, b, c in code.tolist():
             op = Op(number)
             if op is Op.SIN:
-                self.lines.append(f"r{d}, r{c} = sin_cos({self.value(a)})")
-                self._set(d, c)
+                self._add_sine(self.value(a), d, c)
                 continue
-            form = _STATEMENT[op]
+            form = self.language.forms[op]
             used = {
                 key: self.value(register)
                 for key, register in (("a", a), ("b", b), ("c", c), ("d", d))
                 if "{" + key + "}" in form
             }
-            self.lines.append(f"r{d} = {form.format(**used)}")
-            self._set(d)
+            self._assign(d, form.format(**used))
+            self.changed.add(d)
+
+    def _add_sine(self, angle: str, sine: int, cosine: int) -> None:
+        names = {sine: f"r{sine}", cosine: f"r{cosine}"}
+        if self.language.declares:
+            self.turns += 1
+            names = {sine: f"s{self.turns}", cosine: f"c{self.turns}"}
+        form = self.language.sine
+        self.lines.append(form.format(a=angle, d=names[sine], c=names[cosine]))
+        for register, name in names.items():
+            if self.language.declares:
+                self._assign(register, name)
+        self.known |= names.keys()
+        self.changed |= names.keys()
 
     def end(self, kept: Set[int]) -> None:
         """Write the registers that are kept and have changed."""
         for register in sorted(self.changed & kept):
-            self.lines.append(f"{self.place(register)} = r{register}")
-
-
-def _number(value: float) -> str:
-    """A number as Python writes it; infinities and NaN by name."""
-    if math.isnan(value):
-        return "math.nan"
-    if math.isinf(value):
-        return "math.inf" if value > 0.0 else "-math.inf"
-    return repr(value)
+            place = self.place(register)
+            self.lines.append(self.language.store.format(place=place, value=f"r{register}"))
 
 
 def trial_source(

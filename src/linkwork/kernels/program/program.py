@@ -53,6 +53,7 @@ class Op(IntEnum):
     LESS = 19  # the target's present value less a
     INPUT = 20  # a named register; no instruction
     CONSTANT = 21  # no instruction
+    ATAN2 = 22  # the direction of (b, a); printed only, no kernel runs it
 
 
 _ONE = (Op.COPY, Op.NEG, Op.ABS, Op.SQRT, Op.SIN, Op.LESS)

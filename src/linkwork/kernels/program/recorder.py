@@ -73,7 +73,7 @@ class Recorder(Arithmetic[Value]):
     def _value(self, x: Value | float) -> Value:
         return x if isinstance(x, Value) else self.constant(x)
 
-    def _number(self, x: Value | float) -> float | None:
+    def known_value(self, x: Value | float) -> float | None:
         """The value of a constant, ``None`` for anything else."""
         if not isinstance(x, Value):
             return float(x)
@@ -82,7 +82,7 @@ class Recorder(Arithmetic[Value]):
 
     def is_zero(self, x: Value | float) -> bool:
         """Whether a number is the constant 0."""
-        return self._number(x) == 0.0
+        return self.known_value(x) == 0.0
 
     def _negated(self, x: Value) -> Value | None:
         """y for x = -y."""
@@ -92,7 +92,7 @@ class Recorder(Arithmetic[Value]):
 
     def add(self, x: Value | float, y: Value | float) -> Value:
         """x + y."""
-        a, b = self._number(x), self._number(y)
+        a, b = self.known_value(x), self.known_value(y)
         if a is not None and b is not None:
             return self.constant(a + b)
         if a == 0.0:
@@ -109,7 +109,7 @@ class Recorder(Arithmetic[Value]):
 
     def subtract(self, x: Value | float, y: Value | float) -> Value:
         """x - y."""
-        a, b = self._number(x), self._number(y)
+        a, b = self.known_value(x), self.known_value(y)
         if a is not None and b is not None:
             return self.constant(a - b)
         if b == 0.0:
@@ -124,7 +124,7 @@ class Recorder(Arithmetic[Value]):
 
     def multiply(self, x: Value | float, y: Value | float) -> Value:
         """x y; signs move outwards."""
-        a, b = self._number(x), self._number(y)
+        a, b = self.known_value(x), self.known_value(y)
         if a is not None and b is not None:
             return self.constant(a * b)
         for factor, other in ((a, y), (b, x)):
@@ -143,7 +143,7 @@ class Recorder(Arithmetic[Value]):
 
     def divide(self, x: Value | float, y: Value | float) -> Value:
         """x / y."""
-        a, b = self._number(x), self._number(y)
+        a, b = self.known_value(x), self.known_value(y)
         if a is not None and b is not None:
             with np.errstate(all="ignore"):  # as in a lane: infinite, or not a number
                 return self.constant(float(np.divide(a, b)))
@@ -155,7 +155,7 @@ class Recorder(Arithmetic[Value]):
 
     def negate(self, x: Value | float) -> Value:
         """-x."""
-        a = self._number(x)
+        a = self.known_value(x)
         if a is not None:
             return self.constant(-a)
         x = self._value(x)
@@ -164,7 +164,7 @@ class Recorder(Arithmetic[Value]):
 
     def absolute(self, x: Value | float) -> Value:
         """|x|."""
-        a = self._number(x)
+        a = self.known_value(x)
         if a is not None:
             return self.constant(abs(a))
         x = self._negated(self._value(x)) or self._value(x)
@@ -197,6 +197,10 @@ class Recorder(Arithmetic[Value]):
         """Sine and cosine of an angle [rad]."""
         sine = self._new(Op.SIN, x.number)
         return sine, self._new(Op.COS, sine.number)
+
+    def direction(self, y: Value | float, x: Value | float) -> Value:
+        """The angle of (x, y), in printed programs only."""
+        return self._new(Op.ATAN2, self._value(y).number, self._value(x).number)
 
     def at_most(self, x: Value | float, y: Value | float) -> Value:
         """Where x <= y; false where one is not a number."""

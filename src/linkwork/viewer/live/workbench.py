@@ -321,6 +321,13 @@ class Workbench:
         self._solution = [] if live else events
         return events
 
+    def _sketch(self) -> Events:
+        """The points as sketched, if they are edited in the drawing or there is no motion."""
+        if self._subject.solvable is not None and not self._sheet.edited:
+            return []
+        page = self._subject.page(self._sheet.width / 2)
+        return [] if page is None else [tell.SketchShown(page=page)]
+
     def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
         """A found motion with the data of its page."""
         if not isinstance(event, tell.MotionFound):
@@ -347,13 +354,6 @@ class Workbench:
             file=self._file.name,
             progress=self._give_up,
         )
-
-    def _sketch(self) -> Events:
-        """The points as sketched, if they are edited in the drawing or there is no motion."""
-        if self._subject.solvable is not None and not self._sheet.edited:
-            return []
-        page = self._subject.page(self._sheet.width / 2)
-        return [] if page is None else [tell.SketchShown(page=page)]
 
     def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
         if live:

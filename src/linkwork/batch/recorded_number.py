@@ -1,0 +1,327 @@
+"""A number that records its arithmetic as a program while the equations are built from it.
+
+The builder of a mechanism's equations computes with floats and complex numbers. A recorded number
+passes through it as :class:`~linkwork.foundation.lanes.Lanes` of one design do. Every decision is
+taken by its value and recorded as a condition: where all conditions hold, the program gives the
+coefficients of the design with other numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+
+from linkwork.expression.lane_functions import least, most
+from linkwork.foundation.arrays import AnyArray, BoolArray
+from linkwork.foundation.elementwise import remainders, with_parts
+from linkwork.foundation.lanes import Consensus, Lanes, Truths
+from linkwork.foundation.operand import NotElementwise
+from linkwork.kernels.program.recorder import Recorder, Value
+
+__all__ = ["RecordedNumber", "Recording", "parts_of"]
+
+Part = Value | float
+Parts = tuple[Part, Part]
+
+_POWERS = range(-4, 5)
+_ROUNDING = 1.5 * 2.0**52  # added and taken away again, it leaves the nearest whole number
+
+
+class Recording(Consensus):
+    """What the recorded numbers of one mechanism have in common.
+
+    Attributes
+    ----------
+    recorder : Recorder
+    conditions : list of Value
+        Masks of the decisions; all hold where the program serves.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(1, widest=True)
+        self.recorder = Recorder()
+        self.conditions: list[Value] = []
+
+    def number(self, name: str, value: float) -> float:
+        """A real number that the program reads from a named register."""
+        return cast(float, self.make([value], self.recorder.input(name)))
+
+    def make(self, values: Any, re: Part, im: Part = 0.0) -> RecordedNumber:
+        """A number, values (1,), with its recorded parts."""
+        return RecordedNumber(np.asarray(values), self, self.plainly(re), self.plainly(im))
+
+    def plainly(self, part: Part) -> Part:
+        """A recorded constant as a float."""
+        known = self.recorder.known_value(part)
+        return part if known is None else known
+
+    def plain(self, number: complex) -> RecordedNumber:
+        """A plain number."""
+        z = complex(number)
+        return self.make([number], z.real, z.imag)
+
+    def pick(self, truths: Truths, yes: complex, no: complex) -> float:
+        """One of two plain numbers."""
+        return cast(float, self._choose(truths, yes, no))
+
+    def settle(self, number: RecordedNumber) -> Any:
+        """A number that all designs must share."""
+        if isinstance(number.re, Value) or isinstance(number.im, Value):
+            raise NotElementwise
+        return super().settle(number)
+
+    def decide(self, truths: Any) -> bool:
+        """The answer; that it stays the same becomes a condition."""
+        answer = bool(truths.values[0] if isinstance(truths, Truths) else truths[0])
+        if isinstance(truths, _RecordedTruths) and isinstance(truths.mask, Value):
+            rec = self.recorder
+            self.conditions.append(truths.mask if answer else rec.subtract(1.0, truths.mask))
+        return answer
+
+    def apply(self, function: Callable[..., Any], *numbers: object) -> RecordedNumber:
+        """A function that can be recorded."""
+        if function is np.where:
+            return self._choose(*numbers)
+        if function not in _FUNCTIONS:
+            raise NotElementwise
+        given = [self.operand(number) for number in numbers]
+        values = function(*(number.values for number in given))
+        if not any(isinstance(part, Value) for number in given for part in (number.re, number.im)):
+            return self.plain(values[0].item())
+        return self.make(values, *_FUNCTIONS[function](self.recorder, *given))
+
+    def _choose(self, condition: object, yes: object, no: object) -> RecordedNumber:
+        x: RecordedNumber = self.operand(yes)
+        y: RecordedNumber = self.operand(no)
+        if not isinstance(condition, _RecordedTruths) or not isinstance(condition.mask, Value):
+            return x if cast(Truths, condition) else y
+        values = np.where(condition.values, x.values, y.values)
+        rec, mask = self.recorder, condition.mask
+        return self.make(values, rec.where(mask, x.re, y.re), rec.where(mask, x.im, y.im))
+
+    def add(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x + y."""
+        rec = self.recorder
+        return self.make(x.values + y.values, rec.add(x.re, y.re), rec.add(x.im, y.im))
+
+    def negate(self, x: RecordedNumber) -> RecordedNumber:
+        """-x."""
+        return self.make(-x.values, self.recorder.negate(x.re), self.recorder.negate(x.im))
+
+    def multiply(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x y."""
+        rec = self.recorder
+        re = rec.subtract(rec.multiply(x.re, y.re), rec.multiply(x.im, y.im))
+        im = rec.add(rec.multiply(x.re, y.im), rec.multiply(x.im, y.re))
+        return self.make(x.values * y.values, re, im)
+
+    def divide(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x / y."""
+        if y.im != 0.0:
+            return x * y.conjugate() / (y * y.conjugate()).real
+        rec = self.recorder
+        return self.make(x.values / y.values, rec.divide(x.re, y.re), rec.divide(x.im, y.re))
+
+    def power(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x to the power of 1/2 or a small whole number."""
+        if y.re == 0.5:
+            return self.apply(np.sqrt, x)
+        if isinstance(y.re, Value) or y.im != 0.0 or y.re not in _POWERS:
+            raise NotElementwise
+        if y.re < 0.0:
+            return self.plain(1.0) / x**-y.re
+        product = self.plain(1.0)
+        for _ in range(int(y.re)):
+            product = product * x
+        return product
+
+    def absolute(self, x: RecordedNumber) -> RecordedNumber:
+        """|x|."""
+        return self.apply(np.abs, x)
+
+
+class _RecordedTruths(Truths):
+    """A condition with its mask."""
+
+    __slots__ = ("mask",)
+    consensus: Recording
+
+    def __init__(self, values: BoolArray, recording: Recording, mask: Part) -> None:
+        super().__init__(values, recording)
+        self.mask = mask
+
+    def __bool__(self) -> bool:
+        return self.consensus.decide(self)
+
+    def __and__(self, other: object) -> Truths:
+        values, mask = self._other(other)
+        both = self.consensus.recorder.multiply(self.mask, mask)
+        return _RecordedTruths(self.values & values, self.consensus, both)
+
+    def __or__(self, other: object) -> Truths:
+        values, mask = self._other(other)
+        either = self.consensus.recorder.largest([self.mask, mask])
+        return _RecordedTruths(self.values | values, self.consensus, either)
+
+    def _other(self, other: object) -> tuple[BoolArray, Part]:
+        if isinstance(other, _RecordedTruths):
+            return other.values, other.mask
+        if isinstance(other, Truths):
+            raise NotElementwise
+        return np.array([bool(other)]), float(bool(other))
+
+    def __eq__(self, other: object) -> Any:
+        raise NotElementwise
+
+    def __ne__(self, other: object) -> Any:
+        raise NotElementwise
+
+    __hash__ = None
+    __rand__ = __and__
+    __ror__ = __or__
+
+
+class RecordedNumber(Lanes):
+    """A number with the recorded parts ``re`` and ``im``."""
+
+    __slots__ = ("im", "re")
+    arithmetic: Recording
+
+    def __init__(self, values: AnyArray, recording: Recording, re: Part, im: Part) -> None:
+        super().__init__(values, recording)
+        self.re, self.im = re, im
+
+    def _at_most(self, other: object, turned: bool, strict: bool) -> Truths:
+        """self <= other; ``turned``: other <= self; ``strict``: not that."""
+        rec, x, y = self.arithmetic.recorder, self, self.arithmetic.operand(other)
+        if turned:
+            x, y = y, x
+        values, mask = x.values <= y.values, rec.at_most(x.re, y.re)
+        if strict:
+            values, mask = ~values, rec.subtract(1.0, mask)
+        return _RecordedTruths(values, self.arithmetic, mask)
+
+    def __lt__(self, other: object) -> Truths:
+        return self._at_most(other, True, True)
+
+    def __le__(self, other: object) -> Truths:
+        return self._at_most(other, False, False)
+
+    def __gt__(self, other: object) -> Truths:
+        return self._at_most(other, False, True)
+
+    def __ge__(self, other: object) -> Truths:
+        return self._at_most(other, True, False)
+
+    def __eq__(self, other: object) -> Any:
+        rec, y = self.arithmetic.recorder, self.arithmetic.operand(other)
+        far = [rec.absolute(rec.subtract(a, b)) for a, b in ((self.re, y.re), (self.im, y.im))]
+        mask = rec.at_most(rec.largest(far), 0.0)
+        return _RecordedTruths(self.values == y.values, self.arithmetic, mask)
+
+    def __ne__(self, other: object) -> Any:
+        equal = self == other
+        mask = self.arithmetic.recorder.subtract(1.0, equal.mask)
+        return _RecordedTruths(~equal.values, self.arithmetic, mask)
+
+    def __bool__(self) -> bool:
+        return bool(self != 0.0)
+
+    __hash__ = Lanes._refuse  # comparing numbers would otherwise remove it
+
+
+def parts_of(z: object) -> Parts:
+    """The recorded real and imaginary part of a coefficient."""
+    if isinstance(z, RecordedNumber):
+        return z.re, z.im
+    assert isinstance(z, int | float | complex)
+    plain = complex(z)
+    return plain.real, plain.imag
+
+
+# Functions: from the recorder and the arguments, the parts
+
+
+def _real(x: RecordedNumber) -> Part:
+    if x.im != 0.0:
+        raise NotElementwise
+    return x.re
+
+
+def _size(rec: Recorder, x: Part, y: Part) -> Part:
+    if not isinstance(y, Value) and y == 0.0:
+        return rec.absolute(x)
+    if not isinstance(x, Value) and x == 0.0:
+        return rec.absolute(y)
+    return rec.sqrt(rec.add(rec.multiply(x, x), rec.multiply(y, y)))
+
+
+def _root(rec: Recorder, x: RecordedNumber) -> Parts:
+    part = _real(x)
+    assert isinstance(part, Value)
+    return rec.sqrt(part), 0.0
+
+
+def _turned(rec: Recorder, x: RecordedNumber, which: int) -> Parts:
+    angle = _real(x)
+    assert isinstance(angle, Value)
+    return rec.sin_cos(angle)[which], 0.0
+
+
+def _rounded(rec: Recorder, x: Part) -> Value:
+    return rec.subtract(rec.add(x, _ROUNDING), _ROUNDING)
+
+
+def _remainder(rec: Recorder, x: RecordedNumber, period: RecordedNumber) -> Parts:
+    turns = _rounded(rec, rec.divide(_real(x), _real(period)))
+    return rec.subtract(_real(x), rec.multiply(turns, _real(period))), 0.0
+
+
+def _signed(rec: Recorder, x: RecordedNumber, sign: RecordedNumber) -> Parts:
+    size = rec.absolute(_real(x))
+    return rec.where(rec.at_most(0.0, _real(sign)), size, rec.negate(size)), 0.0
+
+
+def _inverse(rec: Recorder, x: RecordedNumber, cosine: bool) -> Parts:
+    part = _real(x)
+    other = rec.sqrt(rec.constant(1.0) - rec.multiply(part, part))
+    return (rec.direction(other, part) if cosine else rec.direction(part, other)), 0.0
+
+
+def _sign(rec: Recorder, x: RecordedNumber) -> Parts:
+    part = _real(x)
+    below, above = rec.at_most(part, 0.0), rec.at_most(0.0, part)
+    return rec.subtract(above, below), 0.0
+
+
+def _called(method: Callable[[Recorder, list[Part]], Value]) -> Callable[..., Parts]:
+    return lambda rec, *numbers: (method(rec, [_real(x) for x in numbers]), 0.0)
+
+
+_FUNCTIONS: dict[Callable[..., Any], Callable[..., Parts]] = {
+    np.angle: lambda rec, z: (rec.direction(z.im, z.re), 0.0),
+    np.cos: lambda rec, x: _turned(rec, x, 1),
+    np.sin: lambda rec, x: _turned(rec, x, 0),
+    with_parts: lambda rec, x, y: (_real(x), _real(y)),
+    np.sqrt: _root,
+    np.copysign: _signed,
+    np.rint: lambda rec, x: (_rounded(rec, _real(x)), 0.0),
+    remainders: _remainder,
+    np.abs: lambda rec, x: (_size(rec, x.re, x.im), 0.0),
+    np.hypot: lambda rec, x, y: (_size(rec, _real(x), _real(y)), 0.0),
+    np.round: lambda rec, x: (_rounded(rec, _real(x)), 0.0),
+    np.sign: _sign,
+    np.arccos: lambda rec, x: _inverse(rec, x, True),
+    np.arcsin: lambda rec, x: _inverse(rec, x, False),
+    np.arctan: lambda rec, x: (rec.direction(_real(x), 1.0), 0.0),
+    np.arctan2: lambda rec, y, x: (rec.direction(_real(y), _real(x)), 0.0),
+    np.conjugate: lambda rec, x: (x.re, rec.negate(x.im)),
+    np.real: lambda rec, x: (x.re, 0.0),
+    np.imag: lambda rec, x: (x.im, 0.0),
+    np.fmax: _called(Recorder.largest),
+    np.fmin: _called(Recorder.smallest),
+    most: _called(Recorder.largest),
+    least: _called(Recorder.smallest),
+}

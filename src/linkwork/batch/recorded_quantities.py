@@ -1,0 +1,172 @@
+"""Quantities of a position as a program of its variables: what :mod:`design_values` computes with
+arrays, recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwork.batch.recorded_design import RecordedDesign
+from linkwork.batch.recorded_number import Part, RecordedNumber, Recording
+from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.operand import NotElementwise
+from linkwork.kernels.program.recorder import Recorder, Value
+from linkwork.motion.quantity_values import QuantityValues
+
+__all__ = ["RecordedQuantities"]
+
+_UNKNOWN = np.array([np.nan])
+
+
+class _RowNumber(RecordedNumber):
+    """A recorded number where NumPy's functions expect an array of no axes."""
+
+    __slots__ = ()
+    conj = RecordedNumber.conjugate
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
+        return self.arithmetic.apply(ufunc, *inputs)
+
+    def __array_function__(
+        self, function: Callable[..., Any], types: object, given: Sequence[Any], named: object
+    ) -> Any:
+        if function is np.shape:
+            return ()
+        if function is np.broadcast_to:
+            return self
+        return self.arithmetic.apply(function, *given)
+
+
+class _RowRecording(Recording):
+    """Computes with rows: what holds in one of them decides nothing."""
+
+    def make(self, values: Any, re: Part, im: Part = 0.0) -> RecordedNumber:
+        """A number; its value is unknown if it differs from row to row."""
+        x, y = self.plainly(re), self.plainly(im)
+        known = _UNKNOWN
+        if not isinstance(x, Value) and not isinstance(y, Value):
+            known = np.array([complex(x, y) if y else x])
+        return _RowNumber(known, self, x, y)
+
+    def operand(self, number: object) -> RecordedNumber:
+        """The second operand, which may be an array of no axes."""
+        plain = number.item() if isinstance(number, np.ndarray) and not number.ndim else number
+        return super().operand(plain)
+
+    def decide(self, truths: Any) -> bool:
+        """Refused: rows differ."""
+        raise NotElementwise
+
+    def apply(self, function: Callable[..., Any], *numbers: object) -> RecordedNumber:
+        """A function or an operator of NumPy."""
+        if function is np.where and isinstance(numbers[0], np.ndarray):
+            return self.operand(numbers[1] if numbers[0].item() else numbers[2])
+        method = _OPERATORS.get(function)
+        if method is None:
+            return super().apply(function, *numbers)
+        found: RecordedNumber = method(self, *map(self.operand, numbers))
+        return found
+
+
+_OPERATORS: Mapping[Any, Callable[..., Any]] = {
+    np.add: Recording.add, np.subtract: Recording.subtract, np.multiply: Recording.multiply,
+    np.true_divide: Recording.divide, np.power: Recording.power, np.negative: Recording.negate,
+}  # fmt: skip
+
+
+class _Column:
+    """Numbers that are asked for as the last axis of an array."""
+
+    def __init__(self, numbers: Sequence[RecordedNumber]) -> None:
+        self.numbers = numbers
+
+    def __getitem__(self, index: tuple[Any, int]) -> RecordedNumber:
+        return self.numbers[index[-1]]
+
+
+class RecordedQuantities(QuantityValues):
+    """Records quantities of a mechanism's position from ``v<k>``, ``first<k>`` and ``second<k>``.
+
+    Parameters
+    ----------
+    design : RecordedDesign
+    """
+
+    def __init__(self, design: RecordedDesign) -> None:
+        self.design, self.recording = design, _RowRecording()
+        self.recorder: Recorder = self.recording.recorder
+        base, zero = design.base, np.zeros(())
+        links = [self._part(f"link{k}") for k in range(len(base.equations.links))]
+        named = [self._part(f"dimension{k}") for k in range(len(base.equations.dimensions))]
+        columns: list[Any] = [_Column(links), _Column(named)]
+        super().__init__(base, np.zeros((), dtype=bool), zero, *columns)
+        self.number = {x.symbol: k for k, x in enumerate(self.equations.variables)}
+        self.places: dict[str, Jet] = {}
+
+    def write(self, name: str, number: AnyArray | RecordedNumber) -> None:
+        """Leave a real number in a named register."""
+        part = self.recording.operand(number).re
+        self.recorder.write(name, part)
+
+    def column(self, name: str) -> Jet | None:
+        """A quantity by name; ``None`` if it cannot be recorded."""
+        try:
+            with np.errstate(all="ignore"):
+                jet = self.model.quantities.find(name).jet(self)
+                for part in (jet.v, jet.d1):
+                    self.recording.operand(part)
+        except TypeError:
+            return None
+        return jet
+
+    def _part(self, *names: str) -> Any:
+        """A coefficient: a number, or what is computed from those that vary."""
+        parts = [
+            self.recorder.input(name) if isinstance(self.design.parts[name], Value)
+            else self.design.parts[name]
+            for name in names
+        ]  # fmt: skip
+        return self.recording.make(None, *parts)
+
+    def variable(self, symbol: str) -> Jet:
+        """A variable by its symbol, internal units."""
+        k, n = self.number[symbol], len(self.equations.unknowns)
+        rec, make = self.recorder, self.recording.make
+        value: Any = make(None, rec.input(f"v{k}"))
+        if k >= n:
+            return Jet(value, np.asarray(float(self.design.path.rate[k - n])), np.zeros(()))
+        first: Any = make(None, rec.input(f"first{k}"))
+        second: Any = make(None, rec.input(f"second{k}"))
+        return Jet(value, first, second)
+
+    def place(self, point: str) -> Jet:
+        """A point by its exact name: its parent's position plus its own terms."""
+        if point not in self.places:
+            table = self.model.compiled.points
+            parent = self.equations.points[point].parent
+            place = Jet.constant(0.0) if parent is None else self.place(parent)
+            for term in np.flatnonzero(table.rows.row == table.names.index(point)).tolist():
+                place = place + self._term(term)
+            self.places[point] = place
+        return self.places[point]
+
+    def _term(self, term: int) -> Jet:
+        """c s e^{iψ} with both derivatives."""
+        rows = self.model.compiled.points.rows
+        symbols = [x.symbol for x in self.equations.variables]
+        c, turn = self._part(f"point{term}.re", f"point{term}.im"), Jet.constant(0.0)
+        mine = rows.phase_term == term
+        for k, weight in zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True):
+            turn = turn + self.variable(symbols[k]) * float(weight)
+        if mine.any():
+            c = c * (np.cos(turn.v) + 1j * np.sin(turn.v))
+        length = int(rows.length[term])
+        s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
+        first = s.d1 + 1j * (s.v * turn.d1)  # derivative of eq. (1)
+        # eq. (3) with a = b
+        second = s.d2 - s.v * (turn.d1 * turn.d1) + 1j * (2.0 * (s.d1 * turn.d1) + s.v * turn.d2)
+        return Jet(c * s.v, c * first, c * second)
