@@ -18,6 +18,7 @@ export class MotionNumbers {
   /** Show the numbers of a motion; during a drag (`steady`) there are none, and those before stay. */
   show(view: MotionView, steady: boolean): void {
     const { numbers } = view.data;
+    this.box.classList.toggle("lw-stale", steady);
     if (!numbers.length && steady) return;
     this.box.hidden = !numbers.length;
     const names = numbers.map((one) => one.name).join("\n");
