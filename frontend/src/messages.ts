@@ -330,7 +330,6 @@ export interface QuantitiesListed {
   kind: "quantities_listed";
   answers: number | null;
   quantities: readonly (QuantityListed)[];
-  of_motion: readonly (string)[];
 }
 
 export interface Exported {

@@ -15,10 +15,12 @@ export class MotionNumbers {
     this.list = html("dl", { class: "lw-proof" }, this.box);
   }
 
-  /** Show the numbers of a motion; one without numbers, during a drag, keeps those before. */
-  show(view: MotionView): void {
+  /** Show the numbers of a motion; during a drag (`steady`) there are none, and those before stay. */
+  show(view: MotionView, steady: boolean): void {
     const { numbers } = view.data;
-    if (!numbers.length) return;
+    this.box.classList.toggle("lw-stale", steady);
+    if (!numbers.length && steady) return;
+    this.box.hidden = !numbers.length;
     const names = numbers.map((one) => one.name).join("\n");
     if (names !== this.made) {
       this.made = names;
@@ -32,6 +34,5 @@ export class MotionNumbers {
       const text = value === null ? "–" : measured(Number(value.toPrecision(6)), unit);
       say(this.list.querySelectorAll("dd")[k]!, text);
     });
-    this.box.hidden = false;
   }
 }

@@ -254,7 +254,7 @@ class Page implements Mounted {
     if (!still && (!steady || this.updates++ % 2 === 0)) {
       this.charts.show(view, this.past, steady);
       this.table.show(view);
-      this.whole.show(view);
+      this.whole.show(view, steady);
     }
     this.root.classList.toggle("lw-still", still);
     say(this.summary, view.data.summary);

@@ -159,9 +159,8 @@ export function vectorOf(
 
 /** Time since the first row at constant speed; `null` if branches reverse the input. */
 function timeOf(view: MotionView): Plottable | null {
-  const { speed, evidence, limits } = view.data;
-  const reverses = evidence.branch_names.filter(Boolean).length > 1 || limits.some((limit) => limit.text === "dead point");
-  if (!speed || reverses) return null;
+  const { speed, evidence } = view.data;
+  if (!speed || evidence.branch_names.filter(Boolean).length > 1) return null;
   const { values, unit } = view.input;
   const internal = unit === "deg" ? Math.PI / 180 : 1;
   const began = values[speed > 0 ? 0 : values.length - 1]!;

@@ -1,6 +1,6 @@
 // Mounts the front end of an offline page, which contains its data.
 
-import { mount, type Mounted, type PageData } from "./mount";
+import { mount, type Hooks, type Mounted, type PageData } from "./mount";
 import { inflated } from "./unpack";
 
 declare global {
@@ -18,11 +18,11 @@ export async function contained<T>(id: string): Promise<T> {
 }
 
 /** Mount the page; then add to it. */
-export function start(more: (data: PageData) => Promise<void> | void = () => {}): void {
+export function start(more: (data: PageData) => Promise<void> | void = () => {}, hooks: Hooks = {}): void {
   const place = document.getElementById("linkwork")!;
   const run = async (): Promise<void> => {
     const data = await contained<PageData>("linkwork-data");
-    window.linkwork = mount(place, data);
+    window.linkwork = mount(place, data, hooks);
     await more(data);
   };
   run().catch((error: unknown) => {

@@ -81,7 +81,8 @@ describe("quantities of a page", () => {
   it("has a time at constant speed, and none where the input reverses or has no speed", () => {
     expect(quantityOf(view, TIME)!.values[12]).toBeCloseTo(Math.PI, 12);
     expect(quantityOf(motion({ speed: 0 }), TIME)).toBeNull();
-    expect(quantityOf(motion({ limits: [{ row: 3, text: "dead point" }] }), TIME)).toBeNull();
+    const evidence = { ...motion().data.evidence, branch_names: ["one", "two"] };
+    expect(quantityOf(motion({ evidence }), TIME)).toBeNull();
     expect(quantityOf(motion({ speed: 0 }), "rocker.velocity")).toBeNull();
   });
 });

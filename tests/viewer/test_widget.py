@@ -49,6 +49,12 @@ def test_a_motion_has_one_of_its_own(limited: lw.Motion) -> None:
     assert widget.configuration == "motion"
 
 
+def test_a_notebook_without_widgets_shows_a_picture(limited: lw.Motion) -> None:
+    data, *_ = limited.widget()._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data
+    assert data["text/html"] == limited._repr_html_()
+
+
 def test_a_row_without_a_position_is_refused(limited: lw.Motion) -> None:
     widget = limited.widget()
     missing = int((~limited.found).argmax())

@@ -39,7 +39,8 @@ export class ExportMenu {
       const item = html("button", { type: "button", role: "menuitem", "data-format": format }, list, text);
       item.addEventListener("click", () => this.ask(format));
     }
-    this.element.addEventListener("keydown", (event) => this.key(event));
+    // Before the keys of the drawing.
+    window.addEventListener("keydown", (event) => this.key(event), { capture: true });
     document.addEventListener("pointerdown", (event) => {
       if (!this.element.contains(event.target as Node)) this.element.open = false;
     });
@@ -68,6 +69,7 @@ export class ExportMenu {
   }
 
   private key(event: KeyboardEvent): void {
+    if (!this.element.contains(event.target as Node)) return;
     const items = [...this.element.querySelectorAll<HTMLButtonElement>("button")];
     const at = items.indexOf(document.activeElement as HTMLButtonElement);
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];

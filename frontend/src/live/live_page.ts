@@ -123,7 +123,8 @@ export class LivePage {
 
   /** The displayed row of the motion of the file. */
   private row(): number | null {
-    return this.page === null || this.circuits.elsewhere ? null : this.page.row;
+    const away = this.moving === null || this.editor.edited || this.circuits.elsewhere;
+    return this.page === null || away ? null : this.page.row;
   }
 
   /** Draw the motion of a circuit, or that of the file. */

@@ -12,6 +12,7 @@ export class Plots {
 
   attach(page: Mounted): void {
     this.page = page;
+    this.listed = false;
     page.charts.ask = (names) => this.desk.background({ kind: "show_quantities", names });
   }
 

@@ -20,4 +20,4 @@ start(async (page) => {
   const pages = new SolvedPages(programOf(window.linkworkProgram), data, page);
   window.linkworkSolver = pages;
   new Sliders(data, pages, window.linkwork);
-});
+}, { changing: true });

@@ -11,7 +11,10 @@ from linkwork.drawing.charts.labels import rate_label, size_label
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked, Group
+from linkwork.results.quantities.path_length import PATH_LENGTH
 from linkwork.results.quantities.registry import Call
+from linkwork.results.quantities.stroke import STROKE
+from linkwork.results.quantities.time_ratio import TIME_RATIO
 from linkwork.results.quantities.transmission import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.results.quantity import Rate
 from linkwork.viewer.packing import Pack
@@ -99,8 +102,8 @@ def numbers_of(motion: Motion, asked: Sequence[str] = ()) -> Iterator[MotionNumb
     motion asked for by name; names that the mechanism does not have are left out.
     """
     moving = [*motion.outputs, *motion.unknowns][:_MOST_NUMBERED]
-    usual = [f"{word}({name})" for name in moving for word in ("stroke", "time_ratio")]
-    usual += [f"path_length({point})" for point in motion.skeleton.traced]
+    usual = [f"{own.word}({name})" for name in moving for own in (*STROKE, *TIME_RATIO)]
+    usual += [f"{own.word}({point})" for point in motion.skeleton.traced for own in PATH_LENGTH]
     for name in dict.fromkeys([*usual, *asked]):
         try:
             quantity = motion.quantities.find_of_motion(name)

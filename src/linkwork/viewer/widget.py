@@ -16,6 +16,7 @@ import numpy as np
 from linkwork.foundation.errors import MissingPackageError, choices
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
+from linkwork.viewer.notebook_html import motion_html
 from linkwork.viewer.offline_page import page_json
 from linkwork.viewer.page_building import Loops, motion_page
 
@@ -65,7 +66,9 @@ def motions_widget(
     data = motion_page(motions, equations=equations, loops=loops, forces=forces)
     page = json.loads(page_json(data))
     rows = {name: np.flatnonzero(m.found) for name, m in motions.items() if m.found.any()}
-    return kind(page, {name: frozenset(found.tolist()) for name, found in rows.items()})
+    shown = motions[next(iter(rows))]
+    found = {name: frozenset(found.tolist()) for name, found in rows.items()}
+    return kind(page, found, motion_html(shown))
 
 
 @lru_cache
@@ -89,10 +92,17 @@ def _widget_class() -> Any:
         configuration = traitlets.Unicode().tag(sync=True)
         row = traitlets.Int().tag(sync=True)
 
-        def __init__(self, page: dict[str, Any], rows: Mapping[str, frozenset[int]]) -> None:
-            self._rows = rows
+        def __init__(
+            self, page: dict[str, Any], rows: Mapping[str, frozenset[int]], picture: str
+        ) -> None:
+            self._rows, self._picture = rows, picture
             first = next(iter(rows))
             super().__init__(page=page, configuration=first, row=min(rows[first]))
+
+        def _repr_mimebundle_(self, **kwargs: Any) -> Any:
+            """The widget, and a picture for exported notebooks, which have no widgets."""
+            data, *rest = super()._repr_mimebundle_(**kwargs)
+            return ({**data, "text/html": self._picture}, *rest)
 
         @traitlets.validate("configuration")  # type: ignore[untyped-decorator]
         def _known(self, proposal: Any) -> str:

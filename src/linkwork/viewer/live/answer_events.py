@@ -80,10 +80,9 @@ class QuantityListed:
 
 @dataclass(frozen=True, kw_only=True)
 class QuantitiesListed:
-    """All quantities that can be plotted; ``of_motion`` are forms of numbers of the motion."""
+    """All quantities that can be plotted."""
 
     quantities: tuple[QuantityListed, ...]
-    of_motion: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

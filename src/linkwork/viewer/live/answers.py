@@ -67,7 +67,7 @@ def _(request: ask.ListCircuits, about: About) -> Events:
 def _(request: ask.ListQuantities, about: About) -> Events:
     motion = about.motion
     if motion is None:
-        return [tell.QuantitiesListed(quantities=(), of_motion=())]
+        return [tell.QuantitiesListed(quantities=())]
     known = motion.quantities
     listed = list(known.listed(timed=motion.speed is not None))
     own = {**known.own, **known.derived, **known.evidence}
@@ -83,7 +83,6 @@ def _(request: ask.ListQuantities, about: About) -> Events:
                 for line in listed
                 if (asked := own.get(line.name)) is not None
             ),
-            of_motion=tuple(line.name for line in listed if line.kind == "of a motion"),
         )
     ]
 

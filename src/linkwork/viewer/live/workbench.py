@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
-from linkwork.foundation.errors import InputError, MechanismError, Problem
+from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.status import Status
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
@@ -22,6 +22,7 @@ from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.queries import Query, answered, nearest_closure
+from linkwork.viewer.live.refusals import Refusing, refusing
 from linkwork.viewer.live.solvable import Read, Solvable
 from linkwork.viewer.live.subject import read_subject
 
@@ -31,14 +32,8 @@ _MOST_ROWS = 3601  # rows of a cycle solved interactively
 _FEWER_ROWS = 721
 
 Events = list[tell.Event]
-Refusing = Callable[[Problem], bool]
 
 
-#: Edits that change numbers or choices, not what there is.
-_OF_NUMBERS = (
-    ask.SetNumber, ask.MovePoint, ask.MovePoints, ask.SetInput, ask.ChooseConfiguration,
-    ask.TracePoint,
-)  # fmt: skip
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
 
@@ -159,7 +154,7 @@ class Workbench:
         try:
             followed = applied(edit, drag.text, drag.before)
             text = drag.text.text
-            told = self._accepted(text, edit_title(edit), live=live, refused=_refusing(edit))
+            told = self._accepted(text, edit_title(edit), live=live, refused=refusing(edit))
         except InputError:
             drag.text = TextEdits(self.text)  # without traces of the failed change
             raise
@@ -385,19 +380,6 @@ class Workbench:
             text=self.text,
             unsaved=self.unsaved,
         )
-
-
-def _refusing(edit: ask.Edit) -> Refusing:
-    """The problems with which an edit is refused.
-
-    An edit that only changes numbers or choices may not cause any, and a new part may not be wrong
-    itself; other edits may leave a draft.
-    """
-    if isinstance(edit, _OF_NUMBERS):
-        return lambda problem: True
-    if isinstance(edit, ask.AddPart):
-        return lambda problem: problem.key[:1] == (edit.table,)
-    return lambda problem: False
 
 
 def _followed(edit: ask.Edit, followed: Followed) -> Events:

@@ -1,0 +1,31 @@
+"""The problems with which an edit is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwork.foundation.errors import Problem
+from linkwork.viewer.live import requests as ask
+
+__all__ = ["Refusing", "refusing"]
+
+Refusing = Callable[[Problem], bool]
+
+#: Edits that change numbers or choices, not what there is.
+_OF_NUMBERS = (
+    ask.SetNumber, ask.MovePoint, ask.MovePoints, ask.SetInput, ask.ChooseConfiguration,
+    ask.TracePoint,
+)  # fmt: skip
+
+
+def refusing(edit: ask.Edit) -> Refusing:
+    """The problems with which an edit is refused.
+
+    An edit that only changes numbers or choices may not cause any, and a new part may not be wrong
+    itself; other edits may leave a draft.
+    """
+    if isinstance(edit, _OF_NUMBERS):
+        return lambda problem: True
+    if isinstance(edit, ask.AddPart):
+        return lambda problem: problem.key[:1] == (edit.table,)
+    return lambda problem: False
