@@ -250,12 +250,13 @@ class Page implements Mounted {
     this.arrows.show(view);
     this.transport.show(view);
     // During a drag, numbers are updated at half the rate of the drawing.
-    if (!steady || this.updates++ % 2 === 0) {
+    const still = view.series.length === 0;
+    if (!still && (!steady || this.updates++ % 2 === 0)) {
       this.charts.show(view, this.past, steady);
       this.table.show(view);
       this.whole.show(view);
     }
-    this.root.classList.toggle("lw-still", view.input.name === "");
+    this.root.classList.toggle("lw-still", still);
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
     this.player.restart(view.order.length, view.data.closed, index);
@@ -314,7 +315,7 @@ class Page implements Mounted {
       this.drawing.draw(row, this.view.turned(this.player.at, this.player.back));
       this.ghost.draw(this.view, row);
       this.arrows.draw(row);
-      this.charts.draw(row);
+      if (this.view.series.length) this.charts.draw(row);
       this.transport.draw(this.view, this.player.at, row);
       this.table.draw(row);
       this.root.dataset.row = String(row);
