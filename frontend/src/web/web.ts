@@ -1,5 +1,6 @@
 // The entry point of the page that solves in the browser alone.
 
+import { setAppUrl } from "../live/link";
 import { LivePage } from "../live/live_page";
 import { html } from "../svg";
 import { engineFiles, type Engine } from "./engine";
@@ -27,6 +28,7 @@ function begin(): void {
     location.replace(`linkwork.html${location.hash}`);
     return;
   }
+  if (location.protocol.startsWith("http")) setAppUrl(location.href);
   let connection!: WorkerConnection;
   new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {

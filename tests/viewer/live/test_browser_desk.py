@@ -10,6 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
+from linkwork.textfile.link import fragment_of
 from linkwork.viewer.live.browser_desk import BrowserDesk
 from tests.viewer.live.conftest import FOUR_BAR
 
@@ -134,6 +135,14 @@ def test_an_address_names_a_mechanism_of_the_library(
     page = Page()
     page.desk.begin(fragment)
     assert page.told[1]["file"] == file
+
+
+def test_an_address_contains_a_mechanism(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = Page()
+    page.desk.begin(fragment_of(FOUR_BAR))
+    assert page.told[1]["file"] == "mechanism.toml"
+    assert page.told[1]["text"] == FOUR_BAR
 
 
 @pytest.mark.parametrize("fragment", ["#example=unknown", "#example=../../etc", "#\0<b>", "#lw1=A"])

@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from linkwork.foundation.errors import InputError
+from linkwork.textfile.link import text_of_link
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.messages import MessageError, decoded, encoded
@@ -23,17 +24,6 @@ _LOOK_FOR_MESSAGES = 0.025  # interval at which long work looks for newer change
 _LONGEST_NAME = 100  # characters of a file's name
 _EXAMPLE = "example="
 _FIRST = "four-bar"  # of the library: opened where the address names nothing
-
-
-def text_of_fragment(code: str) -> str:
-    """The text of a mechanism file that is packed in the fragment of an address.
-
-    Raises
-    ------
-    InputError
-        If it is not a link to a mechanism.
-    """
-    raise InputError(f'"#{code[:40]}" does not name a mechanism: write #example=four-bar')
 
 
 class BrowserDesk:
@@ -98,7 +88,7 @@ class BrowserDesk:
         if not code or code.startswith(_EXAMPLE):
             name = unquote(code.removeprefix(_EXAMPLE)) or _FIRST
             return f"{name}.toml", self._library(name)
-        return "mechanism.toml", text_of_fragment(code)
+        return "mechanism.toml", text_of_link(code)
 
     def open(self, name: str, saved: str, text: str | None = None) -> None:
         """Open a file in the memory of the browser, and send the complete state.
