@@ -513,13 +513,17 @@ def test_nothing_is_left_behind_if_nothing_changed(path: Path) -> None:
 
 def test_a_file_that_cannot_be_read_is_refused_by_the_command(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "linkwork", "view", "--no-browser"]
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     for name, message in (
-        ("none.toml", "there is no such file"),
+        ("binary.toml", "UTF-8"),
+        (".", "is a folder"),
         ("-", "standard input cannot be edited and saved"),
     ):
-        done = subprocess.run([*words, name], cwd=tmp_path, capture_output=True, text=True)
+        done = subprocess.run(
+            [*words, name], cwd=tmp_path, capture_output=True, text=True, timeout=30
+        )
         assert done.returncode == 2
-        assert message in done.stderr
+        assert message in done.stderr, done.stderr
 
 
 def test_without_its_packages_the_command_says_what_to_install(path: Path) -> None:
