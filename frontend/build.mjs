@@ -23,6 +23,10 @@ await Promise.all([
   }),
   build({ ...common, entryPoints: ["src/solving/solving.css"], outfile: join(folder, "solving.css") }),
   build({ ...common, entryPoints: ["src/live/live.ts"], format: "iife", outfile: join(folder, "live.js") }),
+  build({ ...common, entryPoints: ["src/web/web.ts"], format: "iife", outfile: join(folder, "web.js") }),
+  build({ ...common, entryPoints: ["src/web/worker.ts"], format: "iife", outfile: join(folder, "web_worker.js") }),
+  build({ ...common, entryPoints: ["src/web/sw.ts"], format: "iife", outfile: join(folder, "web_offline.js") }),
+  build({ ...common, entryPoints: ["src/web/web.css"], outfile: join(folder, "web.css") }),
   build({ ...common, entryPoints: ["src/live/live.css"], outfile: join(folder, "live.css") }),
   build({ ...common, entryPoints: ["src/mount.ts"], format: "esm", outfile: join(folder, "linkwork.js") }),
   build({

@@ -197,6 +197,12 @@ export interface Export {
   dark?: boolean;
 }
 
+export interface MakeLink {
+  kind: "make_link";
+  id?: number;
+  app?: string;
+}
+
 export interface Undo {
   kind: "undo";
   id?: number;
@@ -374,6 +380,15 @@ export interface Refused {
   kind: "refused";
   answers: number | null;
   message: string;
+}
+
+export interface LinkMade {
+  kind: "link_made";
+  answers: number | null;
+  link: string;
+  embed: string;
+  qr: string;
+  note: string;
 }
 
 export interface FileChanged {
@@ -564,6 +579,7 @@ export type LiveRequest =
   | ListCircuits
   | ListQuantities
   | Export
+  | MakeLink
   | Undo
   | Redo
   | Save
@@ -585,5 +601,6 @@ export type LiveEvent =
   | PointMoved
   | ProblemsFound
   | Refused
+  | LinkMade
   | FileChanged
   | Saved;

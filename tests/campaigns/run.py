@@ -21,6 +21,7 @@ from tests.campaigns.families import family_campaign
 from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
+from tests.campaigns.links import link_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import judge_steps
@@ -90,6 +91,10 @@ def _kinds(part: int) -> tuple[Counter[str], list[str]]:
     return kind_campaign(part, _PART)
 
 
+def _links(part: int) -> tuple[Counter[str], list[str]]:
+    return link_campaign(part, _PART)
+
+
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
@@ -102,6 +107,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "trains": (_random_trains, 500),
     "parallel-trains": (_parallel_trains, 40),
     "kinds": (_kinds, 100_000),
+    "links": (_links, 100_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
+import shutil
+import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.batch import record_design
 from linkwork.batch.printed_solver import print_solver
-from linkwork.kernels.program.languages import PYTHON
+from linkwork.cli.main import linkwork
+from linkwork.kernels.program.languages import PYTHON, C
 from linkwork.mechanism.varied_number import with_numbers
 from tests.viewer.printed_march import PlainMarch, imported
 
@@ -240,3 +245,56 @@ def test_sliders_are_for_pages_of_one_sweep(options: dict[str, Any], tmp_path: P
         options["motion"] = mechanism.sweep()
     with pytest.raises(lw.InputError, match="sliders are for a page of one sweep"):
         mechanism.animate(tmp_path / f"page.{suffix}", sliders=["O2 A"], **options)
+
+
+def test_an_output_that_cannot_be_recorded_is_left_out(tmp_path: Path) -> None:
+    file = tmp_path / "four-bar.toml"
+    lw.example("four-bar").save(file)
+    text = file.read_text("utf-8")
+    mechanism = lw.loads(text.replace("[outputs]", '[outputs]\ngrowth = "exp(rocker / 100)"'))
+    motion = mechanism.sweep()
+    assert "growth" in motion.outputs
+    columns = mechanism.solving_page(["A B"], motion).data.columns
+    assert "mu" in columns
+    assert "growth" not in columns
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_the_same_solver_printed_in_c_gives_the_same_bits(tmp_path: Path) -> None:
+    mechanism = lw.example("jansen-leg")
+    design = record_design(mechanism.model, ["O A"])
+    asked = {"points": ["F"], "columns": ["B.transmission"], "turns": []}
+    in_c, in_python = (print_solver(design, own, **asked) for own in (C, PYTHON))
+    functions = imported(in_python, tmp_path)
+    sine = "void sin_cos(double x, double *s, double *c) { *s = 0.25 * x; *c = 1.0 - 0.5 * x; }"
+    text = f"#include <math.h>\n{sine}\n{in_c.source.replace('static void', 'void')}"
+    (tmp_path / "solver.c").write_text(text, "utf-8")
+    library = tmp_path / "solver.so"
+    flags = ["-O2", "-ffp-contract=off", "-shared", "-fPIC", "-lm"]
+    subprocess.run(["cc", "solver.c", *flags, "-o", str(library)], cwd=tmp_path, check=True)
+    functions.sin_cos = lambda x: (0.25 * x, 1.0 - 0.5 * x)
+    rng = np.random.default_rng(3)
+    compiled = ctypes.CDLL(str(library))
+    for name in ("design", "reach", "given", "begin0", "damped1", "iterate2", "prove0", "agree"):
+        sizes = [1, in_c.design] if name == "design" else [in_c.state]
+        given = [rng.normal(1.0, 0.3, size) for size in sizes]
+        lists = [array.tolist() for array in given]
+        getattr(functions, name)(*lists)
+        pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in given]
+        getattr(compiled, name)(*pointers)
+        for array, own in zip(given, lists, strict=True):
+            assert array.tolist() == own
+
+
+def test_the_command_writes_a_page_with_sliders(tmp_path: Path) -> None:
+    target = tmp_path / "page.html"
+    file = tmp_path / "four-bar.toml"
+    lw.example("four-bar").save(file)
+    command = ["animate", str(file), "-o", str(target), "--sliders", "O2 A", "--sliders", "A B"]
+    done = CliRunner().invoke(linkwork, command, prog_name="linkwork")
+    assert done.exit_code == 0, done.output
+    assert "linkworkProgram=" in target.read_text("utf-8")
+    for more, words in ((["--all"], "--sliders needs a page"), (["--sliders", "X Y"], "X Y")):
+        done = CliRunner().invoke(linkwork, [*command, *more], prog_name="linkwork")
+        assert done.exit_code != 0
+        assert words in done.output

@@ -1,8 +1,9 @@
-// The toolbar: undo, redo, reload, save, and the mark of unsaved changes.
+// The toolbar: undo, redo, reload, link, save, and the mark of unsaved changes.
 
 import type { FileState } from "../messages";
 import { html } from "../svg";
 import type { Desk } from "./asking";
+import { LinkDialog } from "./link";
 import { begin, restored } from "./fields";
 
 export class Bar {
@@ -11,6 +12,7 @@ export class Bar {
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
+  readonly link: LinkDialog;
   private readonly gone = new AbortController();
 
   constructor(private readonly desk: Desk) {
@@ -18,6 +20,8 @@ export class Bar {
     this.undo = this.button("↶", "Undo", () => desk.ask({ kind: "undo" }));
     this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
     this.button("Reload", "Read the file again", () => desk.ask({ kind: "reload" }));
+    this.link = new LinkDialog(desk);
+    this.button("Share", "Share by link", () => this.link.open(this.element.closest(".lw")!));
     this.save = this.button("Save", "Save (Ctrl+S)", () => desk.ask({ kind: "save" }));
     this.save.classList.add("lw-save");
     document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });
@@ -36,6 +40,7 @@ export class Bar {
     label(this.undo, "Undo", "Ctrl+Z", state.undo);
     label(this.redo, "Redo", "Ctrl+Shift+Z", state.redo);
     this.save.disabled = false;
+    this.link.renew();
     this.save.classList.toggle("lw-wanted", state.unsaved);
     document.title = `${state.unsaved ? "• " : ""}${state.title} – Linkwork`;
   }

@@ -1,21 +1,17 @@
-// The connection to the program, and its messages.
+// The connection to a program on this machine, by a WebSocket.
 
 import type { LiveEvent, LiveRequest } from "../messages";
+import type { Transport, TransportHooks } from "./transport";
 
 /** The program's close code for a second page. */
 const OCCUPIED = 4009;
 
-export interface ConnectionHooks {
-  readonly event: (event: LiveEvent) => void;
-  readonly lost: (message: string) => void;
-}
-
-export class Connection {
+export class Connection implements Transport {
   private readonly socket: WebSocket;
   private heard = false;
   private count = 0;
 
-  constructor(hooks: ConnectionHooks) {
+  constructor(hooks: TransportHooks) {
     const token = location.hash.slice(1);
     this.socket = new WebSocket(`ws://${location.host}/live`, ["linkwork", `token.${token}`]);
     this.socket.addEventListener("message", (message) => {

@@ -9,7 +9,6 @@ import { Build } from "./build";
 import { Busy } from "./busy";
 import { CircuitsPanel } from "./circuits";
 import { blank, closing } from "./closing";
-import { Connection } from "./connection";
 import { Dimensions } from "./dimensions";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
@@ -21,6 +20,7 @@ import { Notices } from "./notices";
 import { Plots } from "./plots";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
+import type { Connect, Transport } from "./transport";
 import { Ways } from "./ways";
 
 /** Events that answer a request, so that the next can be sent. */
@@ -33,7 +33,7 @@ const SHEETS: Readonly<Record<string, number>> = { mm: 240, cm: 24, m: 0.24, in:
 const RESIZED = 0.2;
 
 export class LivePage {
-  private readonly connection: Connection;
+  private readonly connection: Transport;
   private readonly latest: Latest<LiveRequest>;
   private readonly bar: Bar;
   private readonly notices = new Notices();
@@ -66,7 +66,7 @@ export class LivePage {
   /** Whether no row of the table has a position. */
   private rowless = false;
 
-  constructor(private readonly element: HTMLElement) {
+  constructor(private readonly element: HTMLElement, connect: Connect) {
     const desk = this.desk();
     this.bar = new Bar(desk);
     this.dimensions = new Dimensions(desk);
@@ -91,7 +91,7 @@ export class LivePage {
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
       { title: "Build", element: this.build.element },
     ]);
-    this.connection = new Connection({
+    this.connection = connect({
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
@@ -194,6 +194,9 @@ export class LivePage {
       case "file_changed":
         this.notices.changed(event, this.decisions());
         break;
+      case "link_made":
+        this.bar.link.show(event);
+        break;
       case "saved":
         this.notices.done(`Saved in ${event.file}.`);
         break;
@@ -210,6 +213,10 @@ export class LivePage {
   }
 
   private refused(message: string): void {
+    if (this.bar.link.opened) {
+      this.bar.link.refuse(message);
+      return;
+    }
     const conflict = /overwrite/.test(message);
     this.notices.say(message, conflict ? this.decisions() : {});
     if (this.file) this.dimensions.show(this.file);

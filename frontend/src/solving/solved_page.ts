@@ -109,7 +109,7 @@ export class SolvedPages {
       data.rates.forEach((rate, j) => (v[data.unknowns + j] = data.origins[j]! + rate * t));
       program.rates(v, found.d, o);
       program.drawn(v, found.d, o, q);
-      for (let k = 0; k < q.length; k++) all[k]![row] = q[k]!;
+      for (let k = 0; k < q.length; k++) all[k]![row] = Number.isFinite(q[k]) ? q[k]! : NaN;
       residual[row] = o[o.length - 1]!;
     }
     const points = this.base.points.length;
@@ -314,6 +314,12 @@ function pathOf(view: MotionView, rows: readonly number[], name: string, closed:
 
 /** A part of which nothing is seen; its elements stay. */
 function nothing(part: Part): Part {
-  const shown = part.shown && ready(dense(part.shown).fill(0));
-  return part.kind === "disc" ? { ...part, radius: 0, shown } : { ...part, points: [], head: part.head.map(() => 0), shown };
+  switch (part.kind) {
+    case "disc":
+      return { ...part, radius: 0 };
+    case "text":
+      return { ...part, text: "" };
+    default:
+      return { ...part, points: part.kind === "line" ? [0, 0] : [], head: [], shown: part.shown && ready(dense(part.shown).fill(0)) };
+  }
 }

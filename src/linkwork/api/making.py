@@ -19,12 +19,13 @@ __all__ = ["example", "linkage", "load", "loads", "loops", "plain_equations"]
 
 
 def load(path: str | Path) -> Mechanism:
-    """Read a mechanism file.
+    """Read a mechanism file, or the mechanism in a link.
 
     Parameters
     ----------
     path : str or Path
-        A TOML file.
+        A TOML file; if there is none of this name, a link or its fragment ``#lw1=…``, as
+        :meth:`Mechanism.link` returns it. Nothing is read from the network.
 
     Returns
     -------
@@ -33,7 +34,7 @@ def load(path: str | Path) -> Mechanism:
     Raises
     ------
     MechanismFileError
-        With every problem found: file, line, key.
+        With every problem found: file, line, key; or what is wrong with the link.
 
     Examples
     --------
@@ -43,8 +44,10 @@ def load(path: str | Path) -> Mechanism:
     ...     lw.example("four-bar").save(path)
     ...     lw.load(path).name
     'Four-bar linkage, open'
+    >>> lw.load(lw.example("four-bar").link()).name
+    'Four-bar linkage, open'
     """
-    read = textfile.read_file(as_path(path))
+    read = textfile.read_text(*textfile.source_text(str(as_path(path))))
     return Mechanism(read.description, read)
 
 

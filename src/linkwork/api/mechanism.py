@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork import batch, drawing, export, motion, textfile, viewer
+from linkwork.api import solving
 from linkwork.api.solvable import SolvableMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_names
@@ -225,7 +226,7 @@ class Mechanism(SolvableMechanism):
         if not motion.found.any():
             raise InputError("there is no motion to change with sliders: no position was found")
         design = batch.record_design(self.model, as_names("sliders", sliders))
-        return viewer.solving_page(design, motion, design.changed())
+        return solving.solving_page(design, motion, design.changed())
 
     def widget(
         self,
@@ -332,3 +333,34 @@ class Mechanism(SolvableMechanism):
         ...     lw.example("four-bar").save(pathlib.Path(folder) / "bar.toml")
         """
         textfile.save(self.description, as_path(path))
+
+    def link(self, app: str | None = None) -> str:
+        """The mechanism packed into a link; the server of the app never receives it.
+
+        Parameters
+        ----------
+        app : str, optional
+            The address of a Linkwork app, as ``https://example.org/linkwork/``. Without it, the
+            result is the fragment ``#lw1=…`` alone, to append to such an address.
+
+        Returns
+        -------
+        str
+            The text that :meth:`save` writes, compressed; :func:`linkwork.load` and every command
+            read it.
+
+        Raises
+        ------
+        InputError
+            If ``app`` is not the address of a page, or the mechanism is too large for a link.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> bar = lw.example("four-bar")
+        >>> bar.link(app="https://example.org/linkwork/")[:34]
+        'https://example.org/linkwork/#lw1='
+        >>> lw.load(bar.link()).description == bar.description
+        True
+        """
+        return textfile.link_of(textfile.write_text(self.description), app)

@@ -4,6 +4,7 @@ arrays, recorded.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -28,9 +29,6 @@ class _RowNumber(RecordedNumber):
     __slots__ = ()
     conj = RecordedNumber.conjugate
 
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
-        return self.arithmetic.apply(ufunc, *inputs)
-
     def __array_function__(
         self, function: Callable[..., Any], types: object, given: Sequence[Any], named: object
     ) -> Any:
@@ -52,10 +50,24 @@ class _RowRecording(Recording):
             known = np.array([complex(x, y) if y else x])
         return _RowNumber(known, self, x, y)
 
+    def of_numpy(self, function: Any, inputs: Sequence[Any]) -> Any:
+        """Any function that can be recorded, of arrays of no axes too."""
+        return self.apply(function, *inputs)
+
     def operand(self, number: object) -> RecordedNumber:
         """The second operand, which may be an array of no axes."""
         plain = number.item() if isinstance(number, np.ndarray) and not number.ndim else number
-        return super().operand(plain)
+        found: RecordedNumber = super().operand(plain)
+        return found
+
+    def divide(self, x: RecordedNumber, y: RecordedNumber) -> RecordedNumber:
+        """x / y; of 0 too it is no number where y is none."""
+        found, rec = super().divide(x, y), self.recorder
+        if y.im != 0.0 or not isinstance(y.re, Value):
+            return found
+        zero = rec.where(rec.at_most(y.re, y.re), 0.0, math.nan)
+        parts = ((x.re, found.re), (x.im, found.im))
+        return self.make(None, *(quotient if own else zero for own, quotient in parts))
 
     def decide(self, truths: Any) -> bool:
         """Refused: rows differ."""
@@ -64,7 +76,8 @@ class _RowRecording(Recording):
     def apply(self, function: Callable[..., Any], *numbers: object) -> RecordedNumber:
         """A function or an operator of NumPy."""
         if function is np.where and isinstance(numbers[0], np.ndarray):
-            return self.operand(numbers[1] if numbers[0].item() else numbers[2])
+            chosen: RecordedNumber = self.operand(numbers[1 if numbers[0].item() else 2])
+            return chosen
         method = _OPERATORS.get(function)
         if method is None:
             return super().apply(function, *numbers)

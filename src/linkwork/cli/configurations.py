@@ -8,7 +8,7 @@ import click
 
 from linkwork.api import Mechanism
 from linkwork.cli import picture
-from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.mechanism_source import read_mechanism, shown_source
 from linkwork.cli.options import (
     at_option,
     debug_option,
@@ -91,7 +91,7 @@ def _reason(file: str, found: Configurations) -> list[str]:
     """The command that explains why there is no configuration."""
     asked = [f"{name}={short(value)}" for name, value in found.input.items()]
     at = "".join(f" --at {text if len(asked) > 1 else text.partition('=')[2]}" for text in asked)
-    return ["", *wrapped(f"For the reason: linkwork solve {file}{at}")]
+    return ["", *wrapped(f"For the reason: linkwork solve {shown_source(file)}{at}")]
 
 
 def _written(draw: str | None, count: int) -> list[str]:

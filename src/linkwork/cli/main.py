@@ -26,7 +26,10 @@ _COMMANDS = (
     "draw",
     "plot",
     "animate",
+    "new",
     "view",
+    "web",
+    "link",
     "study",
     "compile",
     "examples",
@@ -114,8 +117,9 @@ def linkwork(context: click.Context) -> None:
 
     Then edit rapier.toml to describe your own mechanism.
 
-    Every command that takes a FILE reads standard input for "-". Exit codes:
-    0 done, 1 a position was not found, 2 wrong input, 3 internal error (please report).
+    Every command that takes a FILE reads standard input for "-", and takes a
+    link of Linkwork, in quotes, instead. Exit codes: 0 done, 1 a position was
+    not found, 2 wrong input, 3 internal error (please report).
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())

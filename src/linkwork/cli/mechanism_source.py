@@ -1,7 +1,8 @@
-"""The mechanism of a command: read from a file or standard input, with changed dimensions."""
+"""The mechanism of a command: a file, a link or standard input, with changed dimensions."""
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,21 +12,51 @@ from linkwork.cli.options import number_or_formula
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.varied_number import numbers_named, with_numbers
-from linkwork.textfile.reader import ReadFile, read_bytes, read_file, read_text
+from linkwork.textfile.link import is_link, source_text
+from linkwork.textfile.reader import read_text
+from linkwork.textfile.toml_text import text_of
 
-__all__ = ["read_mechanism"]
+__all__ = ["mechanism_of", "read_mechanism", "shown_source", "text_of_source"]
 
 
 def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
-    """The mechanism of FILE (``-``: standard input; a name of the library) with the numbers of
-    ``--set``.
+    """The mechanism of FILE, as :func:`text_of_source` finds it, with the numbers of ``--set``.
 
     Raises
     ------
     InputError
         If the file does not exist or has errors, or a dimension does not exist.
     """
-    read = _read(file)
+    return mechanism_of(*text_of_source(file), changes)
+
+
+def text_of_source(file: str) -> tuple[str, str]:
+    """The text of FILE (``-``: standard input; a name of the library; a link), and its name.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not text.
+    """
+    if file == "-":
+        if sys.stdin is None:
+            raise InputError("there is no standard input to read a mechanism from")
+        return text_of(sys.stdin.buffer.read(), "standard input"), "standard input"
+    path = Path(file)
+    there = os.path.exists(file)  # a long name is an error for Path.exists
+    if not there and file in examples():
+        return example_text(file), file
+    if not there and path.parent == Path() and path.stem in examples():
+        raise InputError(
+            f'there is no file "{file}"; to copy the example of this name:\n'
+            f"    linkwork examples {path.stem} -o {path.stem}.toml"
+        )
+    return source_text(file)
+
+
+def mechanism_of(text: str, name: str, changes: tuple[str, ...] = ()) -> Mechanism:
+    """The mechanism of a text, with the numbers of ``--set``; raises like `read_mechanism`."""
+    read = read_text(text, name)
     if not changes:
         return Mechanism(read.description, read)
     try:
@@ -38,20 +69,9 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
         raise type(located)(located.problems, where) from None
 
 
-def _read(file: str) -> ReadFile:
-    if file == "-":
-        if sys.stdin is None:
-            raise InputError("there is no standard input to read a mechanism from")
-        return read_bytes(sys.stdin.buffer.read())
-    path = Path(file)
-    if not path.exists() and file in examples():
-        return read_text(example_text(file), file)
-    if not path.exists() and path.parent == Path() and path.stem in examples():
-        raise InputError(
-            f'there is no file "{file}"; to copy the example of this name:\n'
-            f"    linkwork examples {path.stem} -o {path.stem}.toml"
-        )
-    return read_file(path)
+def shown_source(file: str) -> str:
+    """FILE as a suggested command names it: a link is too long to repeat."""
+    return "LINK" if is_link(file) and not os.path.exists(file) else file
 
 
 def _changes(texts: tuple[str, ...]) -> Iterator[tuple[str, Number]]:

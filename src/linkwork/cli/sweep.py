@@ -10,7 +10,7 @@ import click
 
 from linkwork.api import Mechanism
 from linkwork.cli import picture
-from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.mechanism_source import read_mechanism, shown_source
 from linkwork.cli.motion_page import answers, failure_line, motion_lines
 from linkwork.cli.options import (
     change_points_option,
@@ -202,8 +202,8 @@ def _written_workbook(
 def _hint(file: str, motion: Motion) -> list[str]:
     """A suggestion of the next command."""
     if not motion.found.any():
-        return wrapped(f"To see the iterations: linkwork solve {file} --show-steps")
-    stem = "cycle" if file == "-" else Path(file).stem
+        return wrapped(f"To see the iterations: linkwork solve {shown_source(file)} --show-steps")
+    stem = "cycle" if shown_source(file) in ("-", "LINK") else Path(file).stem
     return wrapped(f"For the table add --csv {stem}.csv, for a picture --draw {stem}.png.")
 
 

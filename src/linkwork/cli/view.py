@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import webbrowser
+from itertools import chain, count
 from pathlib import Path
 
 import click
@@ -12,6 +14,7 @@ from linkwork.api import example_text, examples, loads
 from linkwork.cli.options import debug_option, file_argument, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.foundation.errors import InputError
+from linkwork.textfile.link import is_link, text_of_link
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
@@ -20,9 +23,11 @@ __all__ = ["view"]
 
 
 def _opened(file: str) -> MechanismFile:
-    """A file, or a text that is written when it is saved: a mechanism of the library, or a blank
-    sheet.
+    """A file, or a text that is written when it is saved: a mechanism of the library or of a link,
+    or a blank sheet.
     """
+    if is_link(file) and not os.path.exists(file):
+        return _of_link(text_of_link(file))
     if Path(file).exists() or file not in examples():
         path = Path(file)
         named = path if path.suffix or path.exists() else path.with_suffix(".toml")
@@ -34,6 +39,13 @@ def _opened(file: str) -> MechanismFile:
             "library's, go to another folder"
         )
     return MechanismFile(path, example_text(file))
+
+
+def _of_link(text: str) -> MechanismFile:
+    """The mechanism of a link under the first free name."""
+    taken = (Path(f"linked{k}.toml") for k in count(2))
+    path = next(path for path in chain([Path("linked.toml")], taken) if not path.exists())
+    return MechanismFile(path, text)
 
 
 def _told(name: str, address: str) -> list[str]:
@@ -62,6 +74,7 @@ def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
     \b
       linkwork view rapier.toml   (a blank sheet, if there is no such file)
       linkwork view four-bar      (of the library: saved as four-bar.toml)
+      linkwork view "LINK"        (saved as linked.toml)
       linkwork view rapier.toml --port 8123 --no-browser
 
     Only programs on this machine that know the printed address can open the

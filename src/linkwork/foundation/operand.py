@@ -10,7 +10,7 @@ for kernels (``linkwork.kernels.program.recorder``).
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
@@ -47,6 +47,14 @@ class Arithmetic(Generic[T]):
     def plain(self, number: Any) -> T:
         """A plain number as an operand."""
         raise NotElementwise
+
+    def of_numpy(self, function: Any, inputs: Sequence[Any]) -> Any:
+        """NumPy scalars compute with operands as floats do; arrays do not."""
+        arrays = any(isinstance(number, np.ndarray) for number in inputs)
+        if arrays or function not in _OPERATORS:
+            raise NotElementwise
+        plain = (n.item() if isinstance(n, np.generic) else n for n in inputs)
+        return _OPERATORS[function](*plain)
 
     def add(self, x: T, y: T) -> T:
         """x + y."""
@@ -117,11 +125,10 @@ class Operand:
     __rmul__ = __mul__
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: object) -> Any:
-        """NumPy scalars compute with operands as floats do; arrays do not."""
-        arrays = any(isinstance(number, np.ndarray) for number in inputs)
-        if arrays or ufunc not in _OPERATORS or method != "__call__":
+        """What NumPy computes with operands."""
+        if method != "__call__":
             raise NotElementwise
-        return _OPERATORS[ufunc](*(n.item() if isinstance(n, np.generic) else n for n in inputs))
+        return self.arithmetic.of_numpy(ufunc, inputs)
 
 
 _OPERATORS: dict[object, Callable[..., Any]] = {

@@ -5,18 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from linkwork.foundation.errors import MissingPackageError
 from linkwork.mechanism.chain import Chain
 
-__all__ = ["contours", "orbits", "same_graph", "same_inversion"]
+__all__ = ["contours", "missing", "orbits", "same_graph", "same_inversion"]
 
 Graph = Any  # networkx has no type hints
 
 
 def _networkx() -> Any:
     """Import on first use: it takes longer to load than the rest of the package."""
-    import networkx
-
+    try:
+        import networkx
+    except ModuleNotFoundError:
+        raise MissingPackageError(
+            "names of kinematic chains need networkx: pip install networkx"
+        ) from None
     return networkx
+
+
+def missing() -> str:
+    """Why chains cannot be compared here; "" if they can."""
+    try:
+        _networkx()
+    except MissingPackageError as error:
+        return str(error)
+    return ""
 
 
 def _of_graph6(text: str) -> Graph:

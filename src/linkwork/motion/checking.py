@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwork.foundation.arrays import Array
+from linkwork.mechanism.chain_graph import missing
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.classifying.as_linkage import NotSeen, as_linkage
@@ -41,6 +42,8 @@ def check(model: Model) -> CheckReport:
         links = len(linkage.links) + len(bodies)
         joints = pins(linkage) + sum(part.kind is not None for part in linkage.parts) - len(bodies)
     units = model.units
+    if lacking := missing():  # in a browser
+        seen = NotSeen(lacking)
     return CheckReport(
         mechanism=description.name,
         form=form,

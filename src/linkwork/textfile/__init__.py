@@ -8,6 +8,13 @@ from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
     from linkwork.textfile.lines import Lines as Lines
+    from linkwork.textfile.link import (
+        fragment_of as fragment_of,
+        is_link as is_link,
+        link_of as link_of,
+        source_text as source_text,
+        text_of_link as text_of_link,
+    )
     from linkwork.textfile.reader import (
         ReadFile as ReadFile,
         read_bytes as read_bytes,

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
         motion_page as motion_page,
     )
     from linkwork.viewer.page_data import PageData as PageData
-    from linkwork.viewer.solver_page import solving_page as solving_page
     from linkwork.viewer.widget import (
         motion_widget as motion_widget,
         motions_widget as motions_widget,

@@ -134,11 +134,11 @@ def animation(
 
 
 def _computed_in_page(page: PageData, solver: SolvingPage) -> PageData:
-    """The page without columns that it cannot compute again."""
+    """The page without numbers that it cannot compute again."""
     (motion,) = page.motions
     known = set(solver.data.columns)
     columns = tuple(c for c in motion.columns if c.group == "input" or c.name in known)
-    return replace(page, motions=(replace(motion, columns=columns),))
+    return replace(page, motions=(replace(motion, columns=columns, numbers=()),))
 
 
 def animate_motion(

@@ -12,6 +12,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
+from linkwork.textfile.link import text_of_link
 from tests.described import described_as
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR, Served
@@ -409,3 +410,28 @@ def test_equations_without_points_are_no_blank_page(open_live: Open, served: Ser
     assert "atan(x)" in page.locator(".lw-plain-equations").text_content()
     page.get_by_role("tab", name="Newton").click()
     page.locator('.lw-outcome[data-trouble="INFLECTION"]').wait_for()
+
+
+def test_a_link_is_made_copied_and_remembered(open_live: Open, served: Served) -> None:
+    page = open_live(permissions=["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Share by link").click()
+    link = page.get_by_role("textbox", name="Link", exact=True)
+    app = page.get_by_label("Address of a Linkwork app")
+    page.wait_for_function("() => document.querySelector('.lw-copied textarea').value !== ''")
+    assert text_of_link(link.input_value()) == FOUR_BAR
+    assert page.get_by_label("HTML for a course page", exact=True).is_hidden()
+    app.fill("example.org")
+    app.press("Enter")
+    page.get_by_text('"example.org" is not the address of an app').wait_for()
+    app.fill("https://example.org/")
+    app.press("Enter")
+    page.get_by_role("img", name="QR code of the link").wait_for()
+    page.get_by_role("button", name="Copy: Link").click()
+    page.get_by_text("Copied").wait_for()
+    copied = page.evaluate("navigator.clipboard.readText()")
+    assert copied.startswith("https://example.org/#lw1=")
+    assert lw.load(copied).description == lw.loads(served.workbench.text).description
+    page.mouse.click(5, 5)  # beside the dialog, which keeps the keys
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Share by link").click()
+    assert app.input_value() == "https://example.org/"

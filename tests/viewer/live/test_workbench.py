@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,12 @@ import pytest
 
 import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
+from linkwork.textfile.link import fragment_of
+from linkwork.viewer.embedding import embed_snippet
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.workbench import Workbench
+from linkwork.viewer.qr_code import qr_svg
 from tests.described import described_as
 from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
@@ -738,3 +742,26 @@ def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
 def test_a_file_that_does_not_exist_is_refused_at_once(tmp_path: Path) -> None:
     with pytest.raises(lw.MechanismFileError, match="there is no such file"):
         MechanismFile(tmp_path / "none.toml")
+
+
+def test_the_text_under_edit_is_linked(bench: Workbench, monkeypatch: pytest.MonkeyPatch) -> None:
+    app = "https://example.org/"
+    bench.handle(ask.SetNumber(name="a", value=41.0))
+    (plain,) = bench.handle(ask.MakeLink())
+    assert plain == tell.LinkMade(link=fragment_of(bench.text), embed="", qr="", note="")
+    made = only(bench.handle(ask.MakeLink(app=app)), tell.LinkMade)
+    assert made.link == app + plain.link
+    assert made.embed == embed_snippet(made.link, "Four-bar")
+    assert (made.qr, made.note) == (qr_svg(made.link), "")
+    monkeypatch.setitem(sys.modules, "segno", None)
+    without = only(bench.handle(ask.MakeLink(app=app)), tell.LinkMade)
+    assert (without.qr, without.note) == ("", 'QR codes need segno: pip install "linkwork[qr]"')
+    assert without.link == made.link
+    refused = only(bench.handle(ask.MakeLink(app="example.org")), tell.Refused)
+    assert refused.message.startswith('"example.org" is not the address of an app')
+
+
+def test_a_draft_is_linked_too(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", "[points]\nA = [0, 0]\n"), lw.loads)
+    (made,) = bench.handle(ask.MakeLink())
+    assert made == tell.LinkMade(link=fragment_of(bench.text), embed="", qr="", note="")

@@ -354,6 +354,7 @@ export class Editor {
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || this.page === null) return;
+    if (document.querySelector("dialog[open]")) return; // its keys are its own
     if (target.closest("input, textarea, select") && event.key !== "Escape") return;
     const tool = TOOLS.find(({ key }) => key === event.key.toLowerCase());
     if (tool) this.tools.element.querySelector<HTMLButtonElement>(`[aria-keyshortcuts="${tool.key.toUpperCase()}"]`)!.click();

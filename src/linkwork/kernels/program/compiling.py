@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
 
-import numba  # noqa: TID253 - this module is loaded when a family is solved
+from linkwork.foundation.errors import MissingPackageError
+
+try:
+    import numba  # this module is loaded when a family is solved
+except ModuleNotFoundError:
+    raise MissingPackageError("compiled code needs Numba: pip install numba") from None
 from llvmlite import binding, ir
 from numba import types  # noqa: TID253
 from numba.core import cgutils  # noqa: TID253

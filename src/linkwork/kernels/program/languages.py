@@ -45,6 +45,7 @@ class Language:
     not_a_number: str
     infinity: str
     declares: bool = False
+    typed: bool = True
 
     def written(self, name: str, arguments: Sequence[str], statements: Sequence[str]) -> str:
         """A function of arrays."""
@@ -58,7 +59,8 @@ class Language:
             return self.not_a_number
         if math.isinf(value):
             return self.infinity if value > 0.0 else f"(-{self.infinity})"
-        return repr(value) if math.copysign(1.0, value) > 0.0 else f"({value!r})"
+        text = repr(value) if self.typed else repr(value).removesuffix(".0")
+        return text if math.copysign(1.0, value) > 0.0 else f"({text})"
 
 
 _COMMON = {
@@ -131,4 +133,5 @@ JAVASCRIPT = Language(
     between="",
     not_a_number="NaN",
     infinity="Infinity",
+    typed=False,
 )

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.languages import PYTHON, Language
 from linkwork.kernels.program.program import ROLES, Code, Op
@@ -23,7 +25,7 @@ class Body:
     constants: Mapping[int, float]
     language: Language = PYTHON
     lines: list[str] = field(default_factory=list)
-    known: set[int] = field(default_factory=set)
+    names: dict[int, str] = field(default_factory=dict)
     changed: set[int] = field(default_factory=set)
     turns: int = 0
 
@@ -31,14 +33,18 @@ class Body:
         """The expression that a register holds now."""
         if register in self.constants:
             return self.language.number(self.constants[register])
-        if register not in self.known:
+        if register not in self.names:
             self._assign(register, self.place(register))
-        return f"r{register}"
+        return self.names[register]
+
+    def _name(self, register: int) -> str:
+        """The name of a register, short: there are many of them."""
+        name = f"r{np.base_repr(len(self.names), 36).lower()}"
+        return self.names.setdefault(register, name)
 
     def _assign(self, register: int, value: str) -> None:
-        form = self.language.later if register in self.known else self.language.first
-        self.lines.append(form.format(name=f"r{register}", value=value))
-        self.known.add(register)
+        form = self.language.later if register in self.names else self.language.first
+        self.lines.append(form.format(name=self._name(register), value=value))
 
     def add(self, code: Code) -> None:
         """The statements of a program."""
@@ -57,23 +63,22 @@ class Body:
             self.changed.add(d)
 
     def _add_sine(self, angle: str, sine: int, cosine: int) -> None:
-        names = {sine: f"r{sine}", cosine: f"r{cosine}"}
+        form, own = self.language.sine, (sine, cosine)
         if self.language.declares:
             self.turns += 1
-            names = {sine: f"s{self.turns}", cosine: f"c{self.turns}"}
-        form = self.language.sine
-        self.lines.append(form.format(a=angle, d=names[sine], c=names[cosine]))
-        for register, name in names.items():
-            if self.language.declares:
+            pair = f"s{self.turns}", f"c{self.turns}"
+            self.lines.append(form.format(a=angle, d=pair[0], c=pair[1]))
+            for register, name in zip(own, pair, strict=True):
                 self._assign(register, name)
-        self.known |= names.keys()
-        self.changed |= names.keys()
+        else:
+            self.lines.append(form.format(a=angle, d=self._name(sine), c=self._name(cosine)))
+        self.changed.update(own)
 
     def end(self, kept: Set[int]) -> None:
         """Write the registers that are kept and have changed."""
         for register in sorted(self.changed & kept):
             place = self.place(register)
-            self.lines.append(self.language.store.format(place=place, value=f"r{register}"))
+            self.lines.append(self.language.store.format(place=place, value=self.names[register]))
 
 
 def trial_source(

@@ -1,4 +1,4 @@
-"""Questions about a mechanism and its motion: circuits, quantities, files."""
+"""Questions about a mechanism and its motion: circuits, quantities, files, links."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from linkwork.results.quantities.registry import Call
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.circuit_events import circuits_found
 from linkwork.viewer.live.exported_file import exported_file
+from linkwork.viewer.live.link_making import link_made
 from linkwork.viewer.live.subject import Subject
 
 __all__ = ["About", "GivenUpError", "check_quantities", "reply"]
@@ -106,6 +107,11 @@ def _(request: ask.Export, about: About) -> Events:
     except GivenUpError:
         raise InputError(f"the {request.format} file was ended by a change: ask again") from None
     return [telling.exported(file, about.file)]
+
+
+@reply.register
+def _(request: ask.MakeLink, about: About) -> Events:
+    return [link_made(about.text, about.subject.description.name, request.app)]
 
 
 def check_quantities(motion: Motion, names: Sequence[str]) -> None:

@@ -49,6 +49,7 @@ __all__ = [
     "Lack",
     "LimitFound",
     "Link",
+    "LinkMade",
     "MotionFound",
     "NewtonIterate",
     "NewtonShown",
@@ -239,6 +240,20 @@ class Refused:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LinkMade:
+    """The file as a link.
+
+    ``embed``: HTML for another page; ``qr``: the QR code as SVG. Both are empty without the address
+    of an app; without a QR code, ``note`` says why.
+    """
+
+    link: str
+    embed: str
+    qr: str
+    note: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class FileChanged:
     """Another program changed the file: ``reloaded``, unless there are ``unsaved`` changes."""
 
@@ -271,6 +286,7 @@ Event = (
     | PointMoved
     | ProblemsFound
     | Refused
+    | LinkMade
     | FileChanged
     | Saved
 )

@@ -23,6 +23,7 @@ __all__ = [
     "ListCircuits",
     "ListConfigurations",
     "ListQuantities",
+    "MakeLink",
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
@@ -343,8 +344,15 @@ class Reload:
     """Read the file again; unsaved changes stay in the history."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class MakeLink:
+    """Pack the text of the file into a link to the address of an app, or into a fragment only."""
+
+    app: str = ""
+
+
 #: A question about the mechanism and its motion, which changes nothing.
-Question = ListCircuits | ListQuantities | Export
+Question = ListCircuits | ListQuantities | Export | MakeLink
 
 Request = (
     Edit

@@ -1,4 +1,7 @@
-"""What an offline page needs to solve its mechanism again; this module solves nothing."""
+"""How the parts of a drawn motion move with its points, so that a page can draw other lengths.
+
+Most shapes have their corners at points, or at a fixed distance from one in the frame of a link.
+"""
 
 from __future__ import annotations
 
@@ -8,166 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.batch.printed_solver import PrintedSolver, print_solver
-from linkwork.batch.recorded_design import RecordedDesign
 from linkwork.drawing.attachment import STILL, Frame
 from linkwork.drawing.moving_scene import MovingScene, moving_scene
 from linkwork.drawing.moving_shape import Moving
 from linkwork.drawing.scene import Role
-from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.kernels.march.march_programs import NODES
-from linkwork.kernels.march.step_control import START_STEPS, STEPS
-from linkwork.kernels.march.sweep_kernel import Steps
-from linkwork.kernels.program.languages import JAVASCRIPT
-from linkwork.marching.prediction import FAR, SAME
-from linkwork.marching.step_size import GROWTH, HALF, NEARLY_FULL
-from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.motion.model import Model
-from linkwork.motion.tracking import turns_freely
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.results.motion import Motion
-from linkwork.viewer.packing import unpressed
-from linkwork.viewer.page_columns import usual_columns
-from linkwork.viewer.page_data import (
-    FrameData,
-    PackedColumn,
-    SliderData,
-    SolverData,
-    SolvingPage,
-    StepRules,
-    TrackData,
-    TurnSource,
-)
+from linkwork.viewer.page_data import FrameData, TrackData, TurnSource
 from linkwork.viewer.page_shapes import places_of
 
-__all__ = ["solving_page"]
+__all__ = ["anchors_of", "frames_of", "tracks_of", "turn_source", "unlike_parts", "used_turns"]
 
-_FINEST = 1e-8  # relative step to the end of a branch
-_RULES = StepRules(
-    nodes=NODES,
-    growth=GROWTH,
-    half=HALF,
-    nearly_full=NEARLY_FULL,
-    far=FAR,
-    same=SAME,
-    newton_steps=STEPS,
-    start_steps=START_STEPS,
-)
-
-
-def solving_page(
-    design: RecordedDesign, motion: Motion, changed: Sequence[Motion | None]
-) -> SolvingPage:
-    """Print the solver of a motion's mechanism for its page.
-
-    Parameters
-    ----------
-    design : RecordedDesign
-    motion : Motion
-        The motion that the page shows.
-    changed : sequence of Motion or None
-        A motion with another value of each number that varies, in their order: parts that the
-        page would draw otherwise than those are hidden where that number differs. ``None`` where
-        there is no such motion: only parts that move as points do are drawn then.
-    """
-    scene = moving_scene(motion)
-    turns = _used_turns(scene)
-    links = [name for name in turns if name in motion.links]
-    columns = [name for name, _ in usual_columns(motion)]
-    printed = print_solver(
-        design, JAVASCRIPT, points=list(motion.points), columns=columns, turns=links
-    )
-    anchors = [_anchors(motion, scene, part) for part in scene.parts]
-    hidden = [_unlike(scene, motion, anchors, other) for other in changed]
-    sliders = tuple(
-        SliderData(
-            name=quantity.name,
-            unit=_unit(design.base, quantity),
-            value=float(quantity.of(design.base.description)),
-            hidden=hidden[k],
-        )
-        for k, quantity in enumerate(design.quantities)
-    )
-    return SolvingPage(
-        data=_data(design, motion, scene, printed, sliders, turns, links, anchors),
-        script=_script(printed),
-    )
-
-
-def _script(printed: PrintedSolver) -> str:
-    """A function that makes the program, as ``march.ts`` expects it."""
-    blocks = {
-        kind: ",".join(f"{kind}{b}" for b in range(printed.blocks))
-        for kind in ("begin", "damped", "iterate", "prove")
-    }
-    several = ",".join(f"{kind}:[{names}]" for kind, names in blocks.items())
-    return (
-        "linkworkProgram=(abs,sqrt,atan2,sinCos,turn)=>{"
-        f"{printed.source}return {{design,reach,given,agree,rates,drawn,{several}}}}}"
-    )
-
-
-def _unit(model: Model, quantity: VariedNumber) -> str:
-    """The unit of a number; unknown for a named dimension."""
-    if quantity.table in ("lengths", "points", "sliders"):
-        return model.description.length
-    return model.description.angle.value if quantity.table == "angles" else ""
-
-
-def _data(
-    design: RecordedDesign,
-    motion: Motion,
-    scene: MovingScene,
-    printed: PrintedSolver,
-    sliders: tuple[SliderData, ...],
-    turns: Sequence[str],
-    links: Sequence[str],
-    anchors: Sequence[tuple[int, ...]],
-) -> SolverData:
-    model, path = design.base, design.path
-    t = model.rows[:, path.lead]
-    carriers = _carriers(scene)
-    steps = Steps(smallest=_FINEST).times(path.size)
-    return SolverData(
-        title=motion.mechanism,
-        sliders=sliders,
-        unknowns=printed.unknowns,
-        size=printed.size,
-        blocks=printed.blocks,
-        coefficients=printed.coefficients,
-        spread=printed.spread,
-        state=printed.state,
-        design=printed.design,
-        drawn=printed.drawn,
-        options=printed.options,
-        rules=_RULES,
-        steps=(steps.first, steps.largest, steps.smallest),
-        turn=FULL_TURN if turns_freely(model) else 0.0,
-        apart=4.0 * UNIT_ROUNDOFF * (float(np.abs(t).max()) + FULL_TURN),
-        path=_plain(t),
-        origins=tuple(map(float, path.origin)),
-        rates=tuple(map(float, path.rate)),
-        inputs=tuple(map(_plain, model.rows_in_file_units.T)),
-        input_unit=float(model.input_scale[path.lead]),
-        columns=printed.columns,
-        turns=tuple(_source(name, motion, links) for name in turns),
-        tracks=tuple(
-            TrackData(
-                point=track.point,
-                frame=carriers.index(track.frame) if track.frame != STILL else -1,
-                x=track.along.real,
-                y=track.along.imag,
-            )
-            for track in _tracks(motion, scene)
-        ),
-        frames=tuple(_frames(motion, scene)),
-        anchors=tuple(anchors),
-    )
-
-
-def _plain(values: Array) -> PackedColumn:
-    return unpressed(values, np.ones(len(values), dtype=bool))
+_SYMBOLS = (Role.GROUND, Role.HATCH, Role.LABEL, Role.INPUT)
 
 
 def _carriers(scene: MovingScene) -> list[Frame]:
@@ -176,11 +31,13 @@ def _carriers(scene: MovingScene) -> list[Frame]:
     return [frame for frame in used if frame is not None and frame != STILL]
 
 
-def _used_turns(scene: MovingScene) -> list[str]:
+def used_turns(scene: MovingScene) -> list[str]:
+    """The links and lines with which parts of a scene turn."""
     return list(dict.fromkeys(frame.turn for frame in _carriers(scene) if frame.turn))
 
 
-def _source(turn: str, motion: Motion, links: Sequence[str]) -> TurnSource:
+def turn_source(turn: str, motion: Motion, links: Sequence[str]) -> TurnSource:
+    """Where the angle of a turn comes from: one of the ``links``, or two points."""
     if turn in links:
         return TurnSource(angle=links.index(turn), start=-1, end=-1)
     bars = {bar.name: list(dict.fromkeys(bar.points)) for bar in motion.skeleton.bars}
@@ -189,9 +46,9 @@ def _source(turn: str, motion: Motion, links: Sequence[str]) -> TurnSource:
     return TurnSource(angle=-1, start=points.index(start), end=points.index(end))
 
 
-def _frames(motion: Motion, scene: MovingScene) -> Iterator[FrameData]:
+def frames_of(motion: Motion, scene: MovingScene) -> Iterator[FrameData]:
     """The frames; one that turns about the origin of the plane turns about the point there."""
-    points, turns = list(motion.points), _used_turns(scene)
+    points, turns = list(motion.points), used_turns(scene)
     for frame in _carriers(scene):
         origin = points.index(frame.origin) if frame.origin else -1
         if frame.turn and not frame.origin:
@@ -230,6 +87,18 @@ def _tracks(motion: Motion, scene: MovingScene) -> Iterator[_Track]:
                 yield _Track(guide.name, frame, points.index(guide.point), along, ends)
 
 
+def tracks_of(motion: Motion, scene: MovingScene) -> Iterator[TrackData]:
+    """The tracks, in the order in which anchors count their ends."""
+    carriers = _carriers(scene)
+    for track in _tracks(motion, scene):
+        yield TrackData(
+            point=track.point,
+            frame=carriers.index(track.frame) if track.frame != STILL else -1,
+            x=track.along.real,
+            y=track.along.imag,
+        )
+
+
 def _rigid_points(motion: Motion, scene: MovingScene, frame: Frame) -> dict[int, complex]:
     """Points that are constant in a frame, by index, and where they are in it."""
     rows = np.flatnonzero(scene.found)
@@ -263,7 +132,7 @@ def _local(scene: MovingScene, part: Moving) -> ComplexArray:
     return local
 
 
-def _anchors(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...]:
+def anchors_of(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...]:
     """The points of its frame that the corners of a part move with; none of an arrow or a path."""
     if part.frame is None or part.shape.role in (Role.TRACE, Role.INPUT):
         return ()
@@ -273,7 +142,7 @@ def _anchors(motion: Motion, scene: MovingScene, part: Moving) -> tuple[int, ...
     return tuple(min(rigid, key=lambda k: abs(rigid[k] - z)) for z in _local(scene, part))
 
 
-def _unlike(
+def unlike_parts(
     scene: MovingScene, motion: Motion, anchors: Sequence[tuple[int, ...]], changed: Motion | None
 ) -> tuple[int, ...]:
     """Parts that another motion draws otherwise than by moving their corners with points."""
@@ -308,6 +177,8 @@ def _is_moved(
     on_track = any(k >= len(motion.points) for k in anchors)
     if part.frame is None or (on_track and part.shape.role is Role.HATCH):
         return False  # as many strokes as its length has
+    if part.shape.role in _SYMBOLS and len(set(anchors)) <= 1:
+        return True  # it stays as it is at its point, whichever way the other drawing turns it
     before, after = _local(scene, part), _local(other, now)
     if len(before) != len(after) or getattr(part.shape, "radius", 0.0) != getattr(
         now.shape, "radius", 0.0

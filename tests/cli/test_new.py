@@ -1,0 +1,36 @@
+"""New mechanism files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import linkwork as lw
+from linkwork.textfile.reader import read_draft
+from tests.cli.conftest import Run
+
+
+def test_a_blank_sheet_is_written(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "press.toml"
+    assert run("new", str(path.with_suffix(""))).stdout.startswith(str(path))
+    assert read_draft(path.read_text("utf-8")).draft.name == "press"
+
+
+def test_a_copy_has_its_own_name(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / 'a "b".toml'
+    run("new", str(path), "--from", "four-bar")
+    copy, own = lw.load(path), lw.example("four-bar")
+    assert copy.name == 'a "b"'
+    assert copy.changed(name=own.name).description == own.description
+
+
+def test_nothing_is_overwritten(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "press.toml"
+    path.write_text("mine", "utf-8")
+    done = run("new", str(path))
+    assert done.exit_code == 2
+    assert "exists already: choose another name, or open it" in done.stderr
+    assert path.read_text("utf-8") == "mine"
+    other = run("new", str(tmp_path / "x"), "--from", "nine-bar")
+    assert other.exit_code == 2
+    assert "nine-bar" in other.stderr
+    assert not (tmp_path / "x.toml").exists()

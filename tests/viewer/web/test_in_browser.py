@@ -1,0 +1,255 @@
+"""The page that solves in a browser alone, from a host, from a disk and in a frame.
+
+The engine is that of ``LINKWORK_PYODIDE``, a folder as ``scripts/web_files`` collects it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import linkwork as lw
+from linkwork.api import example_text
+from linkwork.viewer.live.browser_desk import BrowserDesk
+from linkwork.viewer.web.pyodide_files import pyodide_files
+from linkwork.viewer.web.web_app import web_folder
+from tests.library_mechanisms import driven_examples
+from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
+from tests.viewer.web.comparing import differences
+
+_FOLDER = os.environ.get("LINKWORK_PYODIDE", "")
+_READY = ".lw[data-row]"  # the first cycle is shown
+_PATIENCE = 60_000  # [ms]: others may use the cores
+#: Keeps the worker of the page and what it says.
+_LISTENING = """
+window.said = [];
+window.Worker = class extends Worker {
+  constructor(...given) {
+    super(...given);
+    window.engine = this;
+    this.addEventListener("message", ({data}) => {
+      if (typeof data === "string") window.said.push(data);
+    });
+  }
+};
+delete window.showSaveFilePicker;
+"""
+
+pytestmark = pytest.mark.skipif(
+    not _FOLDER, reason="needs LINKWORK_PYODIDE, a folder as scripts/web_files collects it"
+)
+
+Open = Callable[..., Any]
+
+
+@dataclass
+class Site:
+    """A folder of the page, and the address of its host."""
+
+    folder: Path
+    address: str
+
+
+class _Silent(SimpleHTTPRequestHandler):
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """The page on a host of static files."""
+    folder = tmp_path_factory.mktemp("site")
+    for name, content in web_folder(pyodide_files(Path(_FOLDER))).items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(content)
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Silent, directory=str(folder)))
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield Site(folder, f"http://127.0.0.1:{server.server_port}/")
+    server.shutdown()
+    thread.join(10)
+    server.server_close()
+
+
+@pytest.fixture
+def open_web(browser: Any, site: Site) -> Iterator[Open]:
+    """Opens a page; fails on any message of the console and on any foreign request."""
+    said: list[str] = []
+    contexts = []
+
+    def opened(address: str, **options: Any) -> Any:
+        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
+        context = browser.new_context(**(settings | options))
+        contexts.append(context)
+        context.set_default_timeout(_PATIENCE)
+        context.add_init_script(_LISTENING)
+        page = context.new_page()
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        own = (site.address, site.folder.as_uri(), "blob:", "data:")
+        page.on("request", lambda r: None if r.url.startswith(own) else said.append(r.url))
+        page.goto(address)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert said == []
+
+
+def told(page: Any, kind: str) -> dict[str, Any]:
+    """The last event of a kind."""
+    events: list[dict[str, Any]] = [*map(json.loads, page.evaluate("() => window.said"))]
+    return [event for event in events if event["kind"] == kind][-1]
+
+
+def set_slider(page: Any, name: str, value: float, *, live: bool) -> None:
+    """Drag a slider to a value; it is released if not ``live``."""
+    page.locator(f'[data-number="{name}"] input[type=range]').evaluate(
+        """(slider, [value, kind]) => {
+          slider.value = String(value);
+          slider.dispatchEvent(new Event(kind));
+        }""",
+        [value, "input" if live else "change"],
+    )
+
+
+def in_python(text: str, folder: Path) -> dict[str, Any]:
+    """The cycle of a text, as the same program sends it here."""
+    events: list[str] = []
+    folder.mkdir(exist_ok=True)
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        BrowserDesk(lw.loads, example_text, events.append, list).open("a.toml", text)
+    finally:
+        os.chdir(before)
+    return next(e for e in map(json.loads, events) if e["kind"] == "motion_found")
+
+
+def assert_same(page: Any, names: list[str], folder: Path) -> None:
+    """The browser's cycles of library mechanisms are those of CPython."""
+    found = {}
+    for k, name in enumerate(names, 1000):
+        message = json.dumps({"kind": "set_text", "text": example_text(name), "id": k})
+        answer = page.evaluate(
+            """([message, id]) => new Promise((resolve) => {
+              const hear = ({data}) => {
+                if (typeof data !== "string") return;
+                const {kind, answers} = JSON.parse(data);
+                if (answers !== id || kind === "file_state" || kind === "working") return;
+                window.engine.removeEventListener("message", hear);
+                resolve(data);
+              };
+              window.engine.addEventListener("message", hear);
+              window.engine.postMessage(message);
+            })""",
+            [message, k],
+        )
+        event = json.loads(answer)
+        assert event["kind"] == "motion_found", (name, answer[:300])
+        if problems := list(differences(event, in_python(example_text(name), folder))):
+            found[name] = problems
+    assert found == {}
+
+
+def test_the_page_of_a_host_solves_as_python_does(
+    open_web: Open, site: Site, tmp_path: Path
+) -> None:
+    page = open_web(site.address)
+    assert "For tests only" in page.locator("body").inner_text()
+    page.wait_for_selector(_READY)
+    assert_same(page, ["four-bar", "jansen-leg", "rapier-drive"], tmp_path)
+
+
+def test_a_length_is_dragged_and_the_cycle_is_that_of_the_library(
+    open_web: Open, site: Site, tmp_path: Path
+) -> None:
+    page = open_web(f"{site.address}#example=jansen-leg")
+    page.wait_for_selector(_READY)
+    state = told(page, "file_state")
+    number = state["numbers"][0]
+    for k in range(10):
+        set_slider(page, number["name"], number["value"] * (1 + k / 1000), live=True)
+    page.locator("#linkwork[data-live=true]").wait_for()
+    set_slider(page, number["name"], number["value"] * 1.01, live=False)
+    page.locator("#linkwork[data-live=false]").wait_for()
+    state = told(page, "file_state")
+    assert state["unsaved"]
+    assert list(differences(told(page, "motion_found"), in_python(state["text"], tmp_path))) == []
+
+
+def test_a_newer_change_cancels_a_cycle_that_is_being_solved(open_web: Open, site: Site) -> None:
+    page = open_web(f"{site.address}#example=jansen-leg")
+    page.wait_for_selector(_READY)
+    changes = [
+        json.dumps({"kind": "set_number", "name": "A B", "value": 50 + k / 10, "id": 1000 + k})
+        for k in range(2)
+    ]
+    page.evaluate(
+        """([first, second]) => {
+          window.engine.postMessage(first);
+          setTimeout(() => window.engine.postMessage(second), 30);
+        }""",
+        changes,
+    )
+    page.wait_for_function(
+        """() => window.said.map(JSON.parse).some(
+          ({kind, answers}) => kind === "motion_found" && answers === 1001)"""
+    )
+    events = map(json.loads, page.evaluate("() => window.said"))
+    assert [event["answers"] for event in events if event["kind"] == "motion_found"] == [None, 1001]
+
+
+def test_one_file_opens_from_a_disk_keeps_work_and_saves_it(open_web: Open, site: Site) -> None:
+    page = open_web((site.folder / "index.html").as_uri(), offline=True)
+    page.wait_for_selector(_READY)
+    assert page.url.endswith("/linkwork.html")  # a disk's folder cannot be read by a page
+    page.locator('[data-number="A B"] input[type=text]').fill("125")
+    page.keyboard.press("Enter")
+    page.locator("[data-unsaved=true]").wait_for()
+    page.on("dialog", lambda dialog: dialog.accept())  # changes are not saved
+    page.reload()
+    page.locator("[data-unsaved=true]").wait_for()
+    text = told(page, "file_state")["text"]
+    assert "125" in text
+    with page.expect_download() as download:
+        page.locator(".lw-save").click()
+    assert Path(download.value.path()).read_text("utf-8") == text
+    page.locator("[data-unsaved=false]").wait_for()
+    assert page.evaluate("() => localStorage.length") == 0
+
+
+def test_a_sandboxed_frame_solves(open_web: Open, site: Site) -> None:
+    frame = f'<iframe sandbox="allow-scripts" src="{site.address}" width="1000" height="700">'
+    (site.folder / "course.html").write_text(f'<link rel="icon" href="data:,">{frame}</iframe>')
+    page = open_web(f"{site.address}course.html")
+    page.frame_locator("iframe").locator(_READY).wait_for()
+
+
+def test_the_second_visit_needs_no_network(open_web: Open, site: Site) -> None:
+    page = open_web(site.address)
+    page.wait_for_selector(_READY)
+    page.evaluate("() => navigator.serviceWorker.ready.then(() => undefined)")
+    page.context.set_offline(True)
+    page.reload()
+    page.wait_for_selector(_READY)
+    assert told(page, "motion_found")["missing"] == 0
+
+
+@pytest.mark.extended
+def test_all_driven_mechanisms_are_solved_as_in_python(
+    open_web: Open, site: Site, tmp_path: Path
+) -> None:
+    page = open_web(site.address)
+    page.wait_for_selector(_READY)
+    assert_same(page, driven_examples(), tmp_path)
