@@ -136,13 +136,13 @@ def in_python(text: str, folder: Path) -> dict[str, Any]:
     return next(e for e in map(json.loads, events) if e["kind"] == "motion_found")
 
 
-def assert_same(page: Any, names: list[str], folder: Path) -> None:
-    """The browser's cycles of library mechanisms are those of CPython."""
-    found = {}
-    for k, name in enumerate(names, 1000):
-        message = json.dumps({"kind": "set_text", "text": example_text(name), "id": k})
-        answer = page.evaluate(
-            """([message, id]) => new Promise((resolve) => {
+def asked(page: Any, request: dict[str, Any]) -> dict[str, Any]:
+    """The answer of the worker to a request, past the state of the file and signs of work."""
+    answer: dict[str, Any] = json.loads(
+        page.evaluate(
+            """(request) => new Promise((resolve) => {
+              const id = (window.asked ??= 1000) + 1;
+              window.asked = id;
               const hear = ({data}) => {
                 if (typeof data !== "string") return;
                 const {kind, answers} = JSON.parse(data);
@@ -151,12 +151,20 @@ def assert_same(page: Any, names: list[str], folder: Path) -> None:
                 resolve(data);
               };
               window.engine.addEventListener("message", hear);
-              window.engine.postMessage(message);
+              window.engine.postMessage(JSON.stringify({...request, id}));
             })""",
-            [message, k],
+            request,
         )
-        event = json.loads(answer)
-        assert event["kind"] == "motion_found", (name, answer[:300])
+    )
+    return answer
+
+
+def assert_same(page: Any, names: list[str], folder: Path) -> None:
+    """The browser's cycles of library mechanisms are those of CPython."""
+    found = {}
+    for name in names:
+        event = asked(page, {"kind": "set_text", "text": example_text(name)})
+        assert event["kind"] == "motion_found", (name, event)
         if problems := list(differences(event, in_python(example_text(name), folder))):
             found[name] = problems
     assert found == {}
@@ -186,6 +194,15 @@ def test_a_length_is_dragged_and_the_cycle_is_that_of_the_library(
     state = told(page, "file_state")
     assert state["unsaved"]
     assert list(differences(told(page, "motion_found"), in_python(state["text"], tmp_path))) == []
+
+
+def test_files_are_exported_or_the_missing_package_is_named(open_web: Open, site: Site) -> None:
+    page = open_web(site.address)
+    page.wait_for_selector(_READY)
+    for suffix, kind in {"html": "exported", "csv": "exported", "xlsx": "refused"}.items():
+        answer = asked(page, {"kind": "export", "format": suffix, "row": None, "dark": False})
+        assert answer["kind"] == kind, answer
+    assert "pip install" in answer["message"]
 
 
 def test_a_newer_change_cancels_a_cycle_that_is_being_solved(open_web: Open, site: Site) -> None:

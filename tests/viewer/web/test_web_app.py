@@ -132,6 +132,7 @@ def test_the_archive_holds_what_runs_and_no_more() -> None:
     assert {"linkwork/__init__.py", "linkwork/library/four-bar.toml"} <= names
     assert not any("tests" in name or name.endswith(".pyi") for name in names)
     assert not any(name.startswith(("linkwork/cli", "linkwork/viewer/web")) for name in names)
+    assert {name for name in names if name.endswith("/offline.js")}  # of pages that it exports
     assert not any("__pycache__" in name or ".nbi" in name for name in names)
 
 

@@ -11,8 +11,14 @@ from importlib.resources.abc import Traversable
 __all__ = ["site_packages"]
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
-#: What a page never imports: commands, exported files, the front end.
-_UNUSED = ("cli", "export/workbook", "viewer/static", "viewer/web", "everyday.py", "__main__.py")
+#: What a page never imports: commands, and the front end (but for the pages that it exports).
+_UNUSED = (
+    "cli",
+    "viewer/web",
+    *(f"viewer/static/{name}.js" for name in ("live", "linkwork", "web", "web_worker", "widget")),
+    "everyday.py",
+    "__main__.py",
+)
 #: Parts of wheels that serve tests and compilers.
 _TOOLS = ("tests", "f2py", "conftest.py", "conftest.pyc", "RECORD")
 _SOURCES = (".a", ".c", ".h", ".lib", ".pxd", ".pyi", ".pyx")
