@@ -202,7 +202,8 @@ class Page implements Mounted {
   }
 
   get row(): number {
-    return this.view.order[this.player.at]!;
+    const { order } = this.view;
+    return order[Math.min(this.player.at, order.length - 1)]!;
   }
 
   get values(): Record<string, number> {

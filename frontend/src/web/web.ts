@@ -28,7 +28,7 @@ function begin(): void {
     location.replace(`linkwork.html${location.hash}`);
     return;
   }
-  if (location.protocol.startsWith("http")) setAppUrl(location.href);
+  if (/^(https?|file):/.test(location.href)) setAppUrl(location.href);
   let connection!: WorkerConnection;
   new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {

@@ -141,8 +141,8 @@ def test_an_address_contains_a_mechanism(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.chdir(tmp_path)
     page = Page()
     page.desk.begin(fragment_of(FOUR_BAR))
-    assert page.told[1]["file"] == "mechanism.toml"
-    assert page.told[1]["text"] == FOUR_BAR
+    assert (page.told[1]["file"], page.told[1]["text"]) == ("linked.toml", FOUR_BAR)
+    assert page.kinds == ["palette_shown", "file_state", "motion_found"]
 
 
 @pytest.mark.parametrize("fragment", ["#example=unknown", "#example=../../etc", "#\0<b>", "#lw1=A"])

@@ -168,7 +168,9 @@ def test_the_numbers_of_the_whole_motion_are_those_of_the_library(open_live: Ope
     motion = lw.loads(FOUR_BAR).sweep()
     for name in ("stroke(rocker)", "time_ratio(rocker)", "path_length(P)"):
         text = page.locator(f'dd[data-fact="{name}"]').text_content()
-        number = float(re.match(r"[\d.]+", text)[0])
+        found = re.match(r"[\d.]+", text)
+        assert found is not None
+        number = float(found[0])
         assert number == pytest.approx(motion.value(name), rel=1e-5)
 
 

@@ -88,7 +88,7 @@ class BrowserDesk:
         if not code or code.startswith(_EXAMPLE):
             name = unquote(code.removeprefix(_EXAMPLE)) or _FIRST
             return f"{name}.toml", self._library(name)
-        return "mechanism.toml", text_of_link(code)
+        return "linked.toml", text_of_link(code)
 
     def open(self, name: str, saved: str, text: str | None = None) -> None:
         """Open a file in the memory of the browser, and send the complete state.

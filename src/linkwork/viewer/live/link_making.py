@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import link_of
 from linkwork.viewer.embedding import embed_snippet
@@ -24,6 +26,6 @@ def link_made(text: str, title: str, app: str) -> LinkMade:
     link = link_of(text, app)
     try:
         qr, note = qr_svg(link), ""
-    except InputError as error:  # too long, or segno is missing
-        qr, note = "", str(error)
+    except InputError as error:  # too long, or segno is missing; a page in a browser has none
+        qr, note = "", "" if sys.platform == "emscripten" else str(error)
     return LinkMade(link=link, embed=embed_snippet(link, title), qr=qr, note=note)
