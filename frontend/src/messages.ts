@@ -203,6 +203,13 @@ export interface MakeLink {
   app?: string;
 }
 
+export interface OpenExample {
+  kind: "open_example";
+  id?: number;
+  name: string;
+  discard?: boolean;
+}
+
 export interface Undo {
   kind: "undo";
   id?: number;
@@ -406,6 +413,11 @@ export interface Saved {
   file: string;
 }
 
+export interface StartOffered {
+  kind: "start_offered";
+  answers: number | null;
+}
+
 export interface PalettePart {
   table: string;
   title: string;
@@ -580,6 +592,7 @@ export type LiveRequest =
   | ListQuantities
   | Export
   | MakeLink
+  | OpenExample
   | Undo
   | Redo
   | Save
@@ -603,4 +616,5 @@ export type LiveEvent =
   | Refused
   | LinkMade
   | FileChanged
-  | Saved;
+  | Saved
+  | StartOffered;

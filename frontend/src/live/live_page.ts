@@ -18,6 +18,7 @@ import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { Plots } from "./plots";
+import { Starting } from "./starting";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
 import type { Connect, Transport } from "./transport";
@@ -60,6 +61,7 @@ export class LivePage {
   /** Whether the page was made with plots. */
   private charted = false;
   private hint: Element | null = null;
+  private readonly starting: Starting;
   /** The width of the sheet that was told last. */
   private width = 1;
   private resizing: ReturnType<typeof setTimeout> | undefined;
@@ -68,7 +70,8 @@ export class LivePage {
 
   constructor(private readonly element: HTMLElement, connect: Connect) {
     const desk = this.desk();
-    this.bar = new Bar(desk);
+    this.starting = new Starting(desk);
+    this.bar = new Bar(desk, () => this.starting.offer(true));
     this.dimensions = new Dimensions(desk);
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
@@ -145,6 +148,9 @@ export class LivePage {
 
   private told(event: LiveEvent): void {
     switch (event.kind) {
+      case "start_offered":
+        this.starting.offer(false);
+        break;
       case "palette_shown":
         this.build.offer(event.parts);
         break;
@@ -223,6 +229,7 @@ export class LivePage {
   }
 
   private state(file: FileState): void {
+    if (this.file !== null && this.file.file !== file.file) this.another();
     this.file = file;
     this.bar.show(file);
     this.dimensions.show(file);
@@ -234,6 +241,13 @@ export class LivePage {
     this.editor.renew(file);
     this.readiness.show(file);
     this.page?.places.drawing.element.querySelector(".lw-gaps")?.remove();
+  }
+
+  /** Another file: nothing of the page stays. */
+  private another(): void {
+    this.page?.destroy();
+    [this.page, this.moving, this.sketched, this.charted] = [null, null, null, false];
+    this.editor.rest();
   }
 
   private motion(found: MotionFound): void {

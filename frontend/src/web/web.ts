@@ -2,8 +2,10 @@
 
 import { setAppUrl } from "../live/link";
 import { LivePage } from "../live/live_page";
+import { leaveStart, offerStart } from "../live/starting";
 import { html } from "../svg";
 import { engineFiles, type Engine } from "./engine";
+import { keptWork } from "./keeping";
 import { WorkerConnection } from "./worker_connection";
 
 /** The part of the start that loading its files takes. */
@@ -29,6 +31,8 @@ function begin(): void {
     return;
   }
   if (/^(https?|file):/.test(location.href)) setAppUrl(location.href);
+  // while the engine loads; it finds in the address what is chosen before it begins
+  if (!location.hash.slice(1) && keptWork() === null) offerStart((name) => choose(name));
   let connection!: WorkerConnection;
   new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {
@@ -47,6 +51,11 @@ function begin(): void {
     },
   );
   if (loads) keepForOffline();
+}
+
+function choose(name: string): void {
+  history.replaceState(null, "", `#example=${encodeURIComponent(name)}`);
+  leaveStart();
 }
 
 /** On a host, the next visit needs no network. */

@@ -11,11 +11,11 @@ from pathlib import Path
 import click
 
 from linkwork.api import example_text, examples, loads
-from linkwork.cli.options import debug_option, file_argument, json_option
+from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import is_link, text_of_link
-from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet, new_file
 from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
 
@@ -57,7 +57,7 @@ def _told(name: str, address: str) -> list[str]:
 
 
 @click.command
-@file_argument
+@click.argument("file", metavar="[FILE]", required=False)
 @click.option(
     "--port",
     metavar="NUMBER",
@@ -68,10 +68,13 @@ def _told(name: str, address: str) -> list[str]:
 @click.option("--no-browser", is_flag=True, help="Print the address, but do not open a browser.")
 @json_option
 @debug_option
-def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
-    """Show and edit a mechanism in a browser until Ctrl-C.
+def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
+    """Draw, show and edit a mechanism in a browser until Ctrl-C.
+
+    Without FILE the page begins with the library and a blank sheet.
 
     \b
+      linkwork view
       linkwork view rapier.toml   (a blank sheet, if there is no such file)
       linkwork view four-bar      (of the library: saved as four-bar.toml)
       linkwork view "LINK"        (saved as linked.toml)
@@ -82,16 +85,16 @@ def view(file: str, port: int, no_browser: bool, as_json: bool) -> None:
     """
     if file == "-":
         raise InputError("standard input cannot be edited and saved: give the name of a file")
-    opened = _opened(file)
+    opened = new_file() if file is None else _opened(file)
     with progress("opening"):
-        workbench = Workbench(opened, loads)
+        workbench = Workbench(opened, loads, start=file is None)
     server = LiveServer(workbench, port)
 
     def tell() -> None:
         if as_json:
-            print_json({"file": opened.name, "address": server.address})
+            print_json({"file": None if file is None else opened.name, "address": server.address})
         else:
-            print_lines(_told(opened.name, server.address))
+            print_lines(_told("The page" if file is None else opened.name, server.address))
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
 

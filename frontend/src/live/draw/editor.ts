@@ -106,6 +106,13 @@ export class Editor {
     this.redraw();
   }
 
+  /** Begin anew with the tool that changes nothing. */
+  rest(): void {
+    this.page = null;
+    [this.chosen, this.selected, this.tool] = [null, new Set(), "move"];
+    this.tools.show("move");
+  }
+
   choose(name: string): void {
     if (name === this.tool) return;
     const before = this.edited;

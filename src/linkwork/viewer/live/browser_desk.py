@@ -11,7 +11,7 @@ from urllib.parse import unquote
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import text_of_link
 from linkwork.viewer.live.events import Event, Refused
-from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.messages import MessageError, decoded, encoded
 from linkwork.viewer.live.requests import SetText
 from linkwork.viewer.live.solvable import Read
@@ -23,7 +23,6 @@ __all__ = ["BrowserDesk"]
 _LOOK_FOR_MESSAGES = 0.025  # interval at which long work looks for newer changes [s]
 _LONGEST_NAME = 100  # characters of a file's name
 _EXAMPLE = "example="
-_FIRST = "four-bar"  # of the library: opened where the address names nothing
 
 
 class BrowserDesk:
@@ -79,18 +78,20 @@ class BrowserDesk:
         except InputError as error:
             refused = [Refused(message=str(error))]
             linked = self._linked("")
-        self.open(*linked)
+        self.open(*linked, start=fragment in ("", "#") or bool(refused))
         self._send(refused)
 
     def _linked(self, fragment: str) -> tuple[str, str]:
         """The name and the text of the file that the fragment of an address stands for."""
         code = fragment.removeprefix("#")
-        if not code or code.startswith(_EXAMPLE):
-            name = unquote(code.removeprefix(_EXAMPLE)) or _FIRST
+        if code.startswith(_EXAMPLE) and code != _EXAMPLE:
+            name = unquote(code.removeprefix(_EXAMPLE))
             return f"{name}.toml", self._library(name)
+        if code in ("", _EXAMPLE):
+            return "untitled.toml", blank_sheet("Untitled")
         return "linked.toml", text_of_link(code)
 
-    def open(self, name: str, saved: str, text: str | None = None) -> None:
+    def open(self, name: str, saved: str, text: str | None = None, *, start: bool = False) -> None:
         """Open a file in the memory of the browser, and send the complete state.
 
         Parameters
@@ -101,10 +102,13 @@ class BrowserDesk:
             The text of the file.
         text : str, optional
             The text with changes that are not saved.
+        start : bool
+            Offer the library to begin with.
         """
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
-        workbench = Workbench(MechanismFile(path, saved), self._read, self._hurried)
+        file = MechanismFile(path, saved)
+        workbench = Workbench(file, self._read, self._hurried, start=start)
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))

@@ -67,6 +67,7 @@ __all__ = [
     "Remedy",
     "Saved",
     "SketchShown",
+    "StartOffered",
     "Unknown",
     "Way",
     "Working",
@@ -264,6 +265,11 @@ class FileChanged:
 
 
 @dataclass(frozen=True, kw_only=True)
+class StartOffered:
+    """No file was named: the page offers the library and a blank sheet."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Saved:
     """The file was saved."""
 
@@ -289,6 +295,7 @@ Event = (
     | LinkMade
     | FileChanged
     | Saved
+    | StartOffered
 )
 
 EVENTS: tuple[type, ...] = Event.__args__

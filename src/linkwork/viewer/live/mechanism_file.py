@@ -8,10 +8,11 @@ from enum import Enum
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismFileError
+from linkwork.textfile.library import example_text
 from linkwork.textfile.toml_text import bytes_of, text_of
 from linkwork.textfile.writer import save_text
 
-__all__ = ["FileConflictError", "MechanismFile", "OnDisk", "blank_sheet"]
+__all__ = ["FileConflictError", "MechanismFile", "OnDisk", "blank_sheet", "new_file"]
 
 _MOST_COPIES = 100  # names tried for a copy next to the file
 
@@ -19,6 +20,23 @@ _MOST_COPIES = 100  # names tried for a copy next to the file
 def blank_sheet(name: str) -> str:
     """The text of a mechanism without points."""
     return f'format = 1\nname = {json.dumps(name, ensure_ascii=False)}\nlength = "mm"\n'
+
+
+def new_file(example: str = "") -> MechanismFile:
+    """A mechanism of the library, or a blank sheet, under a name that no file has.
+
+    Raises
+    ------
+    UnknownNameError
+        If the library has no such mechanism.
+    """
+    stem = example or "untitled"
+    text = example_text(example) if example else blank_sheet("Untitled")
+    for k in range(1, _MOST_COPIES):
+        path = Path(f"{stem}.toml" if k == 1 else f"{stem}-{k}.toml")
+        if not path.exists():
+            return MechanismFile(path, text)
+    raise InputError(f'"{path}" and all earlier names exist already: remove some of these files')
 
 
 class FileConflictError(InputError):

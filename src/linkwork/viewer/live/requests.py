@@ -27,6 +27,7 @@ __all__ = [
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
+    "OpenExample",
     "Question",
     "Redo",
     "Reload",
@@ -333,6 +334,17 @@ class Redo:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OpenExample:
+    """Open a mechanism of the library as a new file, or a blank sheet with an empty name.
+
+    ``discard``: even if changes of the present file are not saved.
+    """
+
+    name: str
+    discard: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class Save:
     """Write the file; with ``overwrite`` even if another program has changed it."""
 
@@ -365,6 +377,7 @@ Request = (
     | ListConfigurations
     | NewtonSteps
     | Question
+    | OpenExample
     | Undo
     | Redo
     | Save

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from importlib import resources
 
-__all__ = ["served_pages"]
+__all__ = ["library_json", "served_pages"]
 
 _HTML = """\
 <!doctype html>
@@ -22,12 +22,19 @@ _HTML = """\
 </head>
 <body>
 <main id="linkwork"><noscript>This page needs JavaScript.</noscript></main>
+<script id="linkwork-library" type="application/json">LIBRARY</script>
 <script src="live.js"></script>
 </body>
 </html>
 """
 _TYPES = {"css": "text/css", "js": "text/javascript"}
 _FILES = ("linkwork.css", "live.css", "live.js")
+
+
+def library_json() -> str:
+    """The library and its moving pictures for a script element; ``scripts/thumbnails.py`` writes it."""
+    text = (resources.files("linkwork.viewer") / "library.json").read_text("utf-8")
+    return text.replace("</", "<\\/")
 
 
 @lru_cache
@@ -37,7 +44,8 @@ def served_pages() -> Mapping[str, tuple[str, bytes]]:
     Scripts and styles are those of ``static/``, which ``scripts/frontend build`` writes.
     """
     static = resources.files("linkwork.viewer") / "static"
-    pages = {"/": ("text/html; charset=utf-8", _HTML.encode())}
+    page = _HTML.replace("LIBRARY", library_json())
+    pages = {"/": ("text/html; charset=utf-8", page.encode())}
     for name in _FILES:
         kind = _TYPES[name.rpartition(".")[2]]
         pages[f"/{name}"] = (f"{kind}; charset=utf-8", (static / name).read_bytes())

@@ -17,7 +17,7 @@ from linkwork.viewer.live.answers import About, GivenUpError, check_quantities, 
 from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.history import History
-from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
+from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk, new_file
 from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
@@ -56,7 +56,12 @@ class Workbench:
     """
 
     def __init__(
-        self, file: MechanismFile, read: Read, hurried: Callable[[], bool] = lambda: False
+        self,
+        file: MechanismFile,
+        read: Read,
+        hurried: Callable[[], bool] = lambda: False,
+        *,
+        start: bool = False,
     ) -> None:
         self._file, self._read = file, read
         self.hurried = hurried
@@ -71,6 +76,7 @@ class Workbench:
         self._owed = False  # a cycle was cancelled, and no other has been sent since
         self._drag: Drag | None = None
         self._conflict: tell.FileChanged | None = None
+        self._begun = not start
 
     @property
     def text(self) -> str:
@@ -85,7 +91,8 @@ class Workbench:
 
     def opened(self) -> Events:
         """All events that a page needs at its start."""
-        return [tell.PaletteShown(parts=PALETTE), *self._everything()]
+        start: Events = [] if self._begun else [tell.StartOffered()]
+        return [tell.PaletteShown(parts=PALETTE), *start, *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
@@ -186,6 +193,15 @@ class Workbench:
         return self._accepted(request.text, "text")
 
     @_handle.register
+    def _(self, request: ask.OpenExample) -> Events:
+        if self.unsaved and not request.discard:
+            raise InputError(
+                f'changes of "{self._file.name}" are not saved: save them first, or discard them'
+            )
+        self._open(new_file(request.name))
+        return self._everything()
+
+    @_handle.register
     def _(self, request: ask.Undo) -> Events:
         if self._history.undone() is None:
             raise InputError("there is nothing to undo")
@@ -223,6 +239,13 @@ class Workbench:
         return self._solution
 
     # The text and its results
+
+    def _open(self, file: MechanismFile) -> None:
+        """Another file, with a history of its own."""
+        self._subject = read_subject(file.text, file.name, self._read, whatever=True)
+        self._file, self._history, self._begun = file, History(file.text), True
+        self._motion, self._solution, self._drag, self._conflict = None, [], None, None
+        self._picture = MotionPicture()
 
     def _everything(self) -> Events:
         """The file and its motion."""

@@ -10,6 +10,7 @@ import json
 from collections.abc import Mapping
 from importlib import metadata, resources
 
+from linkwork.viewer.live.served_pages import library_json
 from linkwork.viewer.web.pyodide_files import PACKAGES, PyodideFiles
 from linkwork.viewer.web.site_packages import site_packages
 
@@ -87,6 +88,7 @@ def _page(pyodide: PyodideFiles, engine: Mapping[str, bytes], urls: Mapping[str,
             '<main id="linkwork"><noscript>This page needs JavaScript.</noscript></main>',
             *_warning(pyodide.unofficial),
             f'<script id="linkwork-engine" type="application/json">{json.dumps(about)}</script>',
+            f'<script id="linkwork-library" type="application/json">{library_json()}</script>',
             f"<script>{script}</script>",
             *contained,
             "</body>\n</html>\n",

@@ -1,0 +1,42 @@
+// Another mechanism in place of the present one: the library, or a blank sheet.
+
+import { libraryOf } from "../begin/library";
+import { StartPage } from "../begin/start_page";
+import type { Desk } from "./asking";
+
+/** The start page in sight; it may be there before the program that opens what is chosen. */
+let current: StartPage | null = null;
+
+/** Show the start page, or let another function open what is chosen on it. */
+export function offerStart(open: (name: string) => void, close?: () => void): void {
+  const hooks = { open, ...(close ? { close } : {}) };
+  if (current !== null && !close) {
+    current.hooks = hooks;
+    return;
+  }
+  leaveStart();
+  current = new StartPage(libraryOf(document), hooks);
+  document.body.append(current.element);
+}
+
+export function leaveStart(): void {
+  current?.destroy();
+  current = null;
+}
+
+export class Starting {
+  constructor(private readonly desk: Desk) {}
+
+  /** Offer the library; `back`: the present file may stay. */
+  offer(back: boolean): void {
+    offerStart((name) => this.open(name), back ? leaveStart : undefined);
+  }
+
+  private open(name: string): void {
+    const { unsaved, file } = this.desk.file();
+    const discard = unsaved && confirm(`Changes of ${file} are not saved. Discard them?`);
+    if (unsaved && !discard) return;
+    leaveStart();
+    this.desk.ask({ kind: "open_example", name, discard });
+  }
+}
