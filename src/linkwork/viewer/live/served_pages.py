@@ -32,7 +32,7 @@ _FILES = ("linkwork.css", "live.css", "live.js")
 
 
 def library_json() -> str:
-    """The library and its moving pictures for a script element; ``scripts/thumbnails.py`` writes it."""
+    """The library, written by ``scripts/thumbnails.py``, for a script element."""
     text = (resources.files("linkwork.viewer") / "library.json").read_text("utf-8")
     return text.replace("</", "<\\/")
 

@@ -245,7 +245,7 @@ class Workbench:
         self._subject = read_subject(file.text, file.name, self._read, whatever=True)
         self._file, self._history, self._begun = file, History(file.text), True
         self._motion, self._solution, self._drag, self._conflict = None, [], None, None
-        self._picture = MotionPicture()
+        self._picture, self._sheet = MotionPicture(), ask.SetSheet(width=0.0)
 
     def _everything(self) -> Events:
         """The file and its motion."""
