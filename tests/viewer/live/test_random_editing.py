@@ -36,10 +36,12 @@ def values(kind: Any) -> st.SearchStrategy[Any]:
         return SIMPLE[kind]
     if kind is type(None):
         return st.none()
+    if origin is tuple and parts[-1] is not Ellipsis:
+        return st.tuples(*map(values, parts))
     if origin is tuple:
         return st.lists(values(parts[0]), max_size=3).map(tuple)
     if origin is dict:
-        return st.dictionaries(NAMES, NUMBERS, max_size=2)
+        return st.dictionaries(NAMES, values(parts[1]), max_size=2)
     if parts:
         return st.one_of([values(part) for part in parts])
     return requests([kind])

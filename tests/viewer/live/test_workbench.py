@@ -407,6 +407,34 @@ def test_nothing_is_put_elsewhere_where_points_follow_from_equations(tmp_path: P
     assert "only the points of a sketch" in refused.message
 
 
+def test_a_point_with_locked_lengths_moves_on_their_circles(bench: Workbench) -> None:
+    edit = ask.MovePoints(places={"P": (100.0, 150.0)}, keep=("B P", "P gone", "P"))
+    b, p = (complex(*bench._before().places[name]) for name in ("B", "P"))
+    state = only(bench.handle(edit), tell.FileState)
+    moved = complex(*state.points["P"])
+    assert abs(moved - b) == pytest.approx(abs(p - b), rel=1e-9)
+    assert abs(moved - p) > 1
+    here = complex(*bench._before().places["P"])
+    both = ask.MovePoints(places={"P": (0.0, 0.0)}, keep=("B P", "A P"))
+    there = complex(*only(bench.handle(both), tell.FileState).points["P"])
+    assert there == pytest.approx(here, rel=1e-9)  # there is no other place on both circles
+
+
+@pytest.mark.parametrize("width", [-1.0, 1e300])
+def test_a_view_has_a_width(width: float, bench: Workbench) -> None:
+    told = only(bench.handle(ask.SetSheet(width=width, edited=True)), tell.Refused)
+    assert told.message == "the width of the view must be from 0 to 1e+100"
+
+
+def test_links_are_reversed_and_points_moved_together(bench: Workbench) -> None:
+    state = only(bench.handle(ask.ReverseLink(name="rocker")), tell.FileState)
+    assert 'rocker = ["B", "O4"]' in state.text
+    places = {"O2": (10.0, 0.0), "O4": (110.0, 0.0)}
+    state = only(bench.handle(ask.MovePoints(places=places)), tell.FileState)
+    assert state.points["O2"] == (10.0, 0.0)
+    assert '"O2 O4" = 100' in state.text
+
+
 def test_the_path_of_a_point_is_asked_for(bench: Workbench) -> None:
     on = only(bench.handle(ask.TracePoint(point="B", on=True)), tell.FileState)
     assert (on.traced, on.traceable) == (("P", "B"), ("O2", "A", "B", "O4", "P"))

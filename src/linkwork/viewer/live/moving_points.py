@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import permutations
 
 from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
@@ -83,7 +84,9 @@ def held_places(
     linkage: Draft, before: Before, wanted: Mapping[str, complex], keep: Collection[str]
 ) -> Mapping[str, complex]:
     """The places nearest to those wanted at which the lengths in ``keep`` stay."""
-    held = list(_held_lengths(before, wanted, keep))
+    # a lock may outlive its points
+    kept = [key for key in keep if set(key.split()) <= linkage.points.keys()]
+    held = list(_held_lengths(before, wanted, kept))
     if not held:
         return wanted
     if len(wanted) > 1 or len(held) > 2:
@@ -95,17 +98,16 @@ def held_places(
         away = place - centre
         return {point: centre + radius * away / abs(away) if away else here}
     found = _crossings(centre, radius, *more[0]) or [here]
-    return {point: min(found, key=lambda crossing: abs(crossing - place))}
+    return {point: min(found, key=lambda crossing: abs(crossing - here))}
 
 
 def _held_lengths(
     before: Before, wanted: Mapping[str, complex], keep: Collection[str]
 ) -> Iterator[tuple[str, float]]:
     """The other end of every kept length at a moved point, and the length."""
-    for key in keep:
-        for one, other in ((key.split()[0], key.split()[-1]), (key.split()[-1], key.split()[0])):
-            if one in wanted and other not in wanted:
-                yield other, abs(before.place(one) - before.place(other))
+    for one, other in (pair for key in keep for pair in permutations(key.split(), 2)):
+        if one in wanted and other not in wanted:
+            yield other, abs(before.place(one) - before.place(other))
 
 
 def _crossings(centre: complex, radius: float, other: complex, second: float) -> list[complex]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.status import Status
+from linkwork.mechanism.part.part import LARGEST
 from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
@@ -225,6 +226,8 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.SetSheet) -> Events:
+        if not 0 <= request.width <= LARGEST:
+            raise InputError(f"the width of the view must be from 0 to {LARGEST:g}")
         self._sheet = request
         return self._sketch()
 
