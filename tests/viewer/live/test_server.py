@@ -375,8 +375,8 @@ def test_a_message_beyond_the_limit_ends_the_connection_and_nothing_else(served:
         told(page, "motion_found")
         ask(page, "set_number", name="A B", value=125)
         told(page, "motion_found")
-        page.send(" " * (LARGEST_MESSAGE + 1))
-        with pytest.raises(ConnectionClosed) as caught:
+        with pytest.raises(ConnectionClosed) as caught:  # while it is sent, or when it is read
+            page.send(" " * (LARGEST_MESSAGE + 1))
             told(page, "nothing more")
     assert caught.value.rcvd is not None
     assert caught.value.rcvd.code == 1009

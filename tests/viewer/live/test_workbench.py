@@ -767,6 +767,23 @@ def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
     assert only(bench.handle(ask.Undo()), tell.Refused)
 
 
+def test_a_five_bar_is_driven_at_both_cranks(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", blank_sheet("new")), lw.loads)
+    places = {"A": (0, 0), "B": (30, 60), "C": (75, 100), "D": (120, 60), "F": (150, 0)}
+    for name, (x, y) in places.items():
+        bench.handle(ask.AddPoint(name=name, x=x, y=y))
+    for k, points in enumerate(("AB", "BC", "CD", "DF")):
+        edit = ask.AddLink(name=f"link{k + 2}", points=tuple(points))
+        state = only(bench.handle(edit), tell.FileState)
+    for wanted in ("Fix A and F", "Drive link2", "Drive link5"):
+        remedies = {r.label: r for lack in state.lacks for r in lack.remedies}
+        events = bench.handle(ask.Together(edits=remedies[wanted].edits))
+        state = only(events, tell.FileState)
+    assert state.lacks == ()
+    assert [one.name for one in state.inputs] == ["link2", "link5"]
+    assert only(events, tell.MotionFound).certified > 0
+
+
 def test_a_file_that_does_not_exist_is_refused_at_once(tmp_path: Path) -> None:
     with pytest.raises(lw.MechanismFileError, match="there is no such file"):
         MechanismFile(tmp_path / "none.toml")

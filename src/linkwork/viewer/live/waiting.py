@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.events import Event, Refused, Working
 from linkwork.viewer.live.requests import EDITS, Request
 from linkwork.viewer.live.workbench import Workbench
@@ -46,7 +47,8 @@ class Waiting:
         """The next request; outdated intermediate changes are skipped."""
         request, number = self._requests.popleft()
         while getattr(request, "live", False) and self._requests:
-            if not _replaces(self._requests[0][0], request):
+            newer = self._requests[0][0]
+            if request is None or newer is None or same_thing(newer) != same_thing(request):
                 break
             # a dragged point sends positions faster than they are solved: use only the
             # last
@@ -89,11 +91,3 @@ def answer(work: Callable[[], list[Event]]) -> list[Event]:
         _log.exception("a request failed")
         mistake = f"{type(error).__name__}: {error}"
         return [Refused(message=f"this is an error in Linkwork, please report it: {mistake}")]
-
-
-def _replaces(newer: Request | None, older: Request | None) -> bool:
-    """Whether a newer change makes the older intermediate one obsolete."""
-    if type(newer) is not type(older):
-        return False
-    same = ("name", "point", "lengths_follow")
-    return all(getattr(newer, field, None) == getattr(older, field, None) for field in same)
