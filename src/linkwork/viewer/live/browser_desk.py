@@ -83,7 +83,7 @@ class BrowserDesk:
         self._send(refused)
 
     def _linked(self, fragment: str) -> tuple[str, str]:
-        """The name and the text of the file that the fragment of an address stands for."""
+        """The name and the text of the file that the fragment of an address contains or names."""
         code = fragment.removeprefix("#")
         if not code or code.startswith(_EXAMPLE):
             name = unquote(code.removeprefix(_EXAMPLE)) or _FIRST

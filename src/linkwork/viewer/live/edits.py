@@ -75,7 +75,7 @@ def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> 
     draft = before.description
     if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
         return
-    carriers = draft.drawable().carriers()
+    carriers = draft.drawable.carriers()
     if not set(key.split()) <= carriers.keys():
         return
     fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))

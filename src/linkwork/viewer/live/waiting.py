@@ -57,7 +57,7 @@ class Waiting:
 
 
 class WorkSigns:
-    """Tells the progress of an answer, a few times per second."""
+    """Reports the progress of an answer."""
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
@@ -69,7 +69,7 @@ class WorkSigns:
         self._number, self._told_at = number, time.monotonic()
 
     def __call__(self, fraction: float) -> None:
-        """Tell the fraction done, unless one has just been told."""
+        """Report the finished fraction, a few times per second at most."""
         now = time.monotonic()
         if now - self._told_at >= _PACE:
             self._told_at = now
