@@ -379,8 +379,8 @@ def test_a_message_beyond_the_limit_ends_the_connection_and_nothing_else(served:
             page.send(" " * (LARGEST_MESSAGE + 1))
         with pytest.raises(ConnectionClosed) as caught:
             told(page, "nothing more")
-    assert caught.value.rcvd is not None
-    assert caught.value.rcvd.code == 1009
+    # the end of the socket may overtake the frame that tells why
+    assert caught.value.rcvd is None or caught.value.rcvd.code == 1009
     with reconnected(served) as again:
         ask(again, "undo")
         assert '"A B" = 120' in told(again, "file_state")["text"]
