@@ -96,9 +96,19 @@ def test_what_is_not_there_is_said_with_its_key() -> None:
         assert str(caught.value) == 'points."Z Z" is not in the file'
     with pytest.raises(lw.InputError, match="no value can be written there"):
         text.put(("sliders", 5, "offset"), 1)
-    with pytest.raises(lw.InputError, match=r"is a single table: write it as \[\[input\]\]"):
-        text.append("input", {"link": "rod"})
     assert text.text == TEXT
+    line = TextEdits('input = { link = "a" }')
+    with pytest.raises(lw.InputError, match=r"in one line: write it as \[\[input\]\]"):
+        line.append("input", {"link": "rod"})
+
+
+def test_a_single_table_becomes_the_first_of_a_list_with_its_comments() -> None:
+    text = TextEdits('[input] # one\nlink = "a"  # driven\n# full turn\n\n[trace]\npoints = []\n')
+    text.append("input", {"link": "b"})
+    assert text.text == (
+        '[[input]] # one\nlink = "a"  # driven\n# full turn\n\n[[input]]\nlink = "b"\n\n'
+        "[trace]\npoints = []\n"
+    )
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])

@@ -6,7 +6,7 @@ import ctypes
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +72,13 @@ def found_in(page: Any, numbers: list[float]) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("name", CASES)
+def some(names: Iterable[str], *first: str) -> list[Any]:
+    """The same names, all but some for the extended tests."""
+    extended = pytest.mark.extended
+    return [name if name in first else pytest.param(name, marks=extended) for name in names]
+
+
+@pytest.mark.parametrize("name", some(CASES, "four-bar", "slider-crank"))
 def test_the_page_solves_designs_as_python_does(name: str, open_solving: Any) -> None:
     names, given = CASES[name]
     mechanism = lw.example(name)
@@ -95,7 +101,10 @@ def test_the_page_solves_designs_as_python_does(name: str, open_solving: Any) ->
         assert (radius[there] < 1e-10).all()
 
 
-@pytest.mark.parametrize("name", ["four-bar", "slider-crank", "jansen-leg", "stephenson-far-crank"])
+@pytest.mark.parametrize(
+    "name",
+    some(["four-bar", "slider-crank", "jansen-leg", "stephenson-far-crank"], "four-bar"),
+)
 def test_a_cycle_in_the_page_is_that_of_python_bit_by_bit(
     name: str, open_solving: Any, tmp_path: Path
 ) -> None:
@@ -120,7 +129,9 @@ def test_a_cycle_in_the_page_is_that_of_python_bit_by_bit(
         assert np.array_equal(np.array(found["radius"])[straight], expected[straight, -1])
 
 
-@pytest.mark.parametrize("name", ["four-bar", "slider-crank", "jansen-leg", "whitworth"])
+@pytest.mark.parametrize(
+    "name", some(["four-bar", "slider-crank", "jansen-leg", "whitworth"], "whitworth")
+)
 def test_the_page_shows_points_columns_and_rates_of_the_changed_mechanism(
     name: str, open_solving: Any
 ) -> None:

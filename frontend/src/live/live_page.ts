@@ -335,13 +335,14 @@ export class LivePage {
 
   private sketch(event: SketchShown): void {
     this.sketched = event.page;
-    const first = this.page === null;
-    if (this.file!.lacks.length) {
+    const { lacks, readable, points } = this.file!;
+    if (lacks.length) {
       this.moving = null;
       this.notices.calm();
     }
     this.display();
-    if (first) this.editor.choose(Object.keys(this.file!.points).length ? "select" : "link");
+    // what does not move is there to be edited
+    if (lacks.length && readable && !this.editor.edited) this.editor.choose(Object.keys(points).length ? "select" : "link");
     this.updated();
   }
 

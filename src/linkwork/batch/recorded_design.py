@@ -23,7 +23,7 @@ from linkwork.results.motion import Motion
 
 __all__ = ["RecordedDesign", "record_design"]
 
-_ON_PATH = 1e-12
+_ON_PATH = 1e-12  # relative: rounding of the sketch and of the table
 _PART = 0.03  # of a number: by how much motions are compared
 
 

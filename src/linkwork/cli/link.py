@@ -49,7 +49,7 @@ def link(
       linkwork link rapier.toml --app https://example.org/lw/ --embed
       linkwork link "#lw1=..." --text > rapier.toml
 
-    The mechanism stands after the #, which browsers do not send to servers.
+    The mechanism follows the #; browsers do not send that part to servers.
     Every command reads a link, in quotes, where it wants a FILE.
     """
     _check(file, app, qr, embed)

@@ -170,7 +170,7 @@ def fields(
 def progress(label: str) -> Iterator[Callable[[float], None]]:
     """A progress bar for tasks over one second, on the error stream of a terminal only.
 
-    The label stands alone until a task reports its first fraction.
+    Only the label is shown until a task reports its first fraction.
 
     Yields
     ------

@@ -91,7 +91,7 @@ def _check_folder(out: Path) -> None:
 
 
 def _write_folder(out: Path, files: Mapping[str, bytes]) -> None:
-    """Write all files beside the folder first: a full disk leaves everything as it was."""
+    """Write all files to a temporary folder first: if the disk is full, the old files stay."""
     part = out.absolute().with_name(f".{out.absolute().name}.{os.getpid()}.part")
     try:
         for name, content in files.items():

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Self
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.frozen import FrozenDict
@@ -82,7 +81,7 @@ class Draft(JoinedBodies):
         """Lengths that are not given; of a draft, those between neighbouring points of links."""
         if not self.problems:
             return self.shapes.measured
-        draft = self.drawable()
+        draft = self.drawable
         given = {frozenset(key.split()) for key in self.lengths}
         return tuple(
             Measured(link=link, points=(a, b), length=abs(draft.sketched(b) - draft.sketched(a)))
@@ -91,7 +90,8 @@ class Draft(JoinedBodies):
             if link != GROUND and frozenset((a, b)) not in given
         )
 
-    def drawable(self) -> Self:
+    @cached_property
+    def drawable(self) -> Draft:
         """The points with coordinates, and the links and parts that exist between them, shaped as
         sketched.
         """
@@ -115,7 +115,7 @@ class Draft(JoinedBodies):
         keys = [key for key, _ in found.keyed_parts()]
         keys += map(found.input_key, range(len(found.inputs)))
         if any(map(found._lacks, keys)):
-            return found.drawable()
+            return found.drawable
         object.__setattr__(found, "shapes", Shapes(local=dict(found._sketched_shapes())))
         return found
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
@@ -37,6 +38,16 @@ class VariedNumber:
     def of(self, description: Description) -> float:
         """Its value in a description, in file units."""
         return description.numbers(self.written(description))
+
+    def unit(self, description: Description, kinds: Mapping[str, str] = FrozenDict()) -> str:
+        """Its unit in the file; ``kinds``: angle, length or number for the variables of equations.
+
+        That of a named dimension is not known.
+        """
+        kind = "angle" if self.table == "angles" else kinds.get(self.key, "")
+        if kind == "length" or self.table in ("lengths", "points", "sliders"):
+            return description.length
+        return description.angle.value if kind == "angle" else ""
 
     def written(self, description: Description) -> Number:
         table: Any = getattr(description, self.table)

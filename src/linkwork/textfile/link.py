@@ -97,7 +97,7 @@ def text_of_link(link: str) -> str:
     Parameters
     ----------
     link : str
-        What stands before the ``#`` is not read; white space around the link is ignored.
+        The part before the ``#`` is not read; white space around the link is ignored.
 
     Raises
     ------

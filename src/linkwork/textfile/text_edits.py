@@ -91,7 +91,7 @@ class TextEdits:
         holder.add(path[-1], entry)
 
     def append(self, table: str, fields: Mapping[str, Any]) -> None:
-        """Add an entry to a ``[[table]]``."""
+        """Add an entry to a ``[[table]]``; a single ``[table]`` becomes its first entry."""
         import tomlkit
 
         new = tomlkit.table()
@@ -105,7 +105,12 @@ class TextEdits:
                     new.trivia.indent = "\n"
                 rows.append(new)
                 return
-            raise InputError(f"[{table}] is a single table: write it as [[{table}]] to add more")
+            if not isinstance(rows, tomlkit.items.Table):
+                raise InputError(
+                    f"{table} is a table in one line: write it as [[{table}]] to add more"
+                )
+            self._document[table] = _listed(rows, new)
+            return
         rows = tomlkit.aot()
         rows.append(new)
         _end_with_blank_line(self._document)
@@ -188,3 +193,24 @@ def _end_with_blank_line(document: Any) -> None:
         document.add(tomlkit.nl())
         if not text.endswith("\n"):
             document.add(tomlkit.nl())
+
+
+def _listed(single: Any, added: Any) -> Any:
+    """A single table and another as a list of tables; comments stay."""
+    import tomlkit
+
+    first = tomlkit.table()
+    first.trivia.comment_ws, first.trivia.comment = (
+        single.trivia.comment_ws,
+        single.trivia.comment,
+    )
+    body = list(single.value.body)
+    while body and isinstance(body[-1][1], tomlkit.items.Whitespace):
+        added.add(body.pop()[1])
+    for key, entry in body:
+        first.value.append(key, entry)
+    added.trivia.indent = "\n"
+    rows = tomlkit.aot()
+    rows.append(first)
+    rows.append(added)
+    return rows

@@ -128,7 +128,7 @@ def test_a_circuit_between_dead_points_tells_them(open_bench: Workbench) -> None
 
 def test_a_search_for_circuits_ends_with_a_change(open_bench: Workbench) -> None:
     handled(open_bench, ask.SetNumber(name="a", value=76))  # dead points are looked between
-    open_bench.hurried = lambda: True
+    open_bench.cycle.hurried = lambda: True
     told = one(open_bench, ask.ListCircuits())
     assert told == tell.Refused(
         message="the search for circuits was ended by a change: list them again"
@@ -206,7 +206,7 @@ def test_an_export_during_a_drag_ends_it(open_bench: Workbench) -> None:
 def test_long_answers_tell_their_progress(open_bench: Workbench) -> None:
     handled(open_bench, ask.SetNumber(name="a", value=76))
     fractions: list[float] = []
-    open_bench.working = fractions.append
+    open_bench.cycle.working = fractions.append
     one(open_bench, ask.ListCircuits())
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0

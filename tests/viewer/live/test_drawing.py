@@ -102,7 +102,9 @@ def open_sheet(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Sheet]]:
     assert said == []
 
 
-@pytest.mark.parametrize("unit", ["mm", "in", "m"])
+@pytest.mark.parametrize(
+    "unit", ["in", *(pytest.param(u, marks=pytest.mark.extended) for u in ("mm", "m"))]
+)
 def test_a_crank_rocker_with_a_path_takes_eight_actions(
     unit: str, open_sheet: Callable[..., Sheet]
 ) -> None:
@@ -161,7 +163,7 @@ def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
     assert sheet.mechanism.sweep().found.any()
 
 
-@pytest.mark.parametrize("scale", [1e-3, 1e3])
+@pytest.mark.parametrize("scale", [1e-3, pytest.param(1e3, marks=pytest.mark.extended)])
 def test_a_mechanism_is_drawn_at_any_scale(scale: float, open_sheet: Callable[..., Sheet]) -> None:
     sheet = open_sheet()
     sheet.page.mouse.move(*sheet._on_screen((0, 0)))

@@ -280,6 +280,20 @@ def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Ser
     assert lw.loads(served.workbench.text).description == lw.loads(FOUR_BAR).description
 
 
+def test_what_no_longer_moves_can_be_edited_at_once(open_live: Open, served: Served) -> None:
+    page = open_live()
+    page.get_by_role("tab", name="Build").click()
+    page.locator(".lw-group summary", has_text="Remove").click()
+    page.get_by_role("button", name="Remove link coupler").click()
+    page.locator(".lw-tools [aria-pressed=true]", has_text="Select").wait_for()
+    assert page.get_by_role("button", name="Move", exact=True).is_disabled()
+    page.get_by_role("button", name="Undo").click()
+    page.locator(".lw-readiness").wait_for(state="hidden")
+    page.get_by_role("button", name="Move", exact=True).click()
+    page.locator(".lw-transport").wait_for()
+    assert served.workbench.text == FOUR_BAR
+
+
 def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> None:
     served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page = open_live()

@@ -57,7 +57,7 @@ def requests(kinds: list[type]) -> st.SearchStrategy[Any]:
 
 
 @settings(
-    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(st.lists(requests(QUICK), min_size=1, max_size=8))
 def test_any_requests_are_answered_and_the_file_is_left_alone(

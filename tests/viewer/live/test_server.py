@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
@@ -375,11 +375,12 @@ def test_a_message_beyond_the_limit_ends_the_connection_and_nothing_else(served:
         told(page, "motion_found")
         ask(page, "set_number", name="A B", value=125)
         told(page, "motion_found")
-        page.send(" " * (LARGEST_MESSAGE + 1))
+        with suppress(ConnectionClosed):  # the server may close while this is being sent
+            page.send(" " * (LARGEST_MESSAGE + 1))
         with pytest.raises(ConnectionClosed) as caught:
             told(page, "nothing more")
-    assert caught.value.rcvd is not None
-    assert caught.value.rcvd.code == 1009
+    # the end of the socket may overtake the frame that tells why
+    assert caught.value.rcvd is None or caught.value.rcvd.code == 1009
     with reconnected(served) as again:
         ask(again, "undo")
         assert '"A B" = 120' in told(again, "file_state")["text"]

@@ -180,9 +180,9 @@ def test_a_drag_that_is_refused_stays_where_it_was_good(bench: Workbench) -> Non
 
 def test_a_cycle_that_was_given_up_is_made_good(bench: Workbench) -> None:
     bench.opened()
-    bench.hurried = lambda: True
+    bench.cycle.hurried = lambda: True
     assert kinds(bench.handle(ask.SetNumber(name="A B", value=121))) == ["FileState"]
-    bench.hurried = lambda: False
+    bench.cycle.hurried = lambda: False
     # the newer change, for which it was given up, turns out to be none
     assert kinds(bench.handle(ask.SetNumber(name="A B", value=0))) == [
         "ProblemsFound",
@@ -765,6 +765,23 @@ def test_a_mechanism_is_drawn_step_by_step(tmp_path: Path) -> None:
     for _ in range(9):
         assert only(bench.handle(ask.Undo()), tell.FileState).lacks
     assert only(bench.handle(ask.Undo()), tell.Refused)
+
+
+def test_a_five_bar_is_driven_at_both_cranks(tmp_path: Path) -> None:
+    bench = Workbench(MechanismFile(tmp_path / "new.toml", blank_sheet("new")), lw.loads)
+    places = {"A": (0, 0), "B": (30, 60), "C": (75, 100), "D": (120, 60), "F": (150, 0)}
+    for name, (x, y) in places.items():
+        bench.handle(ask.AddPoint(name=name, x=x, y=y))
+    for k, points in enumerate(("AB", "BC", "CD", "DF")):
+        edit = ask.AddLink(name=f"link{k + 2}", points=tuple(points))
+        state = only(bench.handle(edit), tell.FileState)
+    for wanted in ("Fix A and F", "Drive link2", "Drive link5"):
+        remedies = {r.label: r for lack in state.lacks for r in lack.remedies}
+        events = bench.handle(ask.Together(edits=remedies[wanted].edits))
+        state = only(events, tell.FileState)
+    assert state.lacks == ()
+    assert [one.name for one in state.inputs] == ["link2", "link5"]
+    assert only(events, tell.MotionFound).certified > 0
 
 
 def test_a_file_that_does_not_exist_is_refused_at_once(tmp_path: Path) -> None:

@@ -97,7 +97,8 @@ export class Editor {
     const drawn = file.form === "points-and-links" && file.readable;
     const edits = TOOLS.map((tool) => tool.name).filter((name) => name !== "move");
     const ready = file.lacks.length === 0;
-    if (!drawn) this.tools.disable(edits, "the points of this file follow from its equations");
+    const reason = file.readable ? "the points of this file follow from its equations" : "the text cannot be read: correct it under Build";
+    if (!drawn) this.tools.disable(edits, reason);
     else this.tools.disable(ready ? [] : ["move"], "this draft does not move yet");
     const known = new Set([...Object.keys(file.points)]);
     this.selected = new Set([...this.selected].filter((name) => known.has(name)));

@@ -18,8 +18,6 @@ from linkwork.kernels.march.sweep_kernel import Steps
 from linkwork.kernels.program.languages import JAVASCRIPT
 from linkwork.marching.prediction import FAR, SAME
 from linkwork.marching.step_size import GROWTH, HALF, NEARLY_FULL
-from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.motion.model import Model
 from linkwork.motion.tracking import turns_freely
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import unpressed
@@ -82,7 +80,7 @@ def solving_page(
     sliders = tuple(
         SliderData(
             name=quantity.name,
-            unit=_unit(design.base, quantity),
+            unit=quantity.unit(design.base.description),
             value=float(quantity.of(design.base.description)),
             hidden=hidden[k],
         )
@@ -105,13 +103,6 @@ def _script(printed: PrintedSolver) -> str:
         "linkworkProgram=(abs,sqrt,atan2,sinCos,turn)=>{"
         f"{printed.source}return {{design,reach,given,agree,rates,drawn,{several}}}}}"
     )
-
-
-def _unit(model: Model, quantity: VariedNumber) -> str:
-    """The unit of a number; unknown for a named dimension."""
-    if quantity.table in ("lengths", "points", "sliders"):
-        return model.description.length
-    return model.description.angle.value if quantity.table == "angles" else ""
 
 
 def _data(

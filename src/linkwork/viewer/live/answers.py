@@ -32,7 +32,7 @@ class GivenUpError(Exception):
 class About:
     """What is asked about: a text with its mechanism, its motion if it has one, and its file.
 
-    ``progress`` is told the finished fraction and may raise :class:`GivenUpError`.
+    ``progress`` receives the finished fraction and may raise :class:`GivenUpError`.
     """
 
     subject: Subject

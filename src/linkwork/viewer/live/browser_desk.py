@@ -82,7 +82,7 @@ class BrowserDesk:
         self._send(refused)
 
     def _linked(self, fragment: str) -> tuple[str, str]:
-        """The name and the text of the file that the fragment of an address stands for."""
+        """The name and the text of the file that the fragment of an address contains or names."""
         code = fragment.removeprefix("#")
         if code.startswith(_EXAMPLE) and code != _EXAMPLE:
             name = unquote(code.removeprefix(_EXAMPLE))
@@ -108,12 +108,12 @@ class BrowserDesk:
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
         file = MechanismFile(path, saved)
-        workbench = Workbench(file, self._read, self._hurried, start=start)
+        workbench = Workbench(file, self._read, start=start)
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
         self._send(answer(workbench.opened))
-        workbench.working = self._signs
+        workbench.cycle.hurried, workbench.cycle.working = self._hurried, self._signs
 
     def work(self) -> bool:
         """Process the next request; returns whether there was one."""

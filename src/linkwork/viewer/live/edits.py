@@ -75,7 +75,7 @@ def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> 
     draft = before.description
     if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
         return
-    carriers = draft.drawable().carriers()
+    carriers = draft.drawable.carriers()
     if not set(key.split()) <= carriers.keys():
         return
     fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
@@ -160,12 +160,14 @@ def _known_point(linkage: Draft, name: str) -> str:
 
 @applied.register
 def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
-    count = max(1, len(before.description.inputs))
-    if not 0 <= edit.number < count:
-        raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
-    here: tuple[str | int, ...] = ("input", edit.number)
     if (edit.drive is None) != (edit.name is None):
         raise InputError("an input has a kind and a name: send drive and name, or neither")
+    count = len(before.description.inputs)
+    if edit.number == count and count and edit.drive is not None:
+        text.append("input", {edit.drive: edit.name})
+    elif not 0 <= edit.number < max(1, count):
+        raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
+    here: tuple[str | int, ...] = ("input", edit.number)
     if edit.drive is not None:
         if edit.drive not in _DRIVES:
             raise UnknownNameError(

@@ -73,7 +73,7 @@ def exported_file(
     dark : bool
         Pictures and films for dark pages.
     progress : callable, optional
-        Told the finished fraction of a film; may raise an error to cancel it.
+        Receives the finished fraction of a film; may raise an error to cancel it.
 
     Raises
     ------

@@ -19,9 +19,9 @@ _MOST_DRIVES = 4  # links offered as inputs
 
 def lacks_of(subject: Subject) -> tuple[Lack, ...]:
     """What keeps a text from being a mechanism, in the order in which it is best mended."""
-    if subject.solvable is not None:
+    if subject.draft is None:
         return ()
-    draft = subject.drawable
+    draft = subject.draft.drawable
     if not subject.readable:
         return tuple(_of_problem(problem, draft) for problem in subject.problems[:_MOST])
     if not any(map(len, draft.links.values())):

@@ -253,8 +253,9 @@ class SetText:
 
 @dataclass(frozen=True, kw_only=True)
 class SetSheet:
-    """Tell the width of the visible part of the plane [length], by which symbols are sized, and
-    whether the mechanism is ``edited`` in the drawing, which is then sent at its start.
+    """Set the width of the visible part of the plane [length], by which symbols are sized.
+
+    ``edited``: the mechanism is changed in the drawing, which is then sent at its start.
     """
 
     width: float

@@ -14,7 +14,7 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.varied_number import VariedNumber, varied_numbers
+from linkwork.mechanism.varied_number import varied_numbers
 from linkwork.results.configurations import Configurations
 from linkwork.results.iterates import Iterate, Iterates
 from linkwork.results.limit import Limit
@@ -208,7 +208,7 @@ def _changeable_numbers(
         yield tell.ChangeableNumber(
             name=quantity.name,
             value=description.numbers(written),
-            unit=_unit(description, quantity, kinds),
+            unit=quantity.unit(description, kinds),
             table=quantity.table,
             formula=written if isinstance(written, str) else "",
         )
@@ -220,16 +220,6 @@ def _changeable_numbers(
                 unit=description.length,
                 table="measured",
             )
-
-
-def _unit(description: Description, quantity: VariedNumber, kinds: Mapping[str, str]) -> str:
-    """The unit of a number; unknown for a named dimension."""
-    if quantity.table in ("lengths", "points", "sliders"):
-        return description.length
-    angle = quantity.table == "angles" or kinds.get(quantity.key) == "angle"
-    if angle:
-        return description.angle.value
-    return description.length if kinds.get(quantity.key) == "length" else ""
 
 
 def _unknowns_of(sheet: EquationSheet, description: Description) -> tuple[tell.Unknown, ...]:
@@ -272,7 +262,7 @@ def _sketched_points(description: Description) -> dict[str, tuple[float, float]]
     """The movable points of a sketch; none if they are given by equations."""
     if not isinstance(description, Draft):
         return {}
-    found = description.drawable() if description.problems else description
+    found = description.drawable if description.problems else description
     places = {point: found.sketched(point) for point in found.points}
     return {point: (float(z.real), float(z.imag)) for point, z in places.items()}
 

@@ -34,7 +34,7 @@ class Desk:
         self._changed = threading.Condition()
         self._closing = False
         self._signs = WorkSigns(tell)
-        workbench.hurried, workbench.working = self._hurried, self._signs
+        workbench.cycle.hurried, workbench.cycle.working = self._hurried, self._signs
         self._thread = threading.Thread(target=self._work, name="linkwork desk", daemon=True)
         self._thread.start()
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 from linkwork.foundation.errors import InputError, MechanismError, Problem
 from linkwork.mechanism.description import Description
@@ -53,11 +52,10 @@ class Subject:
         assert self.draft is not None
         return self.draft
 
-    @cached_property
-    def drawable(self) -> Draft:
-        """What can be drawn of points and links."""
-        assert isinstance(self.description, Draft)
-        return self.description.drawable()
+    def places(self) -> dict[str, tuple[float, float]]:
+        """The points at the assembled start; empty if it cannot be assembled."""
+        position = None if self.solvable is None else self.solvable.solve()
+        return dict(position.points) if position is not None and position.status.ok else {}
 
     def page(self, size: float) -> PageData | None:
         """The drawing at the start, or as sketched if it cannot be assembled; ``None`` without a
@@ -73,7 +71,7 @@ class Subject:
                 return still_page(*found, units=units, title=title, size=size)
         if not isinstance(self.description, Draft):
             return None
-        draft = self.drawable
+        draft = self.description.drawable
         places = {name: draft.sketched(name) for name in draft.points}
         return still_page(
             Skeleton.of_linkage(draft, {}),

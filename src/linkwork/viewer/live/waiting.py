@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.events import Event, Refused, Working
 from linkwork.viewer.live.requests import EDITS, Request
 from linkwork.viewer.live.workbench import Workbench
@@ -46,7 +47,8 @@ class Waiting:
         """The next request; outdated intermediate changes are skipped."""
         request, number = self._requests.popleft()
         while getattr(request, "live", False) and self._requests:
-            if not _replaces(self._requests[0][0], request):
+            newer = self._requests[0][0]
+            if request is None or newer is None or same_thing(newer) != same_thing(request):
                 break
             # a dragged point sends positions faster than they are solved: use only the
             # last
@@ -55,7 +57,7 @@ class Waiting:
 
 
 class WorkSigns:
-    """Tells the progress of an answer, a few times per second."""
+    """Reports the progress of an answer."""
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
@@ -67,7 +69,7 @@ class WorkSigns:
         self._number, self._told_at = number, time.monotonic()
 
     def __call__(self, fraction: float) -> None:
-        """Tell the fraction done, unless one has just been told."""
+        """Report the finished fraction, a few times per second at most."""
         now = time.monotonic()
         if now - self._told_at >= _PACE:
             self._told_at = now
@@ -89,11 +91,3 @@ def answer(work: Callable[[], list[Event]]) -> list[Event]:
         _log.exception("a request failed")
         mistake = f"{type(error).__name__}: {error}"
         return [Refused(message=f"this is an error in Linkwork, please report it: {mistake}")]
-
-
-def _replaces(newer: Request | None, older: Request | None) -> bool:
-    """Whether a newer change makes the older intermediate one obsolete."""
-    if type(newer) is not type(older):
-        return False
-    same = ("name", "point", "lengths_follow")
-    return all(getattr(newer, field, None) == getattr(older, field, None) for field in same)

@@ -2,35 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismError
-from linkwork.foundation.status import Status
-from linkwork.mechanism.part.part import LARGEST
-from linkwork.results.motion import Motion
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
-from linkwork.viewer.live.alternative_starts import closing_input, sketch_at
-from linkwork.viewer.live.answers import About, GivenUpError, check_quantities, reply
+from linkwork.viewer.live.alternative_starts import sketch_at
+from linkwork.viewer.live.answers import About, reply
+from linkwork.viewer.live.cycle import Cycle
 from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk, new_file
-from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.palette import PALETTE
-from linkwork.viewer.live.queries import Query, answered, nearest_closure
+from linkwork.viewer.live.queries import Query, answered
 from linkwork.viewer.live.refusals import Refusing, refusing
-from linkwork.viewer.live.solvable import Read, Solvable
-from linkwork.viewer.live.subject import read_subject
+from linkwork.viewer.live.solvable import Read
+from linkwork.viewer.live.subject import Subject, read_subject
 
 __all__ = ["Workbench"]
-
-_MOST_ROWS = 3601  # rows of a cycle solved interactively
-_FEWER_ROWS = 721
 
 Events = list[tell.Event]
 
@@ -47,37 +39,27 @@ class Workbench:
     file : MechanismFile
     read : callable
         Builds a solvable mechanism from a text; ``linkwork.loads``.
-    hurried : callable, optional
-        Whether a newer change is waiting, which cancels a cycle.
+    start : bool
+        Offer the start page.
 
     Attributes
     ----------
-    working : callable
-        Told the finished fraction of an answer that takes long.
+    cycle : Cycle
+        The subject and its motion.
     """
 
     def __init__(
         self,
         file: MechanismFile,
         read: Read,
-        hurried: Callable[[], bool] = lambda: False,
         *,
         start: bool = False,
     ) -> None:
-        self._file, self._read = file, read
-        self.hurried = hurried
-        self.working: Callable[[float], None] = lambda fraction: None
-        self._subject = read_subject(file.text, file.name, read, whatever=True)
-        self._sheet = ask.SetSheet(width=0.0)
+        self._file, self._read, self._begun = file, read, not start
+        self.cycle = Cycle(self._read_whatever(file.text))
         self._history = History(file.text)
-        self._motion: Motion | None = None
-        self._picture = MotionPicture()
-        self._solution: Events = []  # the cycle of the current mechanism, once solved
-        self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones
-        self._owed = False  # a cycle was cancelled, and no other has been sent since
         self._drag: Drag | None = None
         self._conflict: tell.FileChanged | None = None
-        self._begun = not start
 
     @property
     def text(self) -> str:
@@ -106,7 +88,7 @@ class Workbench:
             events: Events = [found, *self._after_refusal(request)]
         except InputError as error:
             events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
-        return [*events, *(self._solved() if self._owed else [])]
+        return [*events, *(self.cycle.events() if self.cycle.owed else [])]
 
     def poll(self) -> Events:
         """Report changes of the file by other programs; load them unless changes are unsaved."""
@@ -147,7 +129,7 @@ class Workbench:
         if isinstance(request, ask.EDITS):
             return self._edited(request)  # type: ignore[arg-type]
         if isinstance(request, Query):
-            return answered(request, self._subject.mechanism)
+            return answered(request, self.cycle.subject.mechanism)
         if isinstance(request, ask.Question):
             return reply(request, self._about(proved=isinstance(request, ask.Export)))
         raise TypeError(f"{type(request).__name__} is not a request")
@@ -187,7 +169,7 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.AssembleAt) -> Events:
-        return self._handle(ask.Together(edits=sketch_at(self._subject.mechanism, request.at)))
+        return self._handle(ask.Together(edits=sketch_at(self.cycle.subject.mechanism, request.at)))
 
     @_handle.register
     def _(self, request: ask.SetText) -> Events:
@@ -226,43 +208,30 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.SetSheet) -> Events:
-        if not 0 <= request.width <= LARGEST:
-            raise InputError(f"the width of the view must be from 0 to {LARGEST:g}")
-        self._sheet = request
-        return self._sketch()
+        return self.cycle.on_sheet(request)
 
     @_handle.register
     def _(self, request: ask.ShowQuantities) -> Events:
-        if self._motion is not None:
-            check_quantities(self._motion, request.names)
-        self._shown = request.names
-        if self._motion is None or not self._solution:
-            return self._solved()
-        self._solution = [self._pictured(event, self._motion) for event in self._solution]
-        return self._solution
+        return self.cycle.with_quantities(request.names)
 
     # The text and its results
 
     def _open(self, file: MechanismFile) -> None:
         """Another file, with a history of its own."""
-        self._subject = read_subject(file.text, file.name, self._read, whatever=True)
         self._file, self._history, self._begun = file, History(file.text), True
-        self._motion, self._solution, self._drag, self._conflict = None, [], None, None
-        self._picture, self._sheet = MotionPicture(), ask.SetSheet(width=0.0)
+        self._drag, self._conflict = None, None
+        self.cycle.begin(self._read_whatever(file.text))
 
     def _everything(self) -> Events:
         """The file and its motion."""
         self._end_drag()
         conflict = [] if self._conflict is None else [self._conflict]
-        return [self._state(), *self._solved(), *conflict]
+        return [self._state(), *self.cycle.events(), *conflict]
 
     def _before(self) -> Before:
         """The current mechanism, with its points at the assembled start."""
-        subject, places = self._subject, {}
-        if subject.solvable is not None:
-            position = subject.solvable.solve()
-            places = dict(position.points) if position.status.ok else {}
-        return Before(description=subject.description, places=places)
+        subject = self.cycle.subject
+        return Before(description=subject.description, places=subject.places())
 
     def _accepted(
         self, text: str, what: str, *, live: bool = False, refused: Refusing = lambda problem: False
@@ -273,28 +242,26 @@ class Workbench:
         """
         subject = read_subject(text, self._file.name, self._read)
         wrong = [problem for problem in subject.problems if refused(problem)]
-        before = self._subject
+        before = self.cycle.subject
         if wrong and (before.solvable is not None or not set(wrong) <= set(before.problems)):
             raise MechanismError(wrong, self._file.name)
-        self._subject, self._solution = subject, []
+        self.cycle.take(subject)
         if live:
-            return self._solved(live=True)
+            return self.cycle.events(live=True)
         self._drag = None
         self._history.add(text, what)
-        return [self._state(), *self._solved()]
+        return [self._state(), *self.cycle.events()]
 
     def _end_drag(self) -> None:
         """Complete a drag that has not ended."""
         drag, self._drag = self._drag, None
         if drag is not None and drag.latest is not None:
             self._history.add(drag.latest, drag.what)
-            self._solution = []
+            self.cycle.take(self.cycle.subject)
 
     def _went(self) -> Events:
-        text = self._history.text
-        self._subject = read_subject(text, self._file.name, self._read, whatever=True)
-        self._solution = []
-        return [self._state(), *self._solved()]
+        self.cycle.take(self._read_whatever(self._history.text))
+        return [self._state(), *self.cycle.events()]
 
     def _reloaded(self, refused: Refusing = lambda problem: False) -> Events:
         text = self._file.read()
@@ -319,89 +286,23 @@ class Workbench:
             message=message, reloaded=reloaded, unsaved=self.unsaved, missing=missing
         )
 
-    def _solved(self, *, live: bool = False) -> Events:
-        """Solve the cycle; if it cannot be closed, the gap; without input, one position."""
-        if self._solution:
-            return self._solution
-        mechanism = self._subject.solvable
-        if mechanism is None:
-            self._motion, self._owed = None, False
-            return self._sketch()
-        if not mechanism.description.inputs:
-            return answered(ask.SolveAt(at={}), mechanism)
-        try:
-            motion, message = self._swept(mechanism, live)
-        except GivenUpError:
-            self._owed = True
-            return []
-        self._motion, self._owed = motion, False
-        found = telling.motion_found(motion, live=live, message=message)
-        events: Events = [*self._sketch(), self._pictured(found, motion)]
-        if not motion.found.any() and motion.limits:  # in addition to the rows of the table
-            events += answered(ask.SolveAt(at={}), mechanism)
-        elif all(status is Status.NO_START for status in motion.status):
-            failure = motion.failure
-            remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
-            elsewhere = {} if live else closing_input(mechanism)
-            events.append(nearest_closure(mechanism, None, motion.message, remedies, elsewhere))
-        self._solution = [] if live else events
-        return events
-
-    def _sketch(self) -> Events:
-        """The points as sketched, if they are edited in the drawing or there is no motion."""
-        if self._subject.solvable is not None and not self._sheet.edited:
-            return []
-        page = self._subject.page(self._sheet.width / 2)
-        return [] if page is None else [tell.SketchShown(page=page)]
-
-    def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
-        """A found motion with the data of its page."""
-        if not isinstance(event, tell.MotionFound):
-            return event
-        mechanism, shown = self._subject.mechanism, self._shown
-        equations = () if event.live else mechanism.equations().mathml()
-        page = self._picture.page(
-            motion, equations, mechanism.moving_loops, asked=shown, brief=event.live
-        )
-        return replace(event, page=page)
+    def _read_whatever(self, text: str) -> Subject:
+        return read_subject(text, self._file.name, self._read, whatever=True)
 
     def _about(self, *, proved: bool) -> About:
         """What questions are about; with its ``proved`` motion, or the latest."""
-        mechanism = self._subject.solvable
-        driven = mechanism is not None and bool(mechanism.description.inputs)
-        if proved and driven and not self._solution:
-            self._solved()
-            if not self._solution:
-                raise InputError("the motion was ended by a change: ask again")
         return About(
-            subject=self._subject,
-            motion=self._motion if driven else None,
+            subject=self.cycle.subject,
+            motion=self.cycle.driven_motion(proved=proved),
             text=self.text,
             file=self._file.name,
-            progress=self._give_up,
+            progress=self.cycle.go_on,
         )
-
-    def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
-        if live:
-            return mechanism.approximate_sweep(self._motion), ""
-        description = mechanism.description
-        rows = [description.rows(which) for which in description.inputs]
-        count = max(map(len, rows))
-        if count <= _MOST_ROWS or len(rows) > 1:
-            return mechanism.sweep(progress=self._give_up), ""
-        step = (rows[0][-1] - rows[0][0]) / (_FEWER_ROWS - 1)
-        message = f"shown at {_FEWER_ROWS} of the {count} rows of the file"
-        return mechanism.sweep(step=float(step), progress=self._give_up), message
-
-    def _give_up(self, fraction: float) -> None:
-        if self.hurried():
-            raise GivenUpError
-        self.working(fraction)
 
     def _state(self) -> tell.FileState:
         return telling.file_state(
             self._file.name,
-            self._subject,
+            self.cycle.subject,
             self._history,
             text=self.text,
             unsaved=self.unsaved,
