@@ -46,8 +46,8 @@ export interface AddPoint {
   kind: "add_point";
   id?: number;
   name: string;
-  x: number;
-  y: number;
+  x: number | string;
+  y: number | string;
   links?: readonly (string)[];
 }
 
@@ -121,6 +121,14 @@ export interface ChooseConfiguration {
   kind: "choose_configuration";
   id?: number;
   name: string;
+}
+
+export interface ChangeUnits {
+  kind: "change_units";
+  id?: number;
+  convert: boolean;
+  length?: string;
+  angle?: string;
 }
 
 export interface Together {
@@ -561,7 +569,8 @@ export type LiveEdit =
   | AddPart
   | RemovePart
   | TracePoint
-  | ChooseConfiguration;
+  | ChooseConfiguration
+  | ChangeUnits;
 
 export type LiveRequest =
   | SetNumber
@@ -580,6 +589,7 @@ export type LiveRequest =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | ChangeUnits
   | Together
   | AssembleAt
   | SetText

@@ -68,7 +68,7 @@ _HEAD = (
     Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
-    "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"
+    "dimensions", Named(Number("named")), "Named numbers and formulas, usable in place of numbers"
 )
 _OUTPUTS = Key(
     "outputs",
@@ -82,16 +82,16 @@ _TRACE = Key(
 )
 _GUESS = Key(
     "guess",
-    Named(Number()),
+    Named(Number("named")),
     "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
-    Key("from", Number(), "First input value"),
-    Key("to", Number(), "Last input value"),
+    Key("from", Number("driven"), "First input value"),
+    Key("to", Number("driven"), "Last input value"),
     Key(
         "step",
-        Number(),
+        Number("driven"),
         "Step between input values; its sign points from the first value to the last",
     ),
     Key(
@@ -122,7 +122,7 @@ LINKAGE = Form(
         _DIMENSIONS,
         Key(
             "points",
-            Named(ListOf(Number(), "coordinate", 2, 2)),
+            Named(ListOf(Number("length"), "coordinate", 2, 2)),
             "One assembled position: A = [35, 20]; exact on ground, elsewhere a sketch is enough",
             required=True,
         ),
@@ -132,10 +132,10 @@ LINKAGE = Form(
             'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
-        Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
+        Key("lengths", Named(Number("length"), 2), 'Exact distances in one link: "O2 A" = 40'),
         Key(
             "angles",
-            Named(Number(), 3),
+            Named(Number("angle"), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),

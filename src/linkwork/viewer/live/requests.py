@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.whole_edits import ChangeUnits
+
 __all__ = [
     "EDITS",
     "REQUESTS",
@@ -17,6 +19,7 @@ __all__ = [
     "AddPart",
     "AddPoint",
     "AssembleAt",
+    "ChangeUnits",
     "ChooseConfiguration",
     "Edit",
     "Export",
@@ -56,7 +59,8 @@ class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A number replaces a formula only with ``any_formula``.
+    length becomes a given one. A value may have a unit: "3 in". A number replaces a formula only
+    with ``any_formula``.
     """
 
     name: str
@@ -112,11 +116,11 @@ class SetInput:
 
 @dataclass(frozen=True, kw_only=True)
 class AddPoint:
-    """Add a point to the sketch and to links."""
+    """Add a point to the sketch and to links; coordinates may have a unit: "3 in"."""
 
     name: str
-    x: float
-    y: float
+    x: float | str
+    y: float | str
     links: tuple[str, ...] = ()
 
 
@@ -227,6 +231,7 @@ Edit = (
     | RemovePart
     | TracePoint
     | ChooseConfiguration
+    | ChangeUnits
 )
 
 
