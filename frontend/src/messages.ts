@@ -131,6 +131,28 @@ export interface ChangeUnits {
   angle?: string;
 }
 
+export interface Rename {
+  kind: "rename";
+  id?: number;
+  of: string;
+  name: string;
+  new: string;
+}
+
+export interface Duplicate {
+  kind: "duplicate";
+  id?: number;
+  names: Record<string, string>;
+  places: Record<string, readonly [number, number]>;
+  mirrored?: boolean;
+}
+
+export interface Mirror {
+  kind: "mirror";
+  id?: number;
+  places: Record<string, readonly [number, number]>;
+}
+
 export interface Together {
   kind: "together";
   id?: number;
@@ -570,7 +592,10 @@ export type LiveEdit =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
-  | ChangeUnits;
+  | ChangeUnits
+  | Rename
+  | Duplicate
+  | Mirror;
 
 export type LiveRequest =
   | SetNumber
@@ -590,6 +615,9 @@ export type LiveRequest =
   | TracePoint
   | ChooseConfiguration
   | ChangeUnits
+  | Rename
+  | Duplicate
+  | Mirror
   | Together
   | AssembleAt
   | SetText

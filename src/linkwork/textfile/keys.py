@@ -45,7 +45,7 @@ class Form:
         return self.title.replace("-", "_").replace(" ", "_")
 
 
-_NAME_LIST = ListOf(Text(), "name")
+_POINT_LIST = ListOf(Text(), "point")
 
 _HEAD = (
     Key(
@@ -77,7 +77,7 @@ _OUTPUTS = Key(
 )
 _TRACE = Key(
     "trace",
-    Table((Key("points", _NAME_LIST, "Points whose paths are drawn", required=True),)),
+    Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
 )
 _GUESS = Key(
@@ -101,11 +101,15 @@ _RANGE = (
     ),
 )
 _DRIVES = (
-    Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
-    Key("joint", Text(), "The pin whose relative angle is driven"),
-    Key("slider", Text(), "The slider or slot whose displacement is driven"),
-    Key("cylinder", Text(), "The cylinder whose length is driven"),
+    Key("link", Text(of="link"), "The link whose angle is driven"),
+    Key(
+        "relative_to",
+        Text(of="link"),
+        "The link relative to which the angle is measured; default ground",
+    ),
+    Key("joint", Text(of="point"), "The pin whose relative angle is driven"),
+    Key("slider", Text(of="slider"), "The slider or slot whose displacement is driven"),
+    Key("cylinder", Text(of="slider"), "The cylinder whose length is driven"),
     *_RANGE,
 )
 _VARIABLE = (

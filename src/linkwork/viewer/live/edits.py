@@ -9,6 +9,8 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
+from linkwork.textfile.copying import copy_selection, mirror_numbers
+from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
@@ -215,6 +217,35 @@ def _(edit: ask.ChangeUnits, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.Rename, text: TextEdits, before: Before) -> Followed:
+    rename(text, edit.of, edit.name, edit.new.strip())
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Duplicate, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    taken = names_in_file(text)
+    for name, copy in edit.names.items():
+        if canonical(name) != canonical(copy) and canonical(copy) in taken:
+            raise InputError(f'"{copy}" is already in the file: choose another name')
+    for point, place in edit.places.items():
+        _known_point(linkage, point)
+        _add(text, "points", edit.names[point], [rounded(c) for c in place])
+    copy_selection(text, edit.names, mirrored=edit.mirrored)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    places = {_known_point(linkage, name): complex(*at) for name, at in edit.places.items()}
+    mirror_numbers(text, set(map(canonical, places)))
+    followed, stayed = move_points(text, before, linkage, places)
+    return Followed(followed=followed, stayed=stayed)
+
+
+@applied.register
 def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followed:
     if edit.name:
         text.put(("configuration",), edit.name)
@@ -274,6 +305,13 @@ def edit_title(edit: ask.Edit) -> str:
         case ask.ChangeUnits():
             units = " and ".join(filter(None, (edit.length, edit.angle)))
             return f"{'convert to' if edit.convert else 'relabel as'} {units}"
+        case ask.Rename():
+            return f"rename {edit.name} as {edit.new.strip()}"
+        case ask.Duplicate():
+            how = "mirror a copy of" if edit.mirrored else "duplicate"
+            return f"{how} {', '.join(edit.names)}"
+        case ask.Mirror():
+            return f"mirror {', '.join(edit.places)}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwork.viewer.live.whole_edits import ChangeUnits
+from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
     "EDITS",
@@ -21,12 +21,14 @@ __all__ = [
     "AssembleAt",
     "ChangeUnits",
     "ChooseConfiguration",
+    "Duplicate",
     "Edit",
     "Export",
     "ListCircuits",
     "ListConfigurations",
     "ListQuantities",
     "MakeLink",
+    "Mirror",
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
@@ -38,6 +40,7 @@ __all__ = [
     "RemoveLink",
     "RemovePart",
     "RemovePoint",
+    "Rename",
     "Request",
     "ReverseLink",
     "Save",
@@ -232,6 +235,9 @@ Edit = (
     | TracePoint
     | ChooseConfiguration
     | ChangeUnits
+    | Rename
+    | Duplicate
+    | Mirror
 )
 
 
