@@ -84,8 +84,8 @@ export class Selected {
   }
 
   private selection(file: FileState): Selection | null {
-    const { chosen, selected, points } = this.held();
-    const placed = new Set([...selected].filter((name) => points[name]));
+    const { chosen, selected } = this.held();
+    const placed = new Set([...selected].filter((name) => name in file.points));
     if (!placed.size || (chosen && !["point", "link"].includes(chosen.kind)) || chosen?.name === "ground") return null;
     return selectionOf(file, placed, chosen?.kind === "link" ? chosen.name : undefined);
   }
