@@ -123,6 +123,13 @@ export interface ChooseConfiguration {
   name: string;
 }
 
+export interface AddOutput {
+  kind: "add_output";
+  id?: number;
+  name: string;
+  formula: string;
+}
+
 export interface ChangeUnits {
   kind: "change_units";
   id?: number;
@@ -289,6 +296,7 @@ export interface FileState {
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
+  outputs: readonly (string)[];
   equations: readonly (string)[];
   lacks: readonly (Lack)[];
   readable: boolean;
@@ -592,6 +600,7 @@ export type LiveEdit =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate
@@ -614,6 +623,7 @@ export type LiveRequest =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate

@@ -49,6 +49,8 @@ export class Editor {
   private gesture: Gesture | null = null;
   /** What is selected with the next state of the file. */
   private expected: Expected | null = null;
+  /** Called after the drawing has been drawn again. */
+  redrawn: () => void = () => {};
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -170,6 +172,7 @@ export class Editor {
     const points = this.points;
     this.overlay.select([...this.selected].flatMap((name) => (points[name] ? [points[name]!] : [])), drawing.pixel);
     this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+    this.redrawn();
   }
 
   private get points(): Places {

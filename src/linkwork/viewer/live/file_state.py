@@ -155,6 +155,7 @@ class FileState:
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]
+    outputs: tuple[str, ...]
     equations: tuple[str, ...]
     lacks: tuple[Lack, ...]
     readable: bool

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ChangeUnits", "Duplicate", "Mirror", "Rename"]
+__all__ = ["AddOutput", "ChangeUnits", "Duplicate", "Mirror", "Rename"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,3 +47,11 @@ class Mirror:
     """Move points to mirrored places [length]; the dimensions between them stay."""
 
     places: dict[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddOutput:
+    """Add a named formula of results to the file."""
+
+    name: str
+    formula: str
