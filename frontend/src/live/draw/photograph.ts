@@ -142,6 +142,7 @@ export class Photograph {
     this.ends = null;
     this.length.hidden = true;
     this.note.textContent = note;
+    this.panel.dataset.dragging = what;
     this.page?.places.canvas.classList.toggle("lw-measuring", what !== "");
     this.draw();
   }

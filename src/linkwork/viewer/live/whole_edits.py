@@ -33,8 +33,8 @@ class Rename:
 class Duplicate:
     """Copy points and links, with what is between them.
 
-    ``names``: of the copies, by those of points and links; a point that is its own copy is shared.
-    ``places``: of the new points [length]; ``mirrored``: the copy is a mirror image.
+    By the names of points and links: ``names`` of the copies, the same for a point that is shared,
+    and ``places`` of new points [length]. ``mirrored``: the copy is a mirror image.
     """
 
     names: dict[str, str]
