@@ -1,0 +1,169 @@
+"""The motion of the mechanism under edit: solved once, cancelled when a newer change waits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.status import Status
+from linkwork.mechanism.part.part import LARGEST
+from linkwork.results.motion import Motion
+from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
+from linkwork.viewer.live.alternative_starts import closing_input
+from linkwork.viewer.live.answers import GivenUpError, check_quantities
+from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.queries import answered, nearest_closure
+from linkwork.viewer.live.solvable import Solvable
+from linkwork.viewer.live.subject import Subject
+
+__all__ = ["Cycle"]
+
+_MOST_ROWS = 3601  # rows of a cycle solved interactively
+_FEWER_ROWS = 721
+
+Events = list[tell.Event]
+
+
+class Cycle:
+    """A mechanism or a draft, with the events that show its motion or its sketch.
+
+    Parameters
+    ----------
+    subject : Subject
+
+    Attributes
+    ----------
+    subject : Subject
+    motion : Motion or None
+        The latest motion, approximate during a drag.
+    owed : bool
+        Whether a cycle was cancelled and no other has been sent since.
+    hurried : callable
+        Whether a newer change is waiting, which cancels a cycle.
+    working : callable
+        Told the finished fraction of an answer that takes long.
+    """
+
+    def __init__(self, subject: Subject) -> None:
+        self.hurried: Callable[[], bool] = lambda: False
+        self.working: Callable[[float], None] = lambda fraction: None
+        self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones
+        self.begin(subject)
+
+    def begin(self, subject: Subject) -> None:
+        """Start with a subject of another file."""
+        self.take(subject)
+        self.motion: Motion | None = None
+        self.owed = False
+        self._picture, self._sheet = MotionPicture(), ask.SetSheet(width=0.0)
+
+    def take(self, subject: Subject) -> None:
+        """Continue with a changed subject."""
+        self.subject = subject
+        self._solution: Events = []  # of the current mechanism, once solved
+
+    def events(self, *, live: bool = False) -> Events:
+        """Solve the cycle; if it cannot be closed, the gap; without input, one position.
+
+        ``live``: approximately, for a picture that is replaced soon.
+        """
+        if self._solution:
+            return self._solution
+        mechanism = self.subject.solvable
+        if mechanism is None:
+            self.motion, self.owed = None, False
+            return self._sketch()
+        if not mechanism.description.inputs:
+            return answered(ask.SolveAt(at={}), mechanism)
+        try:
+            motion, message = self._swept(mechanism, live)
+        except GivenUpError:
+            self.owed = True
+            return []
+        self.motion, self.owed = motion, False
+        found = telling.motion_found(motion, live=live, message=message)
+        events: Events = [*self._sketch(), self._pictured(found, motion)]
+        if not motion.found.any() and motion.limits:  # in addition to the rows of the table
+            events += answered(ask.SolveAt(at={}), mechanism)
+        elif all(status is Status.NO_START for status in motion.status):
+            failure = motion.failure
+            remedies = {} if failure is None else {r.length: r.needed for r in failure.remedies}
+            elsewhere = {} if live else closing_input(mechanism)
+            events.append(nearest_closure(mechanism, None, motion.message, remedies, elsewhere))
+        self._solution = [] if live else events
+        return events
+
+    def on_sheet(self, sheet: ask.SetSheet) -> Events:
+        """The sketch in a view of another width."""
+        if not 0 <= sheet.width <= LARGEST:
+            raise InputError(f"the width of the view must be from 0 to {LARGEST:g}")
+        self._sheet = sheet
+        return self._sketch()
+
+    def with_quantities(self, names: tuple[str, ...]) -> Events:
+        """The motion with quantities besides the usual ones."""
+        if self.motion is not None:
+            check_quantities(self.motion, names)
+        self._shown = names
+        if self.motion is None or not self._solution:
+            return self.events()
+        self._solution = [self._pictured(event, self.motion) for event in self._solution]
+        return self._solution
+
+    def driven_motion(self, *, proved: bool) -> Motion | None:
+        """The latest motion of a mechanism with inputs, or, if asked, its ``proved`` motion.
+
+        Raises
+        ------
+        InputError
+            If a newer change ended the proved motion.
+        """
+        mechanism = self.subject.solvable
+        if mechanism is None or not mechanism.description.inputs:
+            return None
+        if proved and not self._solution and not self.events():
+            raise InputError("the motion was ended by a change: ask again")
+        return self.motion
+
+    def go_on(self, fraction: float) -> None:
+        """Report progress, or give up for a newer change.
+
+        Raises
+        ------
+        GivenUpError
+            If a newer change is waiting.
+        """
+        if self.hurried():
+            raise GivenUpError
+        self.working(fraction)
+
+    def _sketch(self) -> Events:
+        """The points as sketched, if they are edited in the drawing or there is no motion."""
+        if self.subject.solvable is not None and not self._sheet.edited:
+            return []
+        page = self.subject.page(self._sheet.width / 2)
+        return [] if page is None else [tell.SketchShown(page=page)]
+
+    def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
+        """A found motion with the data of its page."""
+        if not isinstance(event, tell.MotionFound):
+            return event
+        mechanism, shown = self.subject.mechanism, self._shown
+        equations = () if event.live else mechanism.equations().mathml()
+        page = self._picture.page(
+            motion, equations, mechanism.moving_loops, asked=shown, brief=event.live
+        )
+        return replace(event, page=page)
+
+    def _swept(self, mechanism: Solvable, live: bool) -> tuple[Motion, str]:
+        if live:
+            return mechanism.approximate_sweep(self.motion), ""
+        description = mechanism.description
+        rows = [description.rows(which) for which in description.inputs]
+        count = max(map(len, rows))
+        if count <= _MOST_ROWS or len(rows) > 1:
+            return mechanism.sweep(progress=self.go_on), ""
+        step = (rows[0][-1] - rows[0][0]) / (_FEWER_ROWS - 1)
+        message = f"shown at {_FEWER_ROWS} of the {count} rows of the file"
+        return mechanism.sweep(step=float(step), progress=self.go_on), message
