@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from linkwork.drawing.label_placement import Kept
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from linkwork.mechanism.part.part import LARGEST
@@ -57,6 +58,7 @@ class Cycle:
         self.motion: Motion | None = None
         self.owed = False
         self._picture, self._sheet = MotionPicture(), ask.SetSheet(width=0.0)
+        self._kept: Kept = {}  # names and arrows of the sketch stay in their places during a drag
 
     def take(self, subject: Subject) -> None:
         """Continue with a changed subject."""
@@ -73,7 +75,7 @@ class Cycle:
         mechanism = self.subject.solvable
         if mechanism is None:
             self.motion, self.owed = None, False
-            return self._sketch()
+            return self._sketch(live)
         if not mechanism.description.inputs:
             return answered(ask.SolveAt(at={}), mechanism)
         try:
@@ -83,7 +85,7 @@ class Cycle:
             return []
         self.motion, self.owed = motion, False
         found = telling.motion_found(motion, live=live, message=message)
-        events: Events = [*self._sketch(), self._pictured(found, motion)]
+        events: Events = [*self._sketch(live), self._pictured(found, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -138,11 +140,13 @@ class Cycle:
             raise GivenUpError
         self.working(fraction)
 
-    def _sketch(self) -> Events:
+    def _sketch(self, live: bool = False) -> Events:
         """The points as sketched, if they are edited in the drawing or there is no motion."""
         if self.subject.solvable is not None and not self._sheet.edited:
             return []
-        page = self.subject.page(self._sheet.width / 2)
+        if not live:
+            self._kept.clear()
+        page = self.subject.page(self._sheet.width / 2, self._kept)
         return [] if page is None else [tell.SketchShown(page=page)]
 
     def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:
