@@ -7,9 +7,18 @@ import type { Desk } from "./asking";
 /** The start page in sight; it may be there before the program that opens what is chosen. */
 let current: StartPage | null = null;
 
-/** Show the start page, or let another function open what is chosen on it. */
+/** What was chosen before there was a program to open it. */
+let chosen: string | null = null;
+
+/** Show the start page, or let another function open what is chosen on it, or was chosen already. */
 export function offerStart(open: (name: string) => void, close?: () => void): void {
   const hooks = { open, ...(close ? { close } : {}) };
+  const early = chosen;
+  chosen = null;
+  if (early !== null && !close) {
+    open(early);
+    return;
+  }
   if (current !== null && !close) {
     current.hooks = hooks;
     return;
@@ -17,6 +26,12 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   leaveStart();
   current = new StartPage(libraryOf(document), hooks);
   document.body.append(current.element);
+}
+
+/** Keep a choice for the program that is being loaded. */
+export function chooseEarly(name: string): void {
+  chosen = name;
+  leaveStart();
 }
 
 export function leaveStart(): void {
