@@ -58,14 +58,17 @@ class Subject:
         position = None if self.solvable is None else self.solvable.solve()
         return dict(position.points) if position is not None and position.status.ok else {}
 
-    def page(self, size: float, kept: Kept | None = None) -> PageData | None:
+    def page(
+        self, size: float, kept: Kept | None = None, *, certify: bool = True
+    ) -> PageData | None:
         """The drawing at the start, or as sketched if it cannot be assembled; ``None`` without a
         sketch.
 
         ``size``: the least length by which symbols are sized. ``kept``: places of names and arrows.
+        ``certify``: prove the position.
         """
         if self.solvable is not None:
-            position = self.solvable.solve()
+            position = self.solvable.solve(certify=certify)
             if position.status.ok and position.points:
                 title, units = position.mechanism, position.units
                 found = position.skeleton, position.points
