@@ -79,7 +79,7 @@ def _largest(motion: Motion, dense: Motion, *, bent: bool = True) -> float:
         path = smoothed(jet.v, UNSEEN * size, jet.d1, jet.d2) if bent else jet.v
         true = dense.trace(point)
         apart = max(apart, float(_distances(true[np.isfinite(true)], path).max()))
-    return apart / size * _SIZE
+    return float(apart / size * _SIZE)
 
 
 def _distances(points: ComplexArray, path: ComplexArray) -> Array:

@@ -76,7 +76,7 @@ class Cycle:
         mechanism = self.subject.solvable
         if mechanism is None:
             self.motion, self.owed = None, False
-            return self._sketch(live)
+            return list(self._sketch(live))
         if not mechanism.description.inputs:
             return answered(ask.SolveAt(at={}), mechanism)
         try:
@@ -109,7 +109,9 @@ class Cycle:
         if not 0 <= sheet.width <= LARGEST:
             raise InputError(f"the width of the view must be from 0 to {LARGEST:g}")
         self._sheet = sheet
-        return self.events() if self._paths_only and not sheet.edited else self._sketch()
+        if self._paths_only and not sheet.edited:
+            return self.events()
+        return list(self._sketch())
 
     def with_quantities(self, names: tuple[str, ...]) -> Events:
         """The motion with quantities besides the usual ones."""
