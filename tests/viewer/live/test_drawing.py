@@ -146,6 +146,7 @@ def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
     assert len(motion.unknowns) == 4
     assert sheet.actions <= 20
     sheet.key("d")
+    sheet.page.wait_for_timeout(300)  # the sketch that the tool shows
     sheet.click((55, 15))
     assert sheet.mechanism.description.inputs[0].link == "link6"
     assert sheet.mechanism.sweep().found.any()
