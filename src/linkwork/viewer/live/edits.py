@@ -13,9 +13,11 @@ from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.drawn_part import edits_of_drawing
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before, held_places, move_points, put_place, rounded
-from linkwork.viewer.live.palette import part_name, part_of
+from linkwork.viewer.live.palette import part_of
+from linkwork.viewer.live.part_entries import alone_with, part_row, put_entry
 
 __all__ = ["Followed", "applied", "edit_title"]
 
@@ -304,16 +306,25 @@ def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.DrawPart, text: TextEdits, before: Before) -> Followed:
+    for each in edits_of_drawing(edit, before):
+        applied(each, text, before)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.SetPart, text: TextEdits, before: Before) -> Followed:
+    put_entry(edit, text)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
-    names: list[str] = []
-    for table in PARTS:
-        for k, row in text.entries(table):
-            name = part_name(row)
-            if canonical(edit.name) == canonical(name):
-                text.remove((table, k))
-                return Followed()
-            names.append(name)
-    raise UnknownNameError(f'there is no "{edit.name}" {choices("parts", names, edit.name)}')
+    text.remove(part_row(text, edit.name))
+    if edit.whole and isinstance(before.description, Draft):
+        for each in alone_with(edit.name, before.description):
+            applied(each, text, before)
+    return Followed()
 
 
 @applied.register
@@ -387,6 +398,10 @@ def edit_title(edit: ask.Edit) -> str:
             return f"move {edit.point}"
         case ask.MovePoints():
             return f"move {', '.join(edit.places)}"
+        case ask.DrawPart():
+            return f"add {PARTS[edit.table].title.lower()}"
+        case ask.SetPart():
+            return f"{edit.name}: {edit.key}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

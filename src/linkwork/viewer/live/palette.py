@@ -14,6 +14,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
 from linkwork.mechanism.part.index import PARTS
 from linkwork.viewer.live.file_state import PaletteField, PalettePart
+from linkwork.viewer.live.part_tools import PICKS
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
@@ -78,7 +79,13 @@ def _field(key: Key) -> PaletteField:
 
 #: All kinds of parts, in the order of the tables of a file.
 PALETTE: tuple[PalettePart, ...] = tuple(
-    PalettePart(table=table, title=kind.title, doc=kind.doc, fields=tuple(map(_field, kind.keys)))
+    PalettePart(
+        table=table,
+        title=kind.title,
+        doc=kind.doc,
+        fields=tuple(map(_field, kind.keys)),
+        picks=PICKS.get(table, ()),
+    )
     for table, kind in PARTS.items()
 )
 

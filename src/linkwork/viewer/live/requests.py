@@ -18,6 +18,7 @@ __all__ = [
     "AddPoint",
     "AssembleAt",
     "ChooseConfiguration",
+    "DrawPart",
     "Edit",
     "Export",
     "ListCircuits",
@@ -28,6 +29,7 @@ __all__ = [
     "MovePoints",
     "NewtonSteps",
     "OpenExample",
+    "Picked",
     "Question",
     "Redo",
     "Reload",
@@ -41,6 +43,7 @@ __all__ = [
     "SetGround",
     "SetInput",
     "SetNumber",
+    "SetPart",
     "SetSheet",
     "SetText",
     "ShowQuantities",
@@ -186,12 +189,50 @@ class AddPart:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Picked:
+    """A place that was picked in the drawing [length], and the point or link there.
+
+    ``size``: the radius that was drawn from it.
+    """
+
+    x: float
+    y: float
+    point: str = ""
+    link: str = ""
+    size: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrawPart:
+    """Add a part by what was picked in the drawing, with the points and links that it lacks.
+
+    ``span``: half the length of a line that is made for it [length].
+    """
+
+    table: str
+    picks: tuple[Picked, ...]
+    span: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetPart:
+    """Change an entry of a part: user input as of :class:`AddPart`, "" removes the entry."""
+
+    name: str
+    key: str
+    typed: str | tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class RemovePart:
     """Remove a slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve; a weld by the
     names of its two links.
+
+    ``whole``: with the wheels, blocks and fixed points that serve nothing else.
     """
 
     name: str
+    whole: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,6 +265,8 @@ Edit = (
     | AddJoint
     | RemoveJoint
     | AddPart
+    | DrawPart
+    | SetPart
     | RemovePart
     | TracePoint
     | ChooseConfiguration
