@@ -10,6 +10,7 @@ import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
 import { Overlay, pointsWithin } from "./overlay";
+import { PART_TOOLS } from "./part_tools";
 import { Picking } from "./picking";
 import { symbolsAt, type Under } from "./symbols";
 import { ToolBar, TOOLS } from "./tool_bar";
@@ -85,7 +86,7 @@ export class Editor {
     this.page = page;
     this.overlay.attach(page);
     const { canvas, drawing } = page.places;
-    canvas.append(this.tools.element, this.tools.parts.element, this.inspector.element);
+    canvas.append(this.tools.element, this.tools.parts.element, this.tools.parts.prompt, this.inspector.element);
     const options = { capture: true, signal: this.gone.signal };
     const canvasEvents: [string, (event: PointerEvent) => void][] = [
       ["pointerdown", (event) => this.down(event)],
@@ -140,7 +141,8 @@ export class Editor {
     if (name !== "select") this.select(null);
     this.overlay.clear();
     if (before !== this.edited) this.hooks.mode(this.edited);
-    this.hooks.hint(this.picking?.prompt ?? TOOLS.find((tool) => tool.name === name)!.use);
+    if (this.picking) this.tell();
+    else this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
     this.redraw();
   }
 
@@ -343,7 +345,7 @@ export class Editor {
     if (this.picking) {
       this.select(null);
       const possible = this.picking.pick(start, moved ? end : null);
-      this.hooks.hint(possible ? this.picking.prompt : `Not here. ${this.picking.prompt}`);
+      this.tell(possible ? "" : "Not here. ");
       this.redraw();
       return;
     }
@@ -386,6 +388,13 @@ export class Editor {
     else if (link) this.select({ kind: "link", name: link });
   }
 
+  /** Tell what to pick next. */
+  private tell(before = ""): void {
+    if (!this.picking) return;
+    this.hooks.hint(before + this.picking.prompt);
+    this.tools.parts.tell(before + this.picking.prompt);
+  }
+
   /** A part was picked; it is selected when it is there. */
   private drawn(table: string, picks: readonly Picked[]): void {
     this.before = new Set(this.file!.parts);
@@ -422,7 +431,8 @@ export class Editor {
     if (document.querySelector("dialog[open]")) return; // its keys are its own
     if (target.closest("input, textarea, select") && event.key !== "Escape") return;
     if (target.closest(".lw-part-tools") && event.key === "Escape") return;
-    if (this.tools.press(event.key.toLowerCase())) this.overlay.clear();
+    const tool = [...TOOLS, ...PART_TOOLS].find(({ key }) => key === event.key.toLowerCase());
+    if (tool) this.tools.press(tool.name);
     else if (event.key === "Escape") this.escape();
     else if (event.key === "Enter" && this.picking?.next.repeated && target === document.body) this.picking.finish();
     else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
@@ -448,7 +458,7 @@ export class Editor {
   private escape(): void {
     this.gesture = null;
     this.picking?.cancel();
-    if (this.picking) this.hooks.hint(this.picking.prompt);
+    this.tell();
     this.overlay.clear();
     this.select(null);
   }

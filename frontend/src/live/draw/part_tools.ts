@@ -18,11 +18,16 @@ const LOOKS: Readonly<Record<string, readonly [string, string, string]>> = {
   springs: ["Spring", "n", "M2 12h3l1.500-5 3 10 3-10 3 10 3-10 1.500 5h2"],
 };
 
+/** The tools of parts by table, with their keys. */
+export const PART_TOOLS = Object.entries(LOOKS).map(([name, [title, key]]) => ({ name, key, title }));
+
 export class PartTools {
   /** Opens the tools; in the tool bar. */
   readonly opener = html("button", { type: "button", class: "lw-parts-opener", "aria-expanded": "false", "aria-pressed": "false", title: "Parts: slots, gears, cams and more" });
   /** The tools, beside the tool bar. */
   readonly element = html("div", { class: "lw-part-tools", role: "toolbar", "aria-label": "Parts", hidden: "" });
+  /** What to pick next, on the drawing. */
+  readonly prompt = html("p", { class: "lw-part-prompt", hidden: "" });
   private readonly buttons = new Map<string, HTMLButtonElement>();
   private parts: readonly PalettePart[] = [];
   private readonly icon: SVGPathElement;
@@ -70,9 +75,15 @@ export class PartTools {
     return this.parts.find((part) => part.table === table);
   }
 
-  /** The button of a key. */
-  withKey(key: string): HTMLButtonElement | undefined {
-    return [...this.buttons].find(([table]) => LOOKS[table]?.[1] === key)?.[1];
+  /** As a click on its button would. */
+  press(table: string): void {
+    this.buttons.get(table)?.click();
+  }
+
+  /** Show what to pick; "" hides it. */
+  tell(prompt: string): void {
+    this.prompt.textContent = prompt;
+    this.prompt.hidden = prompt === "";
   }
 
   show(tool: string): void {
@@ -80,6 +91,7 @@ export class PartTools {
     for (const [table, button] of this.buttons) button.setAttribute("aria-pressed", String(table === tool));
     this.opener.setAttribute("aria-pressed", String(part !== undefined));
     this.text.textContent = part ? (LOOKS[tool]?.[0] ?? part.title) : "Parts";
+    if (part === undefined) this.tell("");
     this.icon.setAttribute("d", (LOOKS[tool] ?? LOOKS.gears!)[2]);
   }
 

@@ -49,12 +49,10 @@ export class ToolBar {
     return this.parts.part(name);
   }
 
-  /** Choose the tool of a key; whether there is one. */
-  press(key: string): boolean {
-    const tool = TOOLS.find((one) => one.key === key);
-    const button = tool ? this.buttons.get(tool.name) : this.parts.withKey(key);
-    button?.click();
-    return button !== undefined;
+  /** As a click would: not if it is disabled. */
+  press(name: string): void {
+    this.buttons.get(name)?.click();
+    this.parts.press(name);
   }
 
   show(name: string): void {

@@ -145,5 +145,6 @@ def alone_with(name: str, draft: Draft) -> Iterator[ask.Edit]:
             yield ask.RemoveLink(name=link)
     for point in dict.fromkeys(_named(own, "point")):
         left = [link for link in carriers.get(point, ()) if link not in gone]
-        if point not in points_used and left in ([], [GROUND], [own.label]):
+        spare = point in draft.points and point not in points_used
+        if spare and left in ([], [GROUND], [own.label]):
             yield ask.RemovePoint(name=point)

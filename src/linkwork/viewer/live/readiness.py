@@ -25,7 +25,9 @@ def lacks_of(subject: Subject) -> tuple[Lack, ...]:
         return ()
     draft = subject.draft.drawable
     if not subject.readable:
-        return tuple(_of_problem(problem, draft) for problem in subject.problems[:_MOST])
+        return tuple(
+            _of_problem(problem, draft, subject.draft) for problem in subject.problems[:_MOST]
+        )
     if not any(map(len, draft.links.values())):
         text = "Draw the first link: drag from one of its ends to the other."
         return (Lack(message=text, key="", line=None, kind="", name="", remedies=()),)
@@ -35,7 +37,7 @@ def lacks_of(subject: Subject) -> tuple[Lack, ...]:
             continue  # ground is missing
         if problem.key == ("links", GROUND):
             continue
-        found.append(_of_problem(problem, draft))
+        found.append(_of_problem(problem, draft, subject.draft))
     return tuple(found[:_MOST])
 
 
@@ -80,8 +82,8 @@ def _guided(part: object) -> Iterator[str]:
     yield from getattr(part, "points", None) or ()
 
 
-def _of_problem(problem: Problem, draft: Draft) -> Lack:
-    kind, name = _thing(problem, draft)
+def _of_problem(problem: Problem, draft: Draft, whole: Draft) -> Lack:
+    kind, name = _thing(problem, whole)
     key = key_text(problem.key) if kind == "" or problem.key[0] not in ("points", "links") else name
     return Lack(
         message=problem.message,
