@@ -308,3 +308,16 @@ def test_a_part_that_lost_its_points_is_removed_by_a_remedy(drawing: Drawing) ->
     assert "Remove mesh1" in [remedy.label for remedy in remedies]
     state = drawing.ask(*remedies[0].edits)
     assert state.parts == ("spring1",)
+
+
+@pytest.mark.parametrize(
+    ("table", "second", "role"),
+    [("cams", (0, 40), "wheel"), ("noncircular_gears", (60, 0), "wheel")],
+)
+def test_outlines_are_drawn_before_the_part_moves(
+    table: str, second: Place, role: str, drawing: Drawing
+) -> None:
+    drawing.bench.handle(ask.SetSheet(width=240, edited=True))
+    events = drawing.bench.handle(drawing.request(table, (0, 0), second))
+    sketch = next(event for event in events if isinstance(event, tell.SketchShown))
+    assert role in {part.role for part in sketch.page.motions[0].parts}

@@ -118,8 +118,8 @@ export class Editor {
     this.selected = new Set([...this.selected].filter((name) => known.has(name)));
     const there = { point: known, link: new Set(file.links.map((link) => link.name)), part: new Set(file.parts) };
     if (this.chosen && !there[this.chosen.kind].has(this.chosen.name)) this.chosen = null;
-    const added = file.parts.find((name) => this.before && !this.before.has(name));
-    if (added) this.select({ kind: "part", name: added }, this.tool);
+    const added = file.part_entries.find(({ table, name }) => table === this.tool && this.before && !this.before.has(name));
+    if (added) this.select({ kind: "part", name: added.name }, this.tool);
     this.inspector.show(this.chosen, file);
     this.redraw();
   }
@@ -434,7 +434,7 @@ export class Editor {
     const tool = [...TOOLS, ...PART_TOOLS].find(({ key }) => key === event.key.toLowerCase());
     if (tool) this.tools.press(tool.name);
     else if (event.key === "Escape") this.escape();
-    else if (event.key === "Enter" && this.picking?.next.repeated && target === document.body) this.picking.finish();
+    else if (event.key === "Enter" && this.picking?.next.repeated && target === document.body && this.picking.finish()) this.tell();
     else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
     else if (["Delete", "Backspace"].includes(event.key) && (this.selected.size || this.chosen)) this.remove();
     else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);

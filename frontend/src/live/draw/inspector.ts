@@ -57,7 +57,6 @@ export class Inspector {
   }
 
   private part(part: PartShown, file: FileState): void {
-    this.numbers([`${part.name}.offset`], file);
     this.parts.show(this.element, part);
     this.actions(this.parts.actions(part, file));
   }

@@ -72,7 +72,7 @@ export class PartPanel {
   }
 
   private isUsual({ name, entry }: PaletteField, part: PartShown): boolean {
-    return name in part.typed || entry === "flag" || name === "radii" || name === "teeth";
+    return name in part.typed || entry === "flag" || entry === "choice" || ["radii", "teeth", "offset"].includes(name);
   }
 
   private field(box: Element, field: PaletteField, part: PartShown): void {

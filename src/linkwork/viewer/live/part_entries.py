@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Key, ListOf, Tables, Text
@@ -17,6 +18,8 @@ from linkwork.viewer.live.palette import Typed, part_name, part_of
 
 __all__ = ["alone_with", "part_row", "parts_shown", "put_entry"]
 
+#: Entries that are shown also where the file leaves them out.
+_NAMING = ("arm", "on")
 #: Entries that exclude each other.
 _INSTEAD = (
     ("radii", "teeth"),
@@ -29,10 +32,12 @@ _INSTEAD = (
 def parts_shown(draft: Draft) -> Iterator[PartShown]:
     """All parts of a draft, in the order of the tables of a file."""
     for (table, _), part in draft.keyed_parts():
+        usual = {field.name: field.default for field in fields(part)}
         typed = {
             key.name: _typed(key, entry)
             for key in part.keys
-            if (entry := getattr(part, key.name)) not in (None, (), False)
+            if (entry := getattr(part, key.name)) is not None
+            and (key.name in _NAMING or entry != usual[key.name])
         }
         yield PartShown(
             table=str(table),
