@@ -23,7 +23,7 @@ class Drawing:
     def __init__(self, path: Path) -> None:
         self.bench = Workbench(MechanismFile(path, blank_sheet("drawn")), lw.loads)
 
-    def ask(self, *edits: ask.Edit) -> tell.FileState:
+    def change(self, *edits: ask.Edit) -> tell.FileState:
         """The state after edits that are accepted."""
         request = edits[0] if len(edits) == 1 else ask.Together(edits=edits)
         events = self.bench.handle(request)
@@ -32,17 +32,18 @@ class Drawing:
 
     def link(self, name: str, *ends: tuple[str, float, float] | str, fixed: str = "") -> None:
         """A link through new and existing points; ``fixed`` are those on ground."""
-        new = [ask.AddPoint(name=end[0], x=end[1], y=end[2]) for end in ends if len(end) == 3]
-        points = tuple(end[0] for end in ends)
+        placed = [end for end in ends if not isinstance(end, str)]
+        new = [ask.AddPoint(name=name, x=x, y=y) for name, x, y in placed]
+        points = tuple(end if isinstance(end, str) else end[0] for end in ends)
         fixing = [ask.SetGround(points=(point,)) for point in fixed]
-        self.ask(*new, ask.AddLink(name=name, points=points), *fixing)
+        self.change(*new, ask.AddLink(name=name, points=points), *fixing)
 
     def request(self, table: str, *picks: ask.Picked | Place | str) -> ask.DrawPart:
         """Places, points and links; ``~name`` is a link."""
         return ask.DrawPart(table=table, picks=tuple(map(self._picked, picks)), span=20.0)
 
     def draw(self, table: str, *picks: ask.Picked | Place | str) -> tell.FileState:
-        return self.ask(self.request(table, *picks))
+        return self.change(self.request(table, *picks))
 
     def _picked(self, pick: ask.Picked | Place | str) -> ask.Picked:
         if isinstance(pick, ask.Picked):
@@ -66,7 +67,7 @@ class Drawing:
 
     def moves(self, drive: str, name: str, rows: int) -> lw.Motion:
         """The motion, with all rows proved."""
-        self.ask(ask.SetInput(drive=drive, name=name))
+        self.change(ask.SetInput(drive=drive, name=name))
         motion = lw.loads(self.bench.text).sweep()
         assert int(motion.certified.sum()) == rows
         return motion
@@ -128,7 +129,7 @@ def _rolling(drawing: Drawing) -> None:
 
 
 def _rolling_on_a_circle(drawing: Drawing) -> None:
-    drawing.ask(ask.AddPoint(name="O", x=0, y=0), ask.SetGround(points=("O",)))
+    drawing.change(ask.AddPoint(name="O", x=0, y=0), ask.SetGround(points=("O",)))
     drawing.draw("rolling", (60, 0), "O")
     motion = drawing.moves("link", "wheel1", 361)
     assert motion["x1"][-1] - motion["x1"][0] == pytest.approx(180)  # circles of equal size
@@ -153,7 +154,7 @@ def _cylinder(drawing: Drawing) -> None:
     state = drawing.draw("cylinders", (20, -40), ask.Picked(x=30, y=6, link="boom"))
     fix = next(r for lack in state.lacks for r in lack.remedies if r.label.startswith("Fix"))
     assert fix.label == "Fix A"  # its free end, not that of the boom
-    drawing.ask(*fix.edits)
+    drawing.change(*fix.edits)
     drawing.moves("cylinder", "c1", 101)
 
 
@@ -180,7 +181,7 @@ def _curve(drawing: Drawing) -> None:
     drawing.link("rod", "P", ("Q", 80, 0))
     state = drawing.draw("curves", "Q", (90, 10), (100, 15), (110, 10), (115, 5))
     assert len(state.part_entries[0].typed["through"]) == 5  # the pin is on it
-    drawing.ask(ask.SetInput(drive="link", name="crank", start=0, stop=10, step=1))
+    drawing.change(ask.SetInput(drive="link", name="crank", start=0, stop=10, step=1))
     assert lw.loads(drawing.bench.text).sweep().found.any()
 
 
@@ -214,7 +215,7 @@ def test_gears_on_an_arm_are_held_by_a_remedy(drawing: Drawing) -> None:
     state = drawing.draw("gears", "O", "P")
     remedies = {remedy.label: remedy for lack in state.lacks for remedy in lack.remedies}
     assert list(remedies) == ["Drive arm", "Drive gear1", "Hold gear1"]
-    drawing.ask(*remedies["Hold gear1"].edits)
+    drawing.change(*remedies["Hold gear1"].edits)
     motion = drawing.moves("link", "arm", 361)
     assert motion["gear2"][-1] - motion["gear2"][0] == pytest.approx(720)
 
@@ -235,8 +236,8 @@ def test_a_part_is_one_step_and_goes_with_what_served_it_alone(drawing: Drawing)
     blank = drawing.bench.text
     state = drawing.draw("gears", (0, 0), (60, 0))
     assert state.undo == "add gear pair"
-    drawing.ask(ask.SetInput(drive="link", name="gear1"))
-    state = drawing.ask(ask.RemovePart(name="mesh1", whole=True))
+    drawing.change(ask.SetInput(drive="link", name="gear1"))
+    state = drawing.change(ask.RemovePart(name="mesh1", whole=True))
     assert (state.points, state.parts) == ({}, ())
     assert [link.name for link in state.links] == []
     drawing.bench.handle(ask.Undo())
@@ -248,25 +249,25 @@ def test_a_part_is_one_step_and_goes_with_what_served_it_alone(drawing: Drawing)
 def test_what_other_parts_use_stays(drawing: Drawing) -> None:
     drawing.draw("gears", (0, 0), (60, 0))
     drawing.draw("belts", "B", (60, 90))
-    state = drawing.ask(ask.RemovePart(name="mesh1", whole=True))
+    state = drawing.change(ask.RemovePart(name="mesh1", whole=True))
     assert [link.name for link in state.links] == ["ground", "gear2", "pulley1"]
     assert list(state.points) == ["B", "C"]
 
 
 def test_entries_of_a_part_are_typed(drawing: Drawing) -> None:
     drawing.draw("gears", (0, 0), (60, 0))
-    drawing.ask(ask.SetPart(name="mesh1", key="teeth", typed=("20, 40",)))
+    drawing.change(ask.SetPart(name="mesh1", key="teeth", typed=("20, 40",)))
     drawing.moves("link", "gear1", 361)
-    state = drawing.ask(ask.SetPart(name="mesh1", key="radii", typed=("20, 40",)))
+    state = drawing.change(ask.SetPart(name="mesh1", key="radii", typed=("20, 40",)))
     assert "teeth" not in state.part_entries[0].typed
     message = drawing.refused(ask.SetPart(name="mesh1", key="radii", typed=("20, 41",)))
     assert message == "add up to 61, but the centres A and B are 60 apart"
     message = drawing.refused(ask.SetPart(name="mesh1", key="internal", typed="true"))
     assert message.startswith("the radii of a ring and the gear in it differ by")
-    drawing.ask(ask.SetPart(name="mesh1", key="teeth", typed=("20, 20",)))
-    state = drawing.ask(ask.SetPart(name="mesh1", key="internal", typed="true"))
+    drawing.change(ask.SetPart(name="mesh1", key="teeth", typed=("20, 20",)))
+    state = drawing.change(ask.SetPart(name="mesh1", key="internal", typed="true"))
     assert state.part_entries[0].typed["teeth"] == ("20, 40",)
-    state = drawing.ask(ask.SetPart(name="mesh1", key="internal", typed=""))
+    state = drawing.change(ask.SetPart(name="mesh1", key="internal", typed=""))
     assert "internal" not in state.part_entries[0].typed
     message = drawing.refused(ask.SetPart(name="mesh9", key="teeth", typed=("1, 2",)))
     assert message == 'there is no "mesh9" (parts: mesh1)'
@@ -303,10 +304,10 @@ def test_picks_that_make_no_part_are_refused_with_the_reason(
 def test_a_part_that_lost_its_points_is_removed_by_a_remedy(drawing: Drawing) -> None:
     drawing.draw("springs", (0, 0), (40, 0))
     drawing.draw("gears", (0, 50), (60, 50))
-    state = drawing.ask(ask.RemovePoint(name="D"))
+    state = drawing.change(ask.RemovePoint(name="D"))
     remedies = [remedy for lack in state.lacks for remedy in lack.remedies]
     assert "Remove mesh1" in [remedy.label for remedy in remedies]
-    state = drawing.ask(*remedies[0].edits)
+    state = drawing.change(*remedies[0].edits)
     assert state.parts == ("spring1",)
 
 

@@ -183,7 +183,7 @@ class FileState:
     points: dict[str, Point]
     links: tuple[Link, ...]
     parts: tuple[str, ...]
-    part_entries: tuple[PartShown, ...]
+    part_entries: tuple[PartShown, ...]  # noqa: V107
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]
