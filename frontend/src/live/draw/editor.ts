@@ -13,6 +13,7 @@ import { Overlay, pointsWithin } from "./overlay";
 import { PART_TOOLS } from "./part_tools";
 import { Picking } from "./picking";
 import { symbolsAt, type Under } from "./symbols";
+import type { Expected, Held } from "./selected";
 import { ToolBar, TOOLS } from "./tool_bar";
 
 /** Attraction of points and links [px]: of a mouse, of a finger. */
@@ -54,6 +55,8 @@ export class Editor {
   /** The parts before one was drawn, which is then selected. */
   private before: ReadonlySet<string> | null = null;
   private under: Under = {};
+  /** What is selected with the next state of the file. */
+  private expected: Expected | null = null;
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -78,6 +81,12 @@ export class Editor {
   /** The tool in use. */
   get inUse(): string {
     return this.tool;
+  }
+
+  /** What is selected, for tools that copy it. */
+  get held(): Held {
+    const { chosen, selected, points, grid } = this;
+    return { chosen, selected, points, step: grid / 10, expect: (wanted) => (this.expected = wanted) };
   }
 
   attach(page: Mounted): void {
@@ -121,7 +130,23 @@ export class Editor {
     const added = file.part_entries.find(({ table, name }) => table === this.tool && this.before && !this.before.has(name));
     if (added) this.select({ kind: "part", name: added.name }, this.tool);
     this.inspector.show(this.chosen, file);
+    this.take(file);
     this.redraw();
+  }
+
+  /** Select what an edit has made. */
+  private take(file: FileState): void {
+    const { expected } = this;
+    this.expected = null;
+    if (!expected) return;
+    const points = expected.points.filter((name) => name in file.points);
+    const there = { point: points, link: file.links.map(({ name }) => name), part: file.parts };
+    if (expected.chosen && there[expected.chosen.kind].includes(expected.chosen.name)) this.select(expected.chosen);
+    else if (points.length) {
+      this.select(null);
+      this.selected = new Set(points);
+      this.inspector.showMany(points, file);
+    }
   }
 
   /** Begin anew with the tool that changes nothing. */

@@ -25,6 +25,8 @@ export class Inspector {
   readonly element = html("section", { class: "lw-inspector", "aria-label": "Selection", hidden: "" });
   readonly parts: PartPanel;
   private readonly locks = new Set<string>();
+  /** Adds what concerns every selection. */
+  more: (panel: HTMLElement) => void = () => {};
 
   constructor(
     private readonly desk: Desk,
@@ -54,6 +56,7 @@ export class Inspector {
     if (chosen.kind === "point") this.point(chosen.name, file);
     else if (chosen.kind === "link") this.link(chosen.name, file);
     else if (part) this.part(part, file);
+    this.more(this.element);
   }
 
   private part(part: PartShown, file: FileState): void {
@@ -73,6 +76,7 @@ export class Inspector {
       { label: "Fix to ground", edits: [{ kind: "set_ground", points: names }] },
       { label: "Delete", edits: names.map((name) => ({ kind: "remove_point", name })) },
     ]);
+    this.more(this.element);
   }
 
   private begin(title: string): void {

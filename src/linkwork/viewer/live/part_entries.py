@@ -15,6 +15,7 @@ from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.file_state import PartShown
 from linkwork.viewer.live.palette import Typed, part_name, part_of
+from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["alone_with", "part_row", "parts_shown", "put_entry"]
 
@@ -92,7 +93,7 @@ def part_row(text: TextEdits, name: str) -> tuple[str, int]:
     raise UnknownNameError(f'there is no "{name}" {choices("parts", names, name)}')
 
 
-def put_entry(edit: ask.SetPart, text: TextEdits) -> None:
+def put_entry(edit: ask.SetPart, text: TextEdits, units: TypedUnits) -> None:
     """Write or remove an entry of a part; what it replaces is removed.
 
     Raises
@@ -101,7 +102,7 @@ def put_entry(edit: ask.SetPart, text: TextEdits) -> None:
         If there is no such part or key, or the entry does not match its key.
     """
     table, k = part_row(text, edit.name)
-    entries = part_of(table, {edit.key: edit.typed})
+    entries = part_of(table, {edit.key: edit.typed}, units)
     here = (table, k)
     if edit.key not in entries:
         if text.has((*here, edit.key)):

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.part_requests import AddPart, DrawPart, Picked, RemovePart, SetPart
+from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
+
 __all__ = [
     "EDITS",
     "REQUESTS",
@@ -17,14 +20,17 @@ __all__ = [
     "AddPart",
     "AddPoint",
     "AssembleAt",
+    "ChangeUnits",
     "ChooseConfiguration",
     "DrawPart",
+    "Duplicate",
     "Edit",
     "Export",
     "ListCircuits",
     "ListConfigurations",
     "ListQuantities",
     "MakeLink",
+    "Mirror",
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
@@ -37,6 +43,7 @@ __all__ = [
     "RemoveLink",
     "RemovePart",
     "RemovePoint",
+    "Rename",
     "Request",
     "ReverseLink",
     "Save",
@@ -59,7 +66,8 @@ class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A number replaces a formula only with ``any_formula``.
+    length becomes a given one. A value may have a unit: "3 in". A number replaces a formula only
+    with ``any_formula``.
     """
 
     name: str
@@ -115,11 +123,11 @@ class SetInput:
 
 @dataclass(frozen=True, kw_only=True)
 class AddPoint:
-    """Add a point to the sketch and to links."""
+    """Add a point to the sketch and to links; coordinates may have a unit: "3 in"."""
 
     name: str
-    x: float
-    y: float
+    x: float | str
+    y: float | str
     links: tuple[str, ...] = ()
 
 
@@ -177,65 +185,6 @@ class RemoveJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AddPart:
-    """Add an entry to a table of parts: sliders, gears, cams, …
-
-    ``typed``: user input by key: text, a number, a formula, true or false; a list of names; a list
-    of lines, each with the numbers or words of one row.
-    """
-
-    table: str
-    typed: dict[str, str | tuple[str, ...]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Picked:
-    """A place that was picked in the drawing [length], and the point or link there.
-
-    ``size``: the radius that was drawn from it.
-    """
-
-    x: float
-    y: float
-    point: str = ""
-    link: str = ""
-    size: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class DrawPart:
-    """Add a part by what was picked in the drawing, with the points and links that it lacks.
-
-    ``span``: half the length of a line that is made for it [length].
-    """
-
-    table: str
-    picks: tuple[Picked, ...]
-    span: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class SetPart:
-    """Change an entry of a part: user input as of :class:`AddPart`, "" removes the entry."""
-
-    name: str
-    key: str
-    typed: str | tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class RemovePart:
-    """Remove a slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve; a weld by the
-    names of its two links.
-
-    ``whole``: with the wheels, blocks and fixed points that serve nothing else.
-    """
-
-    name: str
-    whole: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
 class TracePoint:
     """Show or hide the path of a point."""
 
@@ -270,6 +219,10 @@ Edit = (
     | RemovePart
     | TracePoint
     | ChooseConfiguration
+    | ChangeUnits
+    | Rename
+    | Duplicate
+    | Mirror
 )
 
 
