@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 import linkwork as lw
 from linkwork.viewer.live import events as tell, requests as ask
+from linkwork.viewer.live.palette import part_of
 from linkwork.viewer.live.typed_units import TypedUnits
 from linkwork.viewer.live.workbench import Workbench
 from tests.viewer.live.test_workbench import number, only
@@ -110,3 +113,14 @@ def test_another_unit_is_one_step(bench: Workbench) -> None:
     assert state.text == before
     state = only(bench.handle(ask.ChangeUnits(angle="rad", convert=False)), tell.FileState)
     assert (state.angle_unit, state.undo) == ("rad", "relabel as rad")
+
+
+def test_the_lift_of_a_swinging_follower_is_an_angle() -> None:
+    row = {"link": "arm"}
+    typed: dict[str, str | tuple[str, ...]] = {
+        "segments": ("dwell, 0.25 turn", "3-4-5, 1, 0.5 rad")
+    }
+    found: Any = part_of("cams", typed, MM, row)["segments"]
+    assert [segment.get("lift") for segment in found] == [None, pytest.approx(28.64788975654116)]
+    with pytest.raises(lw.InputError, match='lift is a length, but "0.5 rad" is an angle'):
+        part_of("cams", typed, MM)
