@@ -122,5 +122,5 @@ def test_the_lift_of_a_swinging_follower_is_an_angle() -> None:
     }
     found: Any = part_of("cams", typed, MM, row)["segments"]
     assert [segment.get("lift") for segment in found] == [None, pytest.approx(28.64788975654116)]
-    with pytest.raises(lw.InputError, match='lift is a length, but "0.5 rad" is an angle'):
+    with pytest.raises(lw.InputError, match=r'lift is a length, but "0\.5 rad" is an angle'):
         part_of("cams", typed, MM)
