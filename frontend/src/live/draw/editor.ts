@@ -57,6 +57,8 @@ export class Editor {
   private under: Under = {};
   /** What is selected with the next state of the file. */
   private expected: Expected | null = null;
+  /** Called after the drawing has been drawn again. */
+  redrawn: () => void = () => {};
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -193,6 +195,7 @@ export class Editor {
     const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
     this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
     this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+    this.redrawn();
   }
 
   private get points(): Places {

@@ -267,6 +267,12 @@ def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.AddOutput, text: TextEdits, before: Before) -> Followed:
+    add_entry(text, "outputs", edit.name, edit.formula)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followed:
     if edit.name:
         text.put(("configuration",), edit.name)
