@@ -18,14 +18,11 @@ from linkwork.foundation.units import ANGLES, LENGTHS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.entries import measured_by
 from linkwork.viewer.live.file_state import PaletteField, PalettePart
-from linkwork.viewer.live.part_tools import PICKS
+from linkwork.viewer.live.part.index import picks_of
+from linkwork.viewer.live.part_requests import Typed
 from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
-
-#: User input of a field: one entry or several; a row of numbers or of a table is one line,
-#: "10, 20".
-Typed = str | tuple[str, ...]
 
 
 def part_of(
@@ -97,7 +94,7 @@ PALETTE: tuple[PalettePart, ...] = tuple(
         title=kind.title,
         doc=kind.doc,
         fields=tuple(map(_field, kind.keys)),
-        picks=PICKS.get(table, ()),
+        picks=picks_of(table),
     )
     for table, kind in PARTS.items()
 )
