@@ -13,11 +13,13 @@ import { Dimensions } from "./dimensions";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
 import { ExportMenu } from "./export_menu";
+import { firstHint } from "./first_hint";
 import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { Plots } from "./plots";
+import { presentNewton } from "./presented";
 import { Starting } from "./starting";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
@@ -62,6 +64,7 @@ export class LivePage {
   private charted = false;
   private hint: Element | null = null;
   private readonly starting: Starting;
+  private readonly first = firstHint();
   /** The width of the sheet that was told last. */
   private width = 1;
   private resizing: ReturnType<typeof setTimeout> | undefined;
@@ -291,7 +294,7 @@ export class LivePage {
     const still = data.motions[0]!.columns.length === 0;
     const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), changing: true, still }));
     const { head, canvas, side } = page.places;
-    head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
+    head.insertBefore(this.bar.element, head.querySelector(".lw-corner"));
     canvas.after(this.readiness.element, this.notices.element);
     side.prepend(this.tabs.element);
     this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
@@ -299,6 +302,8 @@ export class LivePage {
     this.newton.attach(page);
     this.plots.attach(page);
     this.editor.attach(page);
+    presentNewton(page, this.tabs, this.newton, () => !this.rowless && this.moving !== null && this.editor.choose("move"));
+    if (this.first) canvas.before(this.first);
     if (view) page.places.drawing.see(view);
   }
 

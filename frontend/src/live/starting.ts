@@ -6,6 +6,8 @@ import type { Desk } from "./asking";
 
 /** The start page in sight; it may be there before the program that opens what is chosen. */
 let current: StartPage | null = null;
+/** What had the focus before. */
+let before: Element | null = null;
 
 /** Show the start page, or let another function open what is chosen on it. */
 export function offerStart(open: (name: string) => void, close?: () => void): void {
@@ -16,12 +18,17 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   }
   leaveStart();
   current = new StartPage(libraryOf(document), hooks);
+  before = document.activeElement;
   document.body.append(current.element);
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = true;
 }
 
 export function leaveStart(): void {
-  current?.destroy();
+  if (current === null) return;
+  current.destroy();
   current = null;
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = false;
+  if (before instanceof HTMLElement) before.focus();
 }
 
 export class Starting {

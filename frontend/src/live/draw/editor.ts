@@ -2,6 +2,7 @@
 
 import type { FileState, LiveEdit } from "../../messages";
 import type { Mounted } from "../../mount";
+import { declareKeys, press, type Command } from "../../keys";
 import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
@@ -9,6 +10,7 @@ import { clean } from "../ranges";
 import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
+import { KeyPointer } from "./key_pointer";
 import { Overlay, pointsWithin } from "./overlay";
 import { ToolBar, TOOLS } from "./tool_bar";
 
@@ -39,6 +41,7 @@ export class Editor {
   readonly tools = new ToolBar((name) => this.choose(name));
   readonly inspector: Inspector;
   private readonly overlay = new Overlay();
+  private readonly keyed: KeyPointer;
   private page: Mounted | null = null;
   private file: FileState | null = null;
   private tool = "move";
@@ -55,6 +58,8 @@ export class Editor {
     private readonly hooks: EditorHooks,
   ) {
     this.inspector = new Inspector(desk, () => this.select(null));
+    this.keyed = new KeyPointer((chosen) => this.select(chosen), (text) => hooks.hint(text));
+    declareKeys("Drawing", this.commands);
   }
 
   get edited(): boolean {
@@ -71,6 +76,7 @@ export class Editor {
     this.gone = new AbortController();
     this.page = page;
     this.overlay.attach(page);
+    this.keyed.attach(page, this.gone.signal);
     const { canvas, drawing } = page.places;
     canvas.append(this.tools.element, this.inspector.element);
     const options = { capture: true, signal: this.gone.signal };
@@ -118,6 +124,7 @@ export class Editor {
     if (name === this.tool) return;
     const before = this.edited;
     this.tool = name;
+    this.keyed.rest();
     this.tools.show(name);
     if (name !== "select") this.select(null);
     this.overlay.clear();
@@ -145,7 +152,7 @@ export class Editor {
     this.grid = this.overlay.drawGrid(this.page, this.edited);
     const points = this.points;
     this.overlay.select([...this.selected].flatMap((name) => (points[name] ? [points[name]!] : [])), drawing.pixel);
-    this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+    this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
   }
 
   private get points(): Places {
@@ -178,8 +185,10 @@ export class Editor {
     if (!this.edited && !panned && this.touches.size < 2) return;
     event.stopImmediatePropagation();
     event.preventDefault();
-    (document.activeElement as HTMLElement | null)?.blur?.();
-    this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    if (event.isTrusted) {
+      (document.activeElement as HTMLElement | null)?.blur?.();
+      this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    }
     this.panned = panned;
     if (panned || this.touches.size > 1 || event.button !== 0) return;
     const [at, reach] = [this.place(event), this.reach(event)];
@@ -361,19 +370,24 @@ export class Editor {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || this.page === null) return;
+    if (this.page === null) return;
     if (document.querySelector("dialog[open]")) return; // its keys are its own
     if (target.closest("input, textarea, select") && event.key !== "Escape") return;
-    const tool = TOOLS.find(({ key }) => key === event.key.toLowerCase());
-    if (tool) this.tools.element.querySelector<HTMLButtonElement>(`[aria-keyshortcuts="${tool.key.toUpperCase()}"]`)!.click();
-    else if (event.key === "Escape") this.escape();
-    else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
-    else if (["Delete", "Backspace"].includes(event.key) && this.selected.size) this.remove();
-    else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);
-    else return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
+    if (press(this.commands, event)) event.stopImmediatePropagation();
   }
+
+  private readonly commands: readonly Command[] = [
+    ...TOOLS.map(({ name, key, title }) => ({ keys: [key], does: title, act: () => this.tools.press(name) })),
+    { keys: ["f"], does: "See the whole mechanism", act: () => this.page!.places.drawing.see(null) },
+    { keys: ["Escape"], does: "Drop what is begun; select nothing", when: () => this.edited, act: () => this.escape() },
+    { keys: ["Delete", "Backspace"], does: "Delete the selection", when: () => this.selected.size > 0, act: () => this.remove() },
+    {
+      keys: Object.keys(ARROWS),
+      does: "Move the selection; with Shift ten times as far",
+      when: () => this.tool === "select" && this.selected.size > 0 && this.keyed.idle,
+      act: (event) => this.shift(ARROWS[event.key]!, event.shiftKey),
+    },
+  ];
 
   /** Move the selected points by a step of the grid. */
   private shift([dx, dy]: Place, far: boolean): void {
@@ -389,6 +403,7 @@ export class Editor {
 
   private escape(): void {
     this.gesture = null;
+    this.keyed.rest();
     this.overlay.clear();
     this.select(null);
   }

@@ -39,6 +39,11 @@ export class ToolBar {
     }
   }
 
+  /** As a click would: not if it is disabled. */
+  press(name: string): void {
+    this.buttons.get(name)!.click();
+  }
+
   show(name: string): void {
     for (const [own, button] of this.buttons) button.setAttribute("aria-pressed", String(own === name));
   }
