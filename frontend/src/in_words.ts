@@ -2,6 +2,7 @@
 
 import type { MotionView } from "./motion";
 import { measured, shortNumber, trimmed } from "./numbers";
+import type { Hidden } from "./questions";
 import { html } from "./svg";
 
 /** Derivatives that count as 0. */
@@ -23,10 +24,14 @@ export class InWords {
   }
 
   /** Describe a row, if the words are open. */
-  show(title: string, view: MotionView, row: number, playing: boolean): void {
+  show(title: string, view: MotionView, row: number, playing: boolean, hides: (what: Hidden) => boolean): void {
     if (!this.element.open) return;
     this.text.replaceChildren();
-    html("p", {}, this.text, wholeOf(title, view, row, playing));
+    html("p", {}, this.text, wholeOf(title, view, row, playing, hides));
+    if (hides("numbers")) {
+      html("p", {}, this.text, "The numbers are hidden until the questions are answered.");
+      return;
+    }
     const turning = linksOf(view, row);
     if (turning.length) this.list("Links", turning);
     this.list("Points", pointsOf(view, row));
@@ -39,13 +44,13 @@ export class InWords {
   }
 }
 
-function wholeOf(title: string, view: MotionView, row: number, playing: boolean): string {
+function wholeOf(title: string, view: MotionView, row: number, playing: boolean, hides: (what: Hidden) => boolean): string {
   const { input, data } = view;
   const driven = data.driven.length ? `, driven at ${data.driven.join(" and ")}` : "";
-  const where = input.name ? `${input.shown} = ${measured(input.values[row]!, input.unit)}${driven}` : "a sketch without a motion";
+  const where = hides("input") ? "" : input.name ? `${input.shown} = ${measured(input.values[row]!, input.unit)}${driven}` : "a sketch without a motion";
   const status = data.evidence.status_texts[view.status[row]!] ?? "";
   const proof = view.certified[row] === 1 ? "proved" : "";
-  const limit = data.limits.find((one) => one.row === row)?.text ?? "";
+  const limit = hides("limits") ? "" : data.limits.find((one) => one.row === row)?.text ?? "";
   const play = input.name ? (playing ? "the motion plays" : "the motion stands still") : "";
   return `${title}: ${[where, [status, proof].filter(Boolean).join(", "), limit, play].filter(Boolean).join("; ")}.`;
 }

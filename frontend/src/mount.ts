@@ -14,6 +14,7 @@ import { measured } from "./numbers";
 import type { MotionData, PageData } from "./page_data";
 import { Player } from "./player";
 import { Presentation } from "./presentation";
+import { Questions } from "./questions";
 import { Slowly } from "./slowly";
 import { html, say } from "./svg";
 import { RowTable } from "./table";
@@ -125,6 +126,7 @@ class Page implements Mounted {
   private equationBox!: HTMLElement;
   presentation!: Presentation;
   private readonly words: InWords;
+  private readonly questions: Questions;
   private readonly reword = new Slowly(SPOKEN_EVERY, () => this.describe());
   private views: (MotionView | undefined)[] = [];
   private motion = 0;
@@ -160,6 +162,8 @@ class Page implements Mounted {
     const toggles = this.toggles(stage);
     this.words = new InWords(toggles, this.drawing.element, () => this.describe());
     const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.root);
+    this.questions = new Questions(this.root, () => this.describe());
+    side.append(this.questions.element);
     const facts = html("div", { class: "lw-facts" }, side);
     this.charts = new Charts(hooks.embedded ? side : this.root, this.plotted(), (index) => this.hold(index));
     this.table = new RowTable(facts, 1e-10 * (data.view[2]! - data.view[0]!));
@@ -264,6 +268,7 @@ class Page implements Mounted {
     this.transport.show(view);
     // During a drag, numbers are updated at half the rate of the drawing.
     const still = view.series.length === 0;
+    if (!still) this.questions.show(this.data, view.data, steady);
     if (!still && (!steady || this.updates++ % 2 === 0)) {
       this.charts.show(view, this.past, steady);
       this.table.show(view);
@@ -511,7 +516,7 @@ class Page implements Mounted {
   }
 
   private describe(): void {
-    this.words.show(this.data.title, this.view, this.view.order[this.player.at]!, this.player.playing);
+    this.words.show(this.data.title, this.view, this.view.order[this.player.at]!, this.player.playing, (what) => this.questions.hides(what));
   }
 
   /** Report the position even if it has been reported. */
@@ -524,8 +529,9 @@ class Page implements Mounted {
     this.describe();
     const view = this.view;
     const row = view.order[this.player.at]!;
-    const told = view.series.slice(0, 4).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
-    const limit = view.data.limits.find((one) => one.row === row)?.text;
+    const secret = this.questions.hides("input") ? 0 : this.questions.hides("numbers") ? 1 : 4;
+    const told = view.series.slice(0, secret).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
+    const limit = this.questions.hides("limits") ? undefined : view.data.limits.find((one) => one.row === row)?.text;
     this.live.textContent = [view.data.name, ...told, ...(limit ? [limit] : [])].join(", ");
     this.drawing.element.setAttribute("aria-label", `${this.data.title}: ${told[0] ?? ""}`);
   }

@@ -296,7 +296,7 @@ export class LivePage {
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-corner"));
     canvas.after(this.readiness.element, this.notices.element);
-    side.prepend(this.tabs.element);
+    side.querySelector(".lw-questions")!.after(this.tabs.element);
     this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
     this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
