@@ -263,6 +263,7 @@ class Page implements Mounted {
     this.drawn = -1;
     if (this.data.motions.length > 1) this.drawing.renew({ ...this.data, view: view.data.view });
     this.drawing.show(view);
+    this.drawing.element.setAttribute("aria-label", this.data.title || "mechanism");
     this.ghost.show(this.past);
     this.arrows.show(view);
     this.transport.show(view);
@@ -533,6 +534,6 @@ class Page implements Mounted {
     const told = view.series.slice(0, secret).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
     const limit = this.questions.hides("limits") ? undefined : view.data.limits.find((one) => one.row === row)?.text;
     this.live.textContent = [view.data.name, ...told, ...(limit ? [limit] : [])].join(", ");
-    this.drawing.element.setAttribute("aria-label", `${this.data.title}: ${told[0] ?? ""}`);
+    this.drawing.element.setAttribute("aria-label", [this.data.title || "mechanism", ...told.slice(0, 1)].join(": "));
   }
 }

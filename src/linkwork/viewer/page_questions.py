@@ -49,7 +49,9 @@ def _measure(motion: Motion, question: Question) -> tuple[str, bool]:
 
 
 def answers_of(motion: Motion) -> Iterator[AnswerData]:
-    """The right answers, any one of which will do; unknown where no position gives them."""
+    """The right answers, any one of which will do; unknown where no position gives them, or a limit
+    is only nearly located.
+    """
     for question in motion.skeleton.questions:
         values = _values(motion, question)
         known = all(map(math.isfinite, values)) and (bool(values) or question.answer in LIMITS)
@@ -62,7 +64,7 @@ def _values(motion: Motion, question: Question) -> tuple[float, ...]:
         return (float(answer),)
     if answer in LIMITS:
         found = (limit for limit in motion.limits if limit.kind.name == LIMITS[answer])
-        return tuple(limit.input for limit in found)
+        return tuple(limit.input if limit.located else math.nan for limit in found)
     try:
         if question.at is None:
             return (motion.value(answer),)
