@@ -9,9 +9,18 @@ let current: StartPage | null = null;
 /** What had the focus before. */
 let before: Element | null = null;
 
-/** Show the start page, or let another function open what is chosen on it. */
+/** What was chosen before there was a program to open it. */
+let chosen: string | null = null;
+
+/** Show the start page, or let another function open what is chosen on it, or was chosen already. */
 export function offerStart(open: (name: string) => void, close?: () => void): void {
   const hooks = { open, ...(close ? { close } : {}) };
+  const early = chosen;
+  chosen = null;
+  if (early !== null && !close) {
+    open(early);
+    return;
+  }
   if (current !== null && !close) {
     current.hooks = hooks;
     return;
@@ -21,6 +30,12 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   before = document.activeElement;
   document.body.append(current.element);
   for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = true;
+}
+
+/** Keep a choice for the program that is being loaded. */
+export function chooseEarly(name: string): void {
+  chosen = name;
+  leaveStart();
 }
 
 export function leaveStart(): void {
