@@ -56,7 +56,7 @@ def test_numbers_of_the_motion_rows_and_given_numbers_are_answers() -> None:
         motion.points["B"][0].value[row],
         7.5,
     ]
-    assert found == [(pytest.approx(value, rel=1e-12),) for value in expected]
+    assert [value for (value,) in found] == pytest.approx(expected, rel=1e-12)
     told = [(one.unit, one.turn) for one in questions_of(motion)]
     assert told == [("deg", 0), ("deg", 360), ("mm", 0), ("mm", 0)]
 

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from linkwork.foundation.value_types import check_values
+
 __all__ = ["HIDDEN", "LIMITS", "Question"]
 
 #: The answers that are places of the input, and the kinds of limits there.
@@ -41,8 +43,7 @@ class Question:
     Examples
     --------
     >>> import linkwork as lw
-    >>> from linkwork.mechanism.question import Question
-    >>> ask = Question(text="How far does the rocker turn?", answer="stroke(rocker)", tolerance=1)
+    >>> ask = lw.Question(text="How far does it turn?", answer="stroke(rocker)", tolerance=1)
     >>> lw.example("four-bar").changed(questions=[ask]).sweep().skeleton.questions[0].answer
     'stroke(rocker)'
     """
@@ -54,6 +55,9 @@ class Question:
     unit: str = ""
     hide: tuple[str, ...] = HIDDEN[:4]
 
+    def __post_init__(self) -> None:
+        check_values(self)
+
     @property
     def given(self) -> bool:
         """Whether the answer is a number in the file."""
@@ -61,9 +65,9 @@ class Question:
 
     def problems(self) -> Iterator[tuple[str, str]]:
         """Keys and messages of what is wrong, without regard to the mechanism."""
-        if not isinstance(self.text, str) or not self.text.strip():
+        if not self.text.strip():
             yield "text", "is empty: write the question"
-        if not isinstance(self.tolerance, int | float) or not 0 < self.tolerance < math.inf:
+        if not 0 < self.tolerance < math.inf:
             yield "tolerance", "must be a positive number, in the unit of the answer"
         known = ", ".join(f'"{word}"' for word in HIDDEN)
         for word in self.hide:
