@@ -2,6 +2,7 @@
 
 import { libraryOf } from "../begin/library";
 import { StartPage } from "../begin/start_page";
+import type { FileState } from "../messages";
 import type { Desk } from "./asking";
 
 /** The start page in sight; it may be there before the program that opens what is chosen. */
@@ -55,8 +56,9 @@ export class Starting {
   }
 
   private open(name: string): void {
-    const { unsaved, file } = this.desk.file();
-    const discard = unsaved && confirm(`Changes of ${file} are not saved. Discard them?`);
+    const state: FileState | null = this.desk.file(); // none before the first file is open
+    const unsaved = state?.unsaved ?? false;
+    const discard = unsaved && confirm(`Changes of ${state!.file} are not saved. Discard them?`);
     if (unsaved && !discard) return;
     leaveStart();
     this.desk.ask({ kind: "open_example", name, discard });
