@@ -104,10 +104,27 @@ export interface AddPart {
   typed: Record<string, string | readonly (string)[]>;
 }
 
+export interface DrawPart {
+  kind: "draw_part";
+  id?: number;
+  table: string;
+  picks: readonly (Picked)[];
+  span: number;
+}
+
+export interface SetPart {
+  kind: "set_part";
+  id?: number;
+  name: string;
+  key: string;
+  typed: string | readonly (string)[];
+}
+
 export interface RemovePart {
   kind: "remove_part";
   id?: number;
   name: string;
+  whole?: boolean;
 }
 
 export interface TracePoint {
@@ -286,6 +303,7 @@ export interface FileState {
   points: Record<string, readonly [number, number]>;
   links: readonly (Link)[];
   parts: readonly (string)[];
+  part_entries: readonly (PartShown)[];
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
@@ -448,11 +466,20 @@ export interface StartOffered {
   answers: number | null;
 }
 
+export interface Picked {
+  x: number;
+  y: number;
+  point?: string;
+  link?: string;
+  size?: number;
+}
+
 export interface PalettePart {
   table: string;
   title: string;
   doc: string;
   fields: readonly (PaletteField)[];
+  picks: readonly (Pick)[];
 }
 
 export interface PaletteField {
@@ -462,6 +489,13 @@ export interface PaletteField {
   required: boolean;
   words: readonly (string)[];
   named: readonly (string)[];
+}
+
+export interface Pick {
+  prompt: string;
+  takes: readonly (string)[];
+  sized: boolean;
+  repeated: boolean;
 }
 
 export interface ChangeableNumber {
@@ -490,6 +524,14 @@ export interface DrivenInput {
 
 export interface Link {
   name: string;
+  points: readonly (string)[];
+}
+
+export interface PartShown {
+  table: string;
+  name: string;
+  typed: Record<string, string | readonly (string)[]>;
+  links: readonly (string)[];
   points: readonly (string)[];
 }
 
@@ -589,6 +631,8 @@ export type LiveEdit =
   | AddJoint
   | RemoveJoint
   | AddPart
+  | DrawPart
+  | SetPart
   | RemovePart
   | TracePoint
   | ChooseConfiguration
@@ -611,6 +655,8 @@ export type LiveRequest =
   | AddJoint
   | RemoveJoint
   | AddPart
+  | DrawPart
+  | SetPart
   | RemovePart
   | TracePoint
   | ChooseConfiguration

@@ -159,6 +159,7 @@ export class LivePage {
         break;
       case "palette_shown":
         this.build.offer(event.parts);
+        this.editor.offer(event.parts);
         break;
       case "file_state":
         this.state(event);

@@ -6,11 +6,18 @@ import { put, svg } from "../../svg";
 import type { Place, Sketch } from "./geometry";
 import type { Chosen } from "./inspector";
 
-/** Tools that act on a click; with the others a line is drawn. */
-const CLICKED: ReadonlySet<string> = new Set(["ground", "drive", "trace"]);
 /** No pointer of a screen has this number. */
 const ID = -7;
 const ARROWS: Readonly<Record<string, Place>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+export interface KeyPointerHooks {
+  /** Select a point or link. */
+  readonly choose: (chosen: Chosen) => void;
+  /** Show a short hint. */
+  readonly hint: (text: string) => void;
+  /** Whether the tool acts on a click now; otherwise a line is drawn. */
+  readonly clicks: () => boolean;
+}
 
 interface Thing extends Chosen {
   readonly at: Place;
@@ -27,10 +34,7 @@ export class KeyPointer {
   private at: Place | null = null;
   private down = false;
 
-  constructor(
-    private readonly choose: (chosen: Chosen) => void,
-    private readonly hint: (text: string) => void,
-  ) {
+  constructor(private readonly hooks: KeyPointerHooks) {
     declareKeys("Drawing by keyboard", [{ keys: ["Tab"], does: "The next point, then the links, of the drawing" }, ...this.commands]);
   }
 
@@ -98,7 +102,7 @@ export class KeyPointer {
       return;
     }
     this.move([Number(target.getAttribute("cx")), -Number(target.getAttribute("cy"))]);
-    if (this.tool === "select" && !this.down) this.choose({ kind, name });
+    if (this.tool === "select" && !this.down) this.hooks.choose({ kind, name });
   }
 
   private middle(): Place {
@@ -134,9 +138,9 @@ export class KeyPointer {
 
   private enter(): void {
     if (!this.down) this.send("pointerdown");
-    if (!this.down && !CLICKED.has(this.tool)) {
+    if (!this.down && !this.hooks.clicks()) {
       this.down = true;
-      this.hint("Arrow keys move the end, Tab goes to the next point; Enter drops it, Escape forgets it.");
+      this.hooks.hint("Arrow keys move the end, Tab goes to the next point; Enter drops it, Escape forgets it.");
       return;
     }
     this.down = false;

@@ -56,6 +56,12 @@ export class Overlay {
     this.mark(to, text, pixel);
   }
 
+  /** A circle that is being drawn, with its radius. */
+  circle(centre: Place, radius: number, text: string, pixel: number): void {
+    this.mark(centre, text, pixel);
+    put(this.end, { r: radius });
+  }
+
   /** A place that is being pointed at. */
   mark(at: Place, text: string, pixel: number): void {
     put(this.end, { cx: at[0], cy: -at[1], r: 7 * pixel });

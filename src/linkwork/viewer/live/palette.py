@@ -17,6 +17,7 @@ from linkwork.foundation.units import ANGLES, LENGTHS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.entries import measured_by
 from linkwork.viewer.live.file_state import PaletteField, PalettePart
+from linkwork.viewer.live.part_tools import PICKS
 from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
@@ -83,7 +84,13 @@ def _field(key: Key) -> PaletteField:
 
 #: All kinds of parts, in the order of the tables of a file.
 PALETTE: tuple[PalettePart, ...] = tuple(
-    PalettePart(table=table, title=kind.title, doc=kind.doc, fields=tuple(map(_field, kind.keys)))
+    PalettePart(
+        table=table,
+        title=kind.title,
+        doc=kind.doc,
+        fields=tuple(map(_field, kind.keys)),
+        picks=PICKS.get(table, ()),
+    )
     for table, kind in PARTS.items()
 )
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.part_requests import AddPart, DrawPart, Picked, RemovePart, SetPart
 from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "AssembleAt",
     "ChangeUnits",
     "ChooseConfiguration",
+    "DrawPart",
     "Duplicate",
     "Edit",
     "Export",
@@ -33,6 +35,7 @@ __all__ = [
     "MovePoints",
     "NewtonSteps",
     "OpenExample",
+    "Picked",
     "Question",
     "Redo",
     "Reload",
@@ -47,6 +50,7 @@ __all__ = [
     "SetGround",
     "SetInput",
     "SetNumber",
+    "SetPart",
     "SetSheet",
     "SetText",
     "ShowQuantities",
@@ -181,27 +185,6 @@ class RemoveJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AddPart:
-    """Add an entry to a table of parts: sliders, gears, cams, …
-
-    ``typed``: user input by key: text, a number, a formula, true or false; a list of names; a list
-    of lines, each with the numbers or words of one row.
-    """
-
-    table: str
-    typed: dict[str, str | tuple[str, ...]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class RemovePart:
-    """Remove a slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve; a weld by the
-    names of its two links.
-    """
-
-    name: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class TracePoint:
     """Show or hide the path of a point."""
 
@@ -231,6 +214,8 @@ Edit = (
     | AddJoint
     | RemoveJoint
     | AddPart
+    | DrawPart
+    | SetPart
     | RemovePart
     | TracePoint
     | ChooseConfiguration
