@@ -17,12 +17,14 @@ from linkwork.foundation.file_keys import (
     ListOf,
     Named,
     Number,
+    PlainNumber,
     Speed,
     Table,
     Tables,
     Text,
 )
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.question import HIDDEN
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
@@ -79,6 +81,35 @@ _TRACE = Key(
     "trace",
     Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
+)
+_QUESTIONS = Key(
+    "questions",
+    Tables(
+        (
+            Key("text", Text(), "The question", required=True),
+            Key(
+                "answer",
+                Number(),
+                '"dead points", "change points", a number of the whole motion such as '
+                '"stroke(rocker)", with at a quantity such as "mu", or the number itself',
+                required=True,
+            ),
+            Key("at", PlainNumber(), "The input value at which the quantity is asked"),
+            Key(
+                "tolerance",
+                PlainNumber(),
+                "How far an answer may be from the right one, in its unit",
+                required=True,
+            ),
+            Key("unit", Text(), "The unit of an answer that is given as a number"),
+            Key(
+                "hide",
+                ListOf(Text(HIDDEN), "word"),
+                "What a page hides until the question is answered; default all but equations",
+            ),
+        )
+    ),
+    "Questions asked on pages; answers are computed, and hidden until they are asked for",
 )
 _GUESS = Key(
     "guess",
@@ -146,6 +177,7 @@ LINKAGE = Form(
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 LOOPS = Form(
@@ -179,6 +211,7 @@ LOOPS = Form(
         ),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 EQUATIONS = Form(
@@ -197,6 +230,7 @@ EQUATIONS = Form(
         _GUESS,
         Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 FORMS = (LINKAGE, LOOPS, EQUATIONS)

@@ -1,5 +1,6 @@
 // Tools beside those that draw: zoom, measure, dimension lines, a photograph, copies.
 
+import { declareKeys, press, type Command } from "../../keys";
 import type { Mounted } from "../../mount";
 import { put } from "../../svg";
 import type { Desk } from "../asking";
@@ -19,6 +20,7 @@ export class CanvasTools {
   private readonly photograph: Photograph;
   private readonly ruler = iconButton("Measure", "Measure (Q): two clicks a distance, three an angle", "M3 15.500L15.500 3 21 8.500 8.500 21zM7 12l2.500 2.500M10.500 8.500l2 2M14 5l2.500 2.500");
   private gone = new AbortController();
+  private readonly commands: readonly Command[];
 
   constructor(desk: Desk, editor: Editor) {
     this.selected = new Selected(desk, () => editor.held);
@@ -28,6 +30,13 @@ export class CanvasTools {
     put(this.ruler, { "aria-keyshortcuts": "Q" });
     this.ruler.addEventListener("click", () => this.measure.set(!this.measure.on));
     this.zoom.element.append(this.ruler, this.lines.button, this.photograph.button);
+    this.commands = [
+      { keys: ["d"], ctrl: true, does: "Duplicate the selection", act: () => this.selected.duplicate() },
+      { keys: ["q"], does: "Measure: two clicks a distance, three an angle", act: () => this.measure.set(!this.measure.on) },
+      { keys: ["Escape"], does: "End measuring", when: () => this.measure.on, act: () => this.measure.set(false) },
+      ...this.zoom.commands,
+    ];
+    declareKeys("View and copies", this.commands);
     editor.inspector.more = (panel) => this.selected.fill(panel);
     editor.redrawn = () => this.draw();
   }
@@ -68,15 +77,7 @@ export class CanvasTools {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (document.querySelector("dialog[open]") || target.closest("input, textarea, select") || event.altKey) return;
-    const ctrl = event.ctrlKey || event.metaKey;
-    const key = event.key.toLowerCase();
-    if (ctrl && key === "d") this.selected.duplicate();
-    else if (ctrl) return;
-    else if (key === "q") this.measure.set(!this.measure.on);
-    else if (key === "escape" && this.measure.on) this.measure.set(false);
-    else if (!this.zoom.key(key)) return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
+    if (document.querySelector("dialog[open]") || target.closest("input, textarea, select")) return;
+    if (press(this.commands, event)) event.stopImmediatePropagation();
   }
 }

@@ -2,6 +2,7 @@
 
 import type { FileState, LiveEdit, PalettePart, Picked } from "../../messages";
 import type { Mounted } from "../../mount";
+import { declareKeys, press, type Command } from "../../keys";
 import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
@@ -9,6 +10,7 @@ import { clean } from "../ranges";
 import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
+import { KeyPointer } from "./key_pointer";
 import { Overlay, pointsWithin } from "./overlay";
 import { PART_TOOLS } from "./part_tools";
 import { Picking } from "./picking";
@@ -20,6 +22,8 @@ import { ToolBar, TOOLS } from "./tool_bar";
 const REACH = { mouse: 12, touch: 24 };
 /** A pointer that moves less has clicked [px]. */
 const STILL = 4;
+/** Tools that act on a click; with others a line is drawn, or a part is picked. */
+const CLICKED: ReadonlySet<string> = new Set(["ground", "drive", "trace"]);
 const ARROWS: Readonly<Record<string, Place>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export interface EditorHooks {
@@ -43,6 +47,7 @@ export class Editor {
   readonly tools = new ToolBar((name) => this.choose(name));
   readonly inspector: Inspector;
   private readonly overlay = new Overlay();
+  private readonly keyed: KeyPointer;
   private page: Mounted | null = null;
   private file: FileState | null = null;
   private tool = "move";
@@ -68,6 +73,12 @@ export class Editor {
     private readonly hooks: EditorHooks,
   ) {
     this.inspector = new Inspector(desk, () => this.select(null), (chosen) => this.select(chosen));
+    this.keyed = new KeyPointer({
+      choose: (chosen) => this.select(chosen),
+      hint: hooks.hint,
+      clicks: () => CLICKED.has(this.tool) || (this.picking !== null && !this.picking.next.sized),
+    });
+    declareKeys("Drawing", this.commands);
   }
 
   /** Offer tools for these kinds of parts. */
@@ -96,6 +107,7 @@ export class Editor {
     this.gone = new AbortController();
     this.page = page;
     this.overlay.attach(page);
+    this.keyed.attach(page, this.gone.signal);
     const { canvas, drawing } = page.places;
     canvas.append(this.tools.element, this.tools.parts.element, this.tools.parts.prompt, this.inspector.element);
     const options = { capture: true, signal: this.gone.signal };
@@ -161,6 +173,7 @@ export class Editor {
   choose(name: string): void {
     if (name === this.tool) return;
     const before = this.edited;
+    this.keyed.rest();
     const part = this.tools.part(name);
     [this.tool, this.before] = [name, null];
     this.picking = part ? new Picking(part, (table, picks) => this.drawn(table, picks)) : null;
@@ -194,7 +207,7 @@ export class Editor {
     const points = this.points;
     const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
     this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
-    this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+    this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
     this.redrawn();
   }
 
@@ -231,8 +244,10 @@ export class Editor {
     if (!this.edited && !panned && this.touches.size < 2) return;
     event.stopImmediatePropagation();
     event.preventDefault();
-    (document.activeElement as HTMLElement | null)?.blur?.();
-    this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    if (event.isTrusted) {
+      (document.activeElement as HTMLElement | null)?.blur?.();
+      this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    }
     this.panned = panned;
     if (panned || this.touches.size > 1 || event.button !== 0) return;
     const [at, reach] = [this.place(event), this.reach(event)];
@@ -455,21 +470,27 @@ export class Editor {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || this.page === null) return;
+    if (this.page === null) return;
     if (document.querySelector("dialog[open]")) return; // its keys are its own
     if (target.closest("input, textarea, select") && event.key !== "Escape") return;
     if (target.closest(".lw-part-tools") && event.key === "Escape") return;
-    const tool = [...TOOLS, ...PART_TOOLS].find(({ key }) => key === event.key.toLowerCase());
-    if (tool) this.tools.press(tool.name);
-    else if (event.key === "Escape") this.escape();
-    else if (event.key === "Enter" && this.picking?.next.repeated && target === document.body && this.picking.finish()) this.tell();
-    else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
-    else if (["Delete", "Backspace"].includes(event.key) && (this.selected.size || this.chosen)) this.remove();
-    else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);
-    else return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
+    if (event.key === "Enter" && target !== document.body) return; // it presses what has the focus
+    if (press(this.commands, event)) event.stopImmediatePropagation();
   }
+
+  private readonly commands: readonly Command[] = [
+    ...[...TOOLS, ...PART_TOOLS].map(({ name, key, title }) => ({ keys: [key], does: title, act: () => this.tools.press(name) })),
+    { keys: ["Enter"], does: "End what is picked point by point", when: () => this.picking?.next.repeated === true, act: () => this.picking!.finish() && this.tell() },
+    { keys: ["f"], does: "See the whole mechanism", act: () => this.page!.places.drawing.see(null) },
+    { keys: ["Escape"], does: "Drop what is begun; select nothing", when: () => this.edited, act: () => this.escape() },
+    { keys: ["Delete", "Backspace"], does: "Delete the selection", when: () => this.selected.size > 0 || this.chosen !== null, act: () => this.remove() },
+    {
+      keys: Object.keys(ARROWS),
+      does: "Move the selection; with Shift ten times as far",
+      when: () => this.tool === "select" && this.selected.size > 0 && this.keyed.idle,
+      act: (event) => this.shift(ARROWS[event.key]!, event.shiftKey),
+    },
+  ];
 
   /** Move the selected points by a step of the grid. */
   private shift([dx, dy]: Place, far: boolean): void {
@@ -485,6 +506,7 @@ export class Editor {
 
   private escape(): void {
     this.gesture = null;
+    this.keyed.rest();
     this.picking?.cancel();
     this.tell();
     this.overlay.clear();

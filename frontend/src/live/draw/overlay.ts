@@ -11,7 +11,6 @@ export class Overlay {
   private readonly group = svg("g", { class: "lw-draft" });
   private readonly traced = svg("g", {}, this.group);
   private readonly marks = svg("g", {}, this.group);
-  private readonly handles = svg("g", {}, this.group);
   private readonly line = svg("path", { class: "lw-draft-line" }, this.group);
   private readonly box = svg("rect", { class: "lw-draft-box" }, this.group);
   private readonly end = svg("circle", { class: "lw-draft-end" }, this.group);
@@ -71,23 +70,6 @@ export class Overlay {
     put(this.text, { x: at[0] + 12 * pixel, y: -at[1] - 12 * pixel });
   }
 
-  /** Points that are reached by the tabulator key. */
-  focusable(points: Places, pixel: number, chosen: (name: string) => void): void {
-    const names = Object.keys(points).join(" ");
-    if (this.handles.dataset.names !== names) {
-      this.handles.dataset.names = names;
-      this.handles.replaceChildren();
-      for (const name of Object.keys(points)) {
-        const handle = svg("circle", { class: "lw-focusable", "data-sketched": name, tabindex: 0, role: "button" }, this.handles);
-        handle.addEventListener("focus", () => chosen(name));
-      }
-    }
-    Object.entries(points).forEach(([name, [x, y]], k) => {
-      const handle = this.handles.children[k]!;
-      put(handle, { cx: x, cy: -y, r: 11 * pixel, "aria-label": `Point ${name} at ${round(x)}, ${round(y)}: arrow keys move it` });
-    });
-  }
-
   rubber(one: Place, other: Place): void {
     const [x, y] = [Math.min(one[0], other[0]), Math.max(one[1], other[1])];
     put(this.box, { x, y: -y, width: Math.abs(other[0] - one[0]), height: Math.abs(other[1] - one[1]) });
@@ -106,8 +88,6 @@ export class Overlay {
     this.text.textContent = "";
   }
 }
-
-const round = (value: number): number => Number(value.toPrecision(6));
 
 /** Names of points inside a box. */
 export function pointsWithin(points: Places, one: Place, other: Place): string[] {
