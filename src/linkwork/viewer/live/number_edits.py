@@ -41,8 +41,10 @@ def set_number(edit: ask.SetNumber, text: TextEdits, before: Before) -> None:
         text.put(("lengths", measured), value)
         _stretch(measured, value, text, before)
         return
-    kind = _KINDS.get(quantity.table) or kind_of_name(quantity.key, text)
-    value = units.number(edit.value, kind, f'"{quantity.name}"')
+    value = edit.value
+    if isinstance(value, str):
+        kind = _KINDS.get(quantity.table) or kind_of_name(quantity.key, text)
+        value = units.number(value, kind, f'"{quantity.name}"')
     written = quantity.written(description)
     # a number in place of a formula would silently remove the dependence on dimensions
     if isinstance(written, str) and not isinstance(value, str) and not edit.any_formula:
