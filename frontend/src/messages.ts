@@ -140,6 +140,13 @@ export interface ChooseConfiguration {
   name: string;
 }
 
+export interface AddOutput {
+  kind: "add_output";
+  id?: number;
+  name: string;
+  formula: string;
+}
+
 export interface ChangeUnits {
   kind: "change_units";
   id?: number;
@@ -307,6 +314,7 @@ export interface FileState {
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
+  outputs: readonly (string)[];
   equations: readonly (string)[];
   lacks: readonly (Lack)[];
   readable: boolean;
@@ -636,6 +644,7 @@ export type LiveEdit =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate
@@ -660,6 +669,7 @@ export type LiveRequest =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate

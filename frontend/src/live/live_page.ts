@@ -296,7 +296,7 @@ export class LivePage {
     const view = this.page && this.editor.edited ? this.page.places.drawing.window : null;
     this.page?.destroy();
     const still = data.motions[0]!.columns.length === 0;
-    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), changing: true, still }));
+    const page = (this.page = mount(this.element, data, { row: () => this.rowShown(), changing: true, still }));
     const { head, canvas, side } = page.places;
     head.insertBefore(this.bar.element, head.querySelector(".lw-corner"));
     canvas.after(this.readiness.element, this.notices.element);
@@ -305,11 +305,16 @@ export class LivePage {
     this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
     this.plots.attach(page);
-    this.editor.attach(page);
     presentNewton(page, this.tabs, this.newton, () => !this.rowless && this.moving !== null && this.editor.choose("move"));
     if (this.first) canvas.before(this.first);
     this.canvas.attach(page);
+    this.editor.attach(page);
     if (view) page.places.drawing.see(view);
+  }
+
+  private rowShown(): void {
+    this.newton.moved();
+    this.canvas.moved();
   }
 
   /** Another tool: the sketch is asked for while it is edited. */

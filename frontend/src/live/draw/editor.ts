@@ -62,6 +62,8 @@ export class Editor {
   private under: Under = {};
   /** What is selected with the next state of the file. */
   private expected: Expected | null = null;
+  /** Called after the drawing has been drawn again. */
+  redrawn: () => void = () => {};
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -206,6 +208,7 @@ export class Editor {
     const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
     this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
     this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
+    this.redrawn();
   }
 
   private get points(): Places {

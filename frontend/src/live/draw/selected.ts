@@ -94,7 +94,7 @@ export class Selected {
   /** The name in the head of the panel, to be typed. */
   private name(panel: HTMLElement, { kind, name }: Chosen): void {
     const head = panel.querySelector("header strong");
-    if (!head) return;
+    if (!head || name.includes(" ")) return; // a weld is named by its links
     head.textContent = head.textContent!.slice(0, -name.length).trim();
     const field = html("input", { type: "text", class: "lw-name-field", "aria-label": `Name of the ${kind}`, autocomplete: "off", spellcheck: "false" });
     field.value = name;
@@ -105,9 +105,11 @@ export class Selected {
         field.value = name;
         return;
       }
+      const { points, links, parts } = this.desk.file();
+      const taken = wanted in points || parts.includes(wanted) || links.some((link) => link.name === wanted);
       this.desk.ask({ kind: "rename", of: kind, name, new: wanted });
       field.blur();
-      this.held().expect({ chosen: { kind, name: wanted }, points: [wanted] });
+      if (!taken) this.held().expect({ chosen: { kind, name: wanted }, points: [wanted] });
     });
   }
 }

@@ -13,9 +13,9 @@ from linkwork.mechanism.part.slider import Slider
 from linkwork.mechanism.part.wheel_pair import ArmPair
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.moving_points import Before
-from linkwork.viewer.live.palette import Typed
+from linkwork.viewer.live.part_requests import Typed
 
-__all__ = ["DrawnSheet"]
+__all__ = ["DrawnSheet", "away_from_line", "short"]
 
 _LETTERS = "ABCDFGHJKLMNPQRSTUVWXYZ"  # as of points drawn on the page
 #: Of the span: places nearer to each other are the same.
@@ -25,10 +25,10 @@ _LEAST = 1e-9
 class DrawnSheet:
     """A draft to which points, links and parts are added."""
 
-    def __init__(self, before: Before, span: float) -> None:
+    def __init__(self, before: Before, drawn: ask.DrawPart) -> None:
         assert isinstance(before.description, Draft)
         self.draft = before.description.drawable
-        self.span, self._before = span, before
+        self.span, self._table, self._before = drawn.span, drawn.table, before
         self.links = {name: list(points) for name, points in before.description.links.items()}
         self.links.setdefault(GROUND, [])
         self.turning = set(turning_links(self.draft))
@@ -80,9 +80,9 @@ class DrawnSheet:
         self.edits.append(ask.AddLink(name=name, points=points))
         return name
 
-    def part(self, table: str, **typed: Typed) -> None:
-        """The part."""
-        self.edits.append(ask.AddPart(table=table, typed=typed))
+    def finish(self, **typed: Typed) -> None:
+        """The part that is drawn."""
+        self.edits.append(ask.AddPart(table=self._table, typed=typed))
 
     def line(self, through: complex, along: complex, on: str) -> tuple[str, str]:
         """Two new points on a link, on both sides of a place."""
@@ -213,7 +213,14 @@ class DrawnSheet:
         point = self.picked(pick) or self.point(complex(pick.x, pick.y))
         line = line or self.line(self.place(point), along, on)
         block, name = self.link("block", point), self.name("s")
-        self.part("sliders", name=name, link=block, points=(point,), on=on, line=line)
+        typed: dict[str, Typed] = {
+            "name": name,
+            "link": block,
+            "points": (point,),
+            "on": on,
+            "line": line,
+        }
+        self.edits.append(ask.AddPart(table="sliders", typed=typed))
         return name
 
 
@@ -227,3 +234,14 @@ def _away(place: complex, start: complex, end: complex) -> float:
 
 def _listed(names: list[str]) -> str:
     return " and ".join(names) or "no link"
+
+
+def short(number: float) -> str:
+    """A typed number."""
+    return f"{number:.6g}"
+
+
+def away_from_line(place: complex, start: complex, end: complex) -> float:
+    """The distance of a place from a line."""
+    along = end - start
+    return abs(((place - start) * along.conjugate()).imag) / abs(along) if along else 0.0

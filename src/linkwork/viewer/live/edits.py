@@ -14,11 +14,11 @@ from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
-from linkwork.viewer.live.drawn_part import edits_of_drawing
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
 from linkwork.viewer.live.number_edits import set_input, set_number
 from linkwork.viewer.live.palette import part_of
+from linkwork.viewer.live.part.index import edits_of_drawing
 from linkwork.viewer.live.part_entries import alone_with, part_row, put_entry
 from linkwork.viewer.live.typed_units import TypedUnits
 from linkwork.viewer.live.written_links import (
@@ -264,6 +264,12 @@ def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
     mirror_numbers(text, set(map(canonical, places)))
     followed, stayed = move_points(text, before, linkage, places)
     return Followed(followed=followed, stayed=stayed)
+
+
+@applied.register
+def _(edit: ask.AddOutput, text: TextEdits, before: Before) -> Followed:
+    add_entry(text, "outputs", edit.name, edit.formula)
+    return Followed()
 
 
 @applied.register

@@ -187,6 +187,7 @@ class FileState:
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]
+    outputs: tuple[str, ...]
     equations: tuple[str, ...]
     lacks: tuple[Lack, ...]
     readable: bool

@@ -102,8 +102,8 @@ def put_entry(edit: ask.SetPart, text: TextEdits, units: TypedUnits) -> None:
         If there is no such part or key, or the entry does not match its key.
     """
     table, k = part_row(text, edit.name)
-    entries = part_of(table, {edit.key: edit.typed}, units)
     here = (table, k)
+    entries = part_of(table, {edit.key: edit.typed}, units, text.get(here))
     if edit.key not in entries:
         if text.has((*here, edit.key)):
             text.remove((*here, edit.key))

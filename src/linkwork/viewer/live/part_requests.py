@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["AddPart", "DrawPart", "Picked", "RemovePart", "SetPart"]
+__all__ = ["AddPart", "DrawPart", "Picked", "RemovePart", "SetPart", "Typed"]
+
+#: User input of a field: one entry or several; a row of numbers or of a table is one line,
+#: "10, 20".
+Typed = str | tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,8 +1,7 @@
 """Requests of the page: one frozen dataclass per request.
 
-The name of a class in snake case is the ``kind`` of its message. ``live`` marks
-intermediate changes of a drag: they are displayed, and become one step of the history with the last
-change, which is not ``live``.
+The name of a class in snake case is the ``kind`` of its message. ``live`` marks intermediate
+changes of a drag: they are displayed, and become one step of the history with the last change.
 """
 
 from __future__ import annotations
@@ -10,13 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.viewer.live.part_requests import AddPart, DrawPart, Picked, RemovePart, SetPart
-from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
+from linkwork.viewer.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
     "EDITS",
     "REQUESTS",
     "AddJoint",
     "AddLink",
+    "AddOutput",
     "AddPart",
     "AddPoint",
     "AssembleAt",
@@ -65,9 +65,8 @@ __all__ = [
 class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
-    ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A value may have a unit: "3 in". A number replaces a formula only
-    with ``any_formula``.
+    ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a given
+    one. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
     """
 
     name: str
@@ -219,6 +218,7 @@ Edit = (
     | RemovePart
     | TracePoint
     | ChooseConfiguration
+    | AddOutput
     | ChangeUnits
     | Rename
     | Duplicate

@@ -346,6 +346,7 @@ def file_state(
         drives=_drives_of(sheet, description),
         traceable=tuple(getattr(description, "points", ())),
         traced=description.trace,
+        outputs=tuple(description.outputs),
         equations=() if sheet is None else _loop_texts(sheet),
         lacks=lacks_of(subject),
         readable=subject.readable,

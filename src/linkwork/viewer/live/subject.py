@@ -11,7 +11,6 @@ from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Units
 from linkwork.textfile.reader import read_draft
-from linkwork.viewer.live.sketched_outlines import sketched_outlines
 from linkwork.viewer.live.solvable import Read, Solvable
 from linkwork.viewer.page_data import PageData
 from linkwork.viewer.still_page import still_page
@@ -78,8 +77,9 @@ class Subject:
             return None
         draft = self.description.drawable
         places = {name: draft.sketched(name) for name in draft.points}
+        outlines = dict(pair for part in draft.parts for pair in part.sketched_outlines(draft))
         return still_page(
-            Skeleton.of_linkage(draft, sketched_outlines(draft)),
+            Skeleton.of_linkage(draft, outlines),
             {name: (place.real, place.imag) for name, place in places.items()},
             units=Units(angle=draft.angle, length=draft.length),
             title=draft.name,
