@@ -23,6 +23,7 @@ from linkwork.viewer.live.workbench import Workbench
 __all__ = ["monkey_at", "monkey_campaign"]
 
 _ACTIONS = 50  # at every mechanism
+_SOON = 300  # ms, after which the page has told the width of its sheet
 _COMPARED = 10  # actions between comparisons
 _WINDOW = {"width": 1440, "height": 900}
 _PATIENCE = 60_000  # ms for an answer
@@ -74,6 +75,7 @@ class Monkey:
         """What page and file do not agree in."""
         self.page.keyboard.press("Escape")
         self.page.keyboard.press("Escape")
+        self.page.wait_for_timeout(_SOON)
         self.settle()
         seen = self.page.evaluate("() => window.seen.state")
         if seen["text"] != self.bench.text:
