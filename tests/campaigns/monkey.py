@@ -112,7 +112,8 @@ class Monkey:
         if shown["edited"] or motion is None or subject.solvable is None:
             places = subject.places()
             if not places and isinstance(subject.description, Draft):
-                sketch = {name: subject.description.drawable.sketched(name) for name in names}
+                draft = subject.description.drawable
+                sketch = {name: draft.sketched(name) for name in draft.points}
                 places = {name: (z.real, z.imag) for name, z in sketch.items()}
         elif row is None or row >= len(motion) or not motion.found[row]:
             return
