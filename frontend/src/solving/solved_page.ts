@@ -201,6 +201,7 @@ export class SolvedPages {
         branch_names: [""],
       },
       limits,
+      answers: [],
       numbers: [],
     };
     return { ...motion, parts: this.parts(motion, order.rows, numbers) };

@@ -30,7 +30,13 @@ class Text:
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or a formula in the named dimensions."""
+    """A number, or a formula in the named dimensions.
+
+    ``of``: what it measures: number, length or angle; ``driven``: as the input, ``lift``: as the
+    follower of the cam, ``named``: as formulas use it.
+    """
+
+    of: str = "number"
 
 
 @dataclass(frozen=True)

@@ -17,12 +17,14 @@ from linkwork.foundation.file_keys import (
     ListOf,
     Named,
     Number,
+    PlainNumber,
     Speed,
     Table,
     Tables,
     Text,
 )
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.question import HIDDEN
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
@@ -45,7 +47,7 @@ class Form:
         return self.title.replace("-", "_").replace(" ", "_")
 
 
-_NAME_LIST = ListOf(Text(), "name")
+_POINT_LIST = ListOf(Text(), "point")
 
 _HEAD = (
     Key(
@@ -68,7 +70,7 @@ _HEAD = (
     Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
-    "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"
+    "dimensions", Named(Number("named")), "Named numbers and formulas, usable in place of numbers"
 )
 _OUTPUTS = Key(
     "outputs",
@@ -77,21 +79,50 @@ _OUTPUTS = Key(
 )
 _TRACE = Key(
     "trace",
-    Table((Key("points", _NAME_LIST, "Points whose paths are drawn", required=True),)),
+    Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
+)
+_QUESTIONS = Key(
+    "questions",
+    Tables(
+        (
+            Key("text", Text(), "The question", required=True),
+            Key(
+                "answer",
+                Number(),
+                '"dead points", "change points", a number of the whole motion such as '
+                '"stroke(rocker)", with at a quantity such as "mu", or the number itself',
+                required=True,
+            ),
+            Key("at", PlainNumber(), "The input value at which the quantity is asked"),
+            Key(
+                "tolerance",
+                PlainNumber(),
+                "How far an answer may be from the right one, in its unit",
+                required=True,
+            ),
+            Key("unit", Text(), "The unit of an answer that is given as a number"),
+            Key(
+                "hide",
+                ListOf(Text(HIDDEN), "word"),
+                "What a page hides until the question is answered; default all but equations",
+            ),
+        )
+    ),
+    "Questions asked on pages; answers are computed, and hidden until they are asked for",
 )
 _GUESS = Key(
     "guess",
-    Named(Number()),
+    Named(Number("named")),
     "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
-    Key("from", Number(), "First input value"),
-    Key("to", Number(), "Last input value"),
+    Key("from", Number("driven"), "First input value"),
+    Key("to", Number("driven"), "Last input value"),
     Key(
         "step",
-        Number(),
+        Number("driven"),
         "Step between input values; its sign points from the first value to the last",
     ),
     Key(
@@ -101,11 +132,15 @@ _RANGE = (
     ),
 )
 _DRIVES = (
-    Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
-    Key("joint", Text(), "The pin whose relative angle is driven"),
-    Key("slider", Text(), "The slider or slot whose displacement is driven"),
-    Key("cylinder", Text(), "The cylinder whose length is driven"),
+    Key("link", Text(of="link"), "The link whose angle is driven"),
+    Key(
+        "relative_to",
+        Text(of="link"),
+        "The link relative to which the angle is measured; default ground",
+    ),
+    Key("joint", Text(of="point"), "The pin whose relative angle is driven"),
+    Key("slider", Text(of="slider"), "The slider or slot whose displacement is driven"),
+    Key("cylinder", Text(of="slider"), "The cylinder whose length is driven"),
     *_RANGE,
 )
 _VARIABLE = (
@@ -122,7 +157,7 @@ LINKAGE = Form(
         _DIMENSIONS,
         Key(
             "points",
-            Named(ListOf(Number(), "coordinate", 2, 2)),
+            Named(ListOf(Number("length"), "coordinate", 2, 2)),
             "One assembled position: A = [35, 20]; exact on ground, elsewhere a sketch is enough",
             required=True,
         ),
@@ -132,16 +167,17 @@ LINKAGE = Form(
             'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
-        Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
+        Key("lengths", Named(Number("length"), 2), 'Exact distances in one link: "O2 A" = 40'),
         Key(
             "angles",
-            Named(Number(), 3),
+            Named(Number("angle"), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 LOOPS = Form(
@@ -175,6 +211,7 @@ LOOPS = Form(
         ),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 EQUATIONS = Form(
@@ -193,6 +230,7 @@ EQUATIONS = Form(
         _GUESS,
         Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 FORMS = (LINKAGE, LOOPS, EQUATIONS)

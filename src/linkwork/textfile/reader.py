@@ -13,6 +13,7 @@ from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.question import Question
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
@@ -32,6 +33,7 @@ __all__ = [
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
     {"name", "purpose", "length", "source", "family", "configuration", "input", "trace", "outputs"}
+    | {"questions"}
 )
 
 
@@ -200,6 +202,7 @@ def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
         if key in content
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))
+    fields["questions"] = tuple(map(_question, content.get("questions", ())))
     fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
     return fields
 
@@ -223,6 +226,11 @@ def _without(
             named = content[key].items()
             kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
     return kept
+
+
+def _question(table: dict[str, Any]) -> Question:
+    listed = {key: tuple(entry) for key, entry in table.items() if key == "hide"}
+    return Question(**{**table, **listed})
 
 
 def _input(table: dict[str, Any]) -> Input:

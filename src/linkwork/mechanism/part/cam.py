@@ -13,10 +13,10 @@ from linkwork.foundation.names import GROUND
 from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Contour, Disc, Figure, Outlines
+from linkwork.mechanism.figures import Contour, Disc, Figure, Outline, Outlines, circle
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.motion_laws import LAWS
-from linkwork.mechanism.part.curve import COORDINATES, turned_back
+from linkwork.mechanism.part.curve import COORDINATES, coordinates, turned_back
 from linkwork.mechanism.part.guide import GuidePart, guide_named
 from linkwork.mechanism.part.part import (
     AGREE,
@@ -38,8 +38,8 @@ _CONTACTS = ("knife", "roller", "flat")
 _SHORTEST = 1e-6  # minimum length of a segment, in turns
 _SEGMENT = (
     Key("law", Text(LAWS), "Motion law of the follower", required=True),
-    Key("over", NumberKey(), "Angle by which the cam turns", required=True),
-    Key("lift", NumberKey(), "Displacement of the follower, positive away from the centre"),
+    Key("over", NumberKey("angle"), "Angle by which the cam turns", required=True),
+    Key("lift", NumberKey("lift"), "Displacement of the follower, positive away from the centre"),
 )
 
 
@@ -147,9 +147,9 @@ class Cam(NamedPart):
             "With link: its knife edge, the centre of its roller or the end of its face",
         ),
         Key("contact", Text(_CONTACTS), "Kind of the follower; default knife"),
-        Key("radius", NumberKey(), "Radius of the roller"),
-        Key("base", NumberKey(), "Radius of the base circle, with segments"),
-        Key("start", NumberKey(), "Angle of the cam at which the segments begin; default 0"),
+        Key("radius", NumberKey("length"), "Radius of the roller"),
+        Key("base", NumberKey("length"), "Radius of the base circle, with segments"),
+        Key("start", NumberKey("angle"), "Angle of the cam at which the segments begin; default 0"),
         Key("segments", Tables(_SEGMENT), "Motion of the follower in one turn of the cam"),
         Key("profile", COORDINATES, "Or the outline, in the cam's frame about its centre"),
     )
@@ -318,6 +318,12 @@ class Cam(NamedPart):
                 name=self.name, link=link, center=center, points=tuple(map(complex, points))
             )
         yield follower
+
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """The base circle, or the given points."""
+        base = 0.0 if self.base is None else linkage.numbers(self.base)
+        points = coordinates(self.profile, linkage) if self.profile else circle(base)
+        yield self.name, (self.cam, self.center, points)
 
     def _follower(self, linkage: Bodies) -> Follower:
         guide = guide_named(linkage, self.slider)

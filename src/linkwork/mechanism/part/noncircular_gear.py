@@ -14,7 +14,7 @@ from linkwork.foundation.file_keys import Formula, Key, ListOf, Number as Number
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Contour, Figure, Outlines
+from linkwork.mechanism.figures import Contour, Figure, Outline, Outlines, circle
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.curve import COORDINATES, turned_back
 from linkwork.mechanism.part.part import AGREE, Inversion, PartChecks
@@ -23,7 +23,7 @@ from linkwork.mechanism.part.wheel_pair import ARM_KEYS, PHASE_KEY, ArmPair
 __all__ = ["NoncircularGear", "PitchCurve"]
 
 _LAWS = ("law", "table", "pitch_curve")
-_PAIRS = ListOf(ListOf(NumberKey(), "angle", 2, 2), "pair", 5)
+_PAIRS = ListOf(ListOf(NumberKey("angle"), "angle", 2, 2), "pair", 5)
 
 
 class PitchCurve(Contour):
@@ -75,7 +75,7 @@ class NoncircularGear(ArmPair):
         Key("law", Formula(), "Angle of the second wheel as a formula of phi, the first one's"),
         Key("table", _PAIRS, "Or pairs of both angles over one turn of the first wheel"),
         Key("pitch_curve", COORDINATES, "Or the first wheel's pitch curve about its centre"),
-        Key("start", NumberKey(), "Angle of the first wheel at which phi is 0"),
+        Key("start", NumberKey("angle"), "Angle of the first wheel at which phi is 0"),
         PHASE_KEY,
     )
     kind = JointKind("G", 2, "non-circular gear pair")
@@ -131,6 +131,11 @@ class NoncircularGear(ArmPair):
         turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
         if abs(over - turn) > AGREE * turn:
             checks.add(f"covers {over:.10g}: one turn of the first wheel is {turn:g}", "table")
+
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """Circles that share the distance of the centres."""
+        for suffix, wheel, center in zip(self.curves, self.wheels, self.centers, strict=True):
+            yield f"{self.name}{suffix}", (wheel, center, circle(self.distance(linkage) / 2))
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         for suffix in self.curves:

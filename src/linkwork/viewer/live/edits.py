@@ -7,21 +7,30 @@ from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
-from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
-from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.textfile.copying import copy_selection, mirror_numbers
+from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
+from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
-from linkwork.viewer.live.moving_points import Before, held_places, move_points, put_place, rounded
-from linkwork.viewer.live.palette import part_name, part_of
+from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
+from linkwork.viewer.live.number_edits import set_input, set_number
+from linkwork.viewer.live.palette import part_of
+from linkwork.viewer.live.part.index import edits_of_drawing
+from linkwork.viewer.live.part_entries import alone_with, part_row, put_entry
+from linkwork.viewer.live.typed_units import TypedUnits
+from linkwork.viewer.live.written_links import (
+    add_entry,
+    carry,
+    check_point,
+    drop_loose_dimensions,
+    drop_lost_inputs,
+    points_of,
+)
 
 __all__ = ["Followed", "applied", "edit_title"]
-
-_DRIVES = ("link", "joint", "slider", "cylinder", "variable")
-_LENGTHS = ("slider", "cylinder")
-_RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,87 +55,8 @@ def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
-    description = before.description
-    try:
-        quantity = number_named(description, edit.name)
-    except UnknownNameError:
-        if (measured := _measured(description, edit.name)) is None:
-            raise
-        text.put(("lengths", measured), edit.value)
-        _stretch(measured, edit.value, text, before)
-        return Followed()
-    written = quantity.written(description)
-    # a number in place of a formula would silently remove the dependence on dimensions
-    if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
-        raise InputError(
-            f'"{quantity.name}" is the formula {written}: change a dimension in '
-            "it, or send another formula"
-        )
-    if quantity.table == "lengths":
-        if _move_pivot(quantity, edit.value, text, description):
-            return Followed()
-        _stretch(quantity.key, edit.value, text, before)
-    text.put(_path(quantity, text), edit.value)
+    set_number(edit, text, before)
     return Followed()
-
-
-def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> None:
-    """Give a length to a draft, which is not assembled: its freer end moves in the sketch."""
-    draft = before.description
-    if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
-        return
-    carriers = draft.drawable.carriers()
-    if not set(key.split()) <= carriers.keys():
-        return
-    fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
-    start, end = before.place(fixed), before.place(free)
-    if length > 0 and end != start and not any(isinstance(c, str) for c in draft.points[free]):
-        put_place(text, free, start + (end - start) / abs(end - start) * length)
-
-
-def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
-    """The key path of a number in the text."""
-    if quantity.table == "points":
-        return ("points", quantity.key, quantity.axis)
-    if quantity.table == "sliders":
-        names = {canonical(str(row.get("name", ""))): k for k, row in text.entries("sliders")}
-        return ("sliders", names[canonical(quantity.key)], "offset")
-    return (quantity.table, quantity.key)
-
-
-def _measured(description: Description, name: str) -> str | None:
-    """The key of [lengths] for a named length between sketched points."""
-    if not isinstance(description, Draft):
-        return None
-    wanted = sorted(map(canonical, name.split()))
-    for measured in description.measured:
-        if sorted(map(canonical, measured.points)) == wanted:
-            return " ".join(measured.points)
-    return None
-
-
-def _move_pivot(
-    quantity: VariedNumber, length: float | str, text: TextEdits, description: Description
-) -> bool:
-    """Set a distance on ground by moving its second point along the line between the two."""
-    assert isinstance(description, Draft)
-    first, second = quantity.key.split()
-    # a draft may lack the ground, or a point
-    on_ground = {first, second} <= set(
-        description.links.get(GROUND, ())
-    ) & description.points.keys()
-    if not on_ground or isinstance(length, str):
-        return False
-    if any(isinstance(c, str) for c in (*description.points[first], *description.points[second])):
-        return False
-    base = description.sketched(first)
-    span = description.sketched(second) - base
-    if not span:
-        return False
-    # lengths on ground follow from coordinates: both change together
-    put_place(text, second, base + span / abs(span) * length)
-    text.put(("lengths", quantity.key), length)
-    return True
 
 
 @applied.register
@@ -166,118 +96,72 @@ def _known_point(linkage: Draft, name: str) -> str:
 
 @applied.register
 def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
-    if (edit.drive is None) != (edit.name is None):
-        raise InputError("an input has a kind and a name: send drive and name, or neither")
-    count = len(before.description.inputs)
-    if edit.number == count and count and edit.drive is not None:
-        text.append("input", {edit.drive: edit.name})
-    elif not 0 <= edit.number < max(1, count):
-        raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
-    here: tuple[str | int, ...] = ("input", edit.number)
-    if edit.drive is not None:
-        if edit.drive not in _DRIVES:
-            raise UnknownNameError(
-                f'"{edit.drive}" cannot be driven {choices("kinds", _DRIVES, edit.drive)}'
-            )
-        text.put((*here, edit.drive), edit.name)
-        # an input has exactly one kind
-        for other in (*_DRIVES, "relative_to"):
-            if other != edit.drive and text.has((*here, other)):
-                text.remove((*here, other))
-        _write_range(edit.drive, edit.name or "", here, text, before)
-    for field, key in _RANGE.items():
-        if (entry := getattr(edit, field)) is not None:
-            text.put((*here, key), entry)
+    set_input(edit, text, before)
     return Followed()
-
-
-def _write_range(
-    drive: str, name: str, here: tuple[str | int, ...], text: TextEdits, before: Before
-) -> None:
-    """Replace a range that belongs to another kind of quantity; lengths have no natural one."""
-    number, inputs = here[-1], before.description.inputs
-    assert isinstance(number, int)
-    old = inputs[number].drives[0] if number < len(inputs) else "link"
-    if (old in _LENGTHS) == (drive in _LENGTHS):
-        return
-    for key in _RANGE.values():
-        if text.has((*here, key)):
-            text.remove((*here, key))
-    if drive in _LENGTHS:
-        span = _span_of(name, before)
-        for key, share in (("from", 0.25), ("to", 0.75), ("step", 0.005)):
-            text.put((*here, key), float(f"{share * span:.4g}"))
-
-
-def _span_of(name: str, before: Before) -> float:
-    """The length of a slider's line, or twice that of a cylinder."""
-    for part in getattr(before.description, "parts", ()):
-        if canonical(part.label) == canonical(name):
-            line = getattr(part, "line", None)
-            a, b = line or part.between
-            return abs(before.place(b) - before.place(a)) * (1.0 if line else 2.0) or 1.0
-    return 1.0
 
 
 @applied.register
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
-    _add(text, "points", edit.name, [rounded(edit.x), rounded(edit.y)])
+    units = TypedUnits.of(before.description)
+    place = [units.number(c, "length", letter) for c, letter in ((edit.x, "x"), (edit.y, "y"))]
+    add_entry(text, "points", edit.name, [c if isinstance(c, str) else rounded(c) for c in place])
     for link in edit.links:
-        _carry(text, link, edit.name)
+        carry(text, link, edit.name)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.AddLink, text: TextEdits, before: Before) -> Followed:
     for name in edit.points:
-        _check_point(text, name)
-    _add(text, "links", edit.name, list(edit.points))
+        check_point(text, name)
+    add_entry(text, "links", edit.name, list(edit.points))
     return Followed()
 
 
 @applied.register
 def _(edit: ask.SetGround, text: TextEdits, before: Before) -> Followed:
-    fixed = _points_of(text, GROUND) if text.has(("links", GROUND)) else []
-    wanted = {canonical(name): _check_point(text, name) for name in edit.points}
+    fixed = points_of(text, GROUND) if text.has(("links", GROUND)) else []
+    wanted = {canonical(name): check_point(text, name) for name in edit.points}
     left = [point for point in fixed if canonical(point) not in wanted]
     if on := [*left, *wanted.values()] if edit.on else left:
         text.put(("links", GROUND), on)
     elif fixed:
         text.remove(("links", GROUND))
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.AddJoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.point)
-    _carry(text, edit.link, edit.point)
+    check_point(text, edit.point)
+    carry(text, edit.link, edit.point)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.RemoveJoint, text: TextEdits, before: Before) -> Followed:
-    points = _points_of(text, edit.link)
+    points = points_of(text, edit.link)
     left = [point for point in points if canonical(point) != canonical(edit.point)]
     if len(left) == len(points):
         message = f'"{edit.link}" does not carry "{edit.point}" {choices("points", points)}'
         raise UnknownNameError(message)
     text.put(("links", edit.link), left)
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
-    _points_of(text, edit.name)
+    points_of(text, edit.name)
     text.remove(("links", edit.name))
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
+    drop_lost_inputs(text, edit.name)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
-    first, second, *rest = [*_points_of(text, edit.name), "", ""]
+    first, second, *rest = [*points_of(text, edit.name), "", ""]
     if not second:
         raise InputError(f'"{edit.name}" has no direction: it has one point')
     text.put(("links", edit.name), [second, first, *filter(None, rest)])
@@ -286,10 +170,10 @@ def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.name)
+    check_point(text, edit.name)
     text.remove(("points", edit.name))
     for link in text.keys(("links",)):
-        points = _points_of(text, link)
+        points = points_of(text, link)
         left = [point for point in points if canonical(point) != canonical(edit.name)]
         if not left:
             text.remove(("links", link))
@@ -299,32 +183,43 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
         traced = text.get(("trace", "points"))
         left = [point for point in traced if canonical(point) != canonical(edit.name)]
         text.put(("trace", "points"), left)
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
-    text.append(edit.table, part_of(edit.table, edit.typed))
+    units = TypedUnits.of(before.description)
+    text.append(edit.table, part_of(edit.table, edit.typed, units))
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.DrawPart, text: TextEdits, before: Before) -> Followed:
+    for each in edits_of_drawing(edit, before):
+        applied(each, text, before)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.SetPart, text: TextEdits, before: Before) -> Followed:
+    put_entry(edit, text, TypedUnits.of(before.description))
     return Followed()
 
 
 @applied.register
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
-    names: list[str] = []
-    for table in PARTS:
-        for k, row in text.entries(table):
-            name = part_name(row)
-            if canonical(edit.name) == canonical(name):
-                text.remove((table, k))
-                return Followed()
-            names.append(name)
-    raise UnknownNameError(f'there is no "{edit.name}" {choices("parts", names, edit.name)}')
+    text.remove(part_row(text, edit.name))
+    drop_lost_inputs(text, edit.name)
+    if edit.whole and isinstance(before.description, Draft):
+        for each in alone_with(edit.name, before.description):
+            applied(each, text, before)
+    return Followed()
 
 
 @applied.register
 def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.point)
+    check_point(text, edit.point)
     traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
     left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
     if edit.on:
@@ -337,50 +232,53 @@ def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.ChangeUnits, text: TextEdits, before: Before) -> Followed:
+    change_units(text, length=edit.length, angle=edit.angle, convert=edit.convert)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Rename, text: TextEdits, before: Before) -> Followed:
+    rename(text, edit.of, edit.name, edit.new.strip())
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Duplicate, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    taken = names_in_file(text)
+    for name, copy in edit.names.items():
+        if canonical(name) != canonical(copy) and canonical(copy) in taken:
+            raise InputError(f'"{copy}" is already in the file: choose another name')
+    for point, place in edit.places.items():
+        _known_point(linkage, point)
+        add_entry(text, "points", edit.names[point], [rounded(c) for c in place])
+    copy_selection(text, edit.names, mirrored=edit.mirrored)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    places = {_known_point(linkage, name): complex(*at) for name, at in edit.places.items()}
+    mirror_numbers(text, set(map(canonical, places)))
+    followed, stayed = move_points(text, before, linkage, places)
+    return Followed(followed=followed, stayed=stayed)
+
+
+@applied.register
+def _(edit: ask.AddOutput, text: TextEdits, before: Before) -> Followed:
+    add_entry(text, "outputs", edit.name, edit.formula)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followed:
     if edit.name:
         text.put(("configuration",), edit.name)
     elif text.has(("configuration",)):
         text.remove(("configuration",))
     return Followed()
-
-
-def _check_point(text: TextEdits, name: str) -> str:
-    """A point as it is spelled in the text; an error if there is none."""
-    known = text.keys(("points",))
-    for own in known:
-        if canonical(own) == canonical(name):
-            return own
-    raise UnknownNameError(f'there is no point "{name}" {choices("points", known, name)}')
-
-
-def _add(text: TextEdits, table: str, name: str, entry: object) -> None:
-    if text.has((table, name)):
-        raise InputError(f'"{name}" is already in [{table}]: choose another name')
-    text.put((table, name), entry)
-
-
-def _points_of(text: TextEdits, link: str) -> list[str]:
-    if not text.has(("links", link)):
-        known = text.keys(("links",))
-        raise UnknownNameError(f'there is no link "{link}" {choices("links", known, link)}')
-    return [str(point) for point in text.get(("links", link))]
-
-
-def _carry(text: TextEdits, link: str, point: str) -> None:
-    points = _points_of(text, link)
-    if canonical(point) in map(canonical, points):
-        raise InputError(f'"{link}" carries "{point}" already')
-    text.put(("links", link), [*points, point])
-
-
-def _drop_loose_dimensions(text: TextEdits) -> None:
-    """Remove lengths and angles between points that are no longer on one link."""
-    links = [{canonical(p) for p in _points_of(text, link)} for link in text.keys(("links",))]
-    for table in ("lengths", "angles"):
-        for key in text.keys((table,)):
-            if not any({canonical(p) for p in key.split()} <= points for points in links):
-                text.remove((table, key))
 
 
 def edit_title(edit: ask.Edit) -> str:
@@ -393,6 +291,20 @@ def edit_title(edit: ask.Edit) -> str:
             return f"move {edit.point}"
         case ask.MovePoints():
             return f"move {', '.join(edit.places)}"
+        case ask.DrawPart():
+            return f"add {PARTS[edit.table].title.lower()}"
+        case ask.SetPart():
+            return f"{edit.name}: {edit.key}"
+        case ask.ChangeUnits():
+            units = " and ".join(filter(None, (edit.length, edit.angle)))
+            return f"{'convert to' if edit.convert else 'relabel as'} {units}"
+        case ask.Rename():
+            return f"rename {edit.name} as {edit.new.strip()}"
+        case ask.Duplicate():
+            how = "mirror a copy of" if edit.mirrored else "duplicate"
+            return f"{how} {', '.join(edit.names)}"
+        case ask.Mirror():
+            return f"mirror {', '.join(edit.places)}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

@@ -77,8 +77,9 @@ class Subject:
             return None
         draft = self.description.drawable
         places = {name: draft.sketched(name) for name in draft.points}
+        outlines = dict(pair for part in draft.parts for pair in part.sketched_outlines(draft))
         return still_page(
-            Skeleton.of_linkage(draft, {}),
+            Skeleton.of_linkage(draft, outlines),
             {name: (place.real, place.imag) for name, place in places.items()},
             units=Units(angle=draft.angle, length=draft.length),
             title=draft.name,
