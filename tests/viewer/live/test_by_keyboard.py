@@ -172,8 +172,8 @@ def test_axe_finds_nothing_serious_in_the_live_page(
         "draft": lambda: MechanismFile(tmp_path / "drawn.toml", blank_sheet("drawn")),
         "open": lambda: MechanismFile(tmp_path / "open.toml", FOUR_BAR.replace("120", "500")),
     }
-    for file in files.values():
-        with shown(browser, file(), color_scheme=scheme, **options) as (page, _):
+    for opened in files.values():
+        with shown(browser, opened(), color_scheme=scheme, **options) as (page, _):
             page.wait_for_selector(".lw, .lw-start")
             page.wait_for_timeout(800)
             assert_accessible(page)
