@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
-    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "PlainNumber",
+    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number", "PlainNumber",
     "Several", "Speed", "Table", "Tables", "Text", "Whole",
 ]  # fmt: skip
 
@@ -56,6 +56,13 @@ class Formula:
 @dataclass(frozen=True)
 class Speed:
     """A number, or text with a unit: ``"300 rpm"``."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number, or text with a unit, such as the ``example``."""
+
+    example: str
 
 
 @dataclass(frozen=True)
@@ -113,6 +120,7 @@ Kind = (
     | Whole
     | Formula
     | Speed
+    | Measured
     | Flag
     | ListOf
     | Table
@@ -124,9 +132,18 @@ Kind = (
 
 @dataclass(frozen=True)
 class Key:
-    """One key: its name, its allowed values, and one line of description."""
+    """One key: its name, its allowed values, and one line of description.
+
+    ``field`` is the attribute with its value, if Python cannot have the key's name there.
+    """
 
     name: str
     kind: Kind
     doc: str
     required: bool = False
+    field: str = ""
+
+    @property
+    def attribute(self) -> str:
+        """The attribute of a description with its value."""
+        return self.field or self.name
