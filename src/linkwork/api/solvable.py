@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from linkwork.results.configurations import Configurations
     from linkwork.results.iterates import Iterates
     from linkwork.results.motion import Motion
-    from linkwork.results.reactions import Reactions
     from linkwork.results.nearest_assembly import NearestAssembly
+    from linkwork.results.reactions import Reactions
     from linkwork.results.vector_loop import MovingLoop
 
 __all__ = ["SolvableMechanism"]
@@ -263,6 +263,7 @@ class SolvableMechanism(DescribedMechanism):
         self,
         at: float | Mapping[str, float] | None = None,
         *,
+        configuration: str | None = None,
         motion: Motion | None = None,
     ) -> Reactions:
         """Efforts of the inputs and reactions of the joints, from masses, loads and springs.
@@ -274,6 +275,8 @@ class SolvableMechanism(DescribedMechanism):
         ----------
         at : number or Mapping[str, number], optional
             Input value(s) in file units.
+        configuration : str, optional
+            As in :meth:`solve`.
         motion : Motion, optional
             Instead of the table: a motion of this mechanism, solved already.
 
@@ -292,10 +295,13 @@ class SolvableMechanism(DescribedMechanism):
         >>> import linkwork as lw
         >>> press = lw.example("crank-press")
         >>> round(press.forces(at=60)["crank.effort"])
+        1
         """
         if at is not None:
-            return forces.forces_of_position(self.model, self.solve(at))
-        rows = self.sweep() if motion is None else motion
+            return forces.forces_of_position(
+                self.model, self.solve(at, configuration=configuration)
+            )
+        rows = self.sweep(configuration=configuration) if motion is None else motion
         return forces.forces_of_motion(self.model, rows)
 
     def configurations(self, at: float | Mapping[str, float] | None = None) -> Configurations:

@@ -1,7 +1,8 @@
-"""Loads on a mechanism in all rows: given forces and torques, springs, and the inertia of masses."""
+"""Loads in all rows: given forces and torques, springs, weight and inertia of masses."""
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -42,22 +43,22 @@ class Body:
 class AppliedLoads:
     """All loads on a mechanism.
 
-    ``forces`` are (point, force), ``torques`` (link, torque), ``stored`` the energies of springs
-    and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
+    ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
+    springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
     """
 
     geometry: Geometry
     rate: float
-    forces: list[tuple[str, ComplexArray]] = field(default_factory=list)
+    forces: list[tuple[str, ComplexArray, str | None]] = field(default_factory=list)
     torques: list[tuple[str, Array]] = field(default_factory=list)
     masses: list[Body] = field(default_factory=list)
     kinetic: list[Array] = field(default_factory=list)
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
 
-    def push(self, point: str, force: ComplexArray) -> None:
-        """A force on a point, (B,)."""
-        self.forces.append((point, force))
+    def push(self, point: str, force: ComplexArray, link: str | None = None) -> None:
+        """A force on a point, (B,), on the pin there or on one of its links."""
+        self.forces.append((point, force, link))
 
     def turn(self, link: str, torque: Array) -> None:
         """A torque on a link, (B,)."""
@@ -95,9 +96,10 @@ class AppliedLoads:
         fall = 0j
         if loaded.gravity is not None:
             size = loaded.gravity.acceleration(loaded.numbers, loaded.length)
-            angle = loaded.gravity.angle
-            way = -1j if angle is None else np.exp(1j * loaded.numbers(angle) * loaded.angle.radians)
-            fall = size * complex(way)
+            angle, way = loaded.gravity.angle, -1j
+            if angle is not None:
+                way = cmath.exp(1j * loaded.numbers(angle) * loaded.angle.radians)
+            fall = size * way
         for link, mass in loaded.masses.items():
             if link != GROUND:
                 self._add_mass(link, mass, unit, fall)
@@ -124,7 +126,7 @@ class AppliedLoads:
                 link=link,
                 centre=centre,
                 place=place.v,
-                force=mass * (fall - bend),
+                force=np.asarray(mass * (fall - bend), dtype=complex),
                 torque=-inertia * turned,
                 weight_rate=falling,
                 kinetic_rate=mass * (velocity.conj() * bend).real + inertia * spin * turned,

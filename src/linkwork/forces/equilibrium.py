@@ -1,9 +1,9 @@
 """Solution of the equilibrium of free bodies, and which forces it does not determine.
 
-Forces on all bodies sum to zero: W r + b = 0. Without a left null vector of the joint conditions W
-is square and regular. Each such vector is a self-stress, a null vector of W, and whatever it loads is
-not determined; a null vector of Wᵀ is a freedom in which the loads are out of balance, as at a dead
-point.
+Forces on all bodies sum to zero: W r + b = 0, with W the transposed Jacobian of the joint
+conditions. Its null vectors are self-stresses: what they load is not determined. Null vectors of Wᵀ
+are freedoms in which nothing balances the loads, as at a dead point. Without both W is square and
+regular.
 """
 
 from __future__ import annotations

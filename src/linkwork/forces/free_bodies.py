@@ -46,7 +46,7 @@ class Act:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reading:
-    """A quantity Σ factor · unknown + constant, (B,) each.
+    """A quantity Σ factor · unknown + constant, (B,) each, and the size of ``follow``.
 
     ``pushes``: the joint can only push, so that a negative value means that it lifts off.
     """
@@ -56,6 +56,7 @@ class Reading:
     about: str
     terms: tuple[tuple[int, Array | float], ...]
     constant: Array | float = 0.0
+    follow: int | None = None
     pushes: bool = False
 
 
@@ -75,7 +76,6 @@ class FreeBodies:
         default_factory=list
     )
     readings: list[Reading] = field(default_factory=list)
-    follow_readings: list[tuple[Reading, int]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         links = self.linkage.links
@@ -127,10 +127,6 @@ class FreeBodies:
         self.readings.append(
             Reading(name=name, kind=kind, about=about, terms=((unknown, factor),), pushes=pushes)
         )
-
-    def read_following(self, reading: Reading, follow: int) -> None:
-        """Name a sum of unknowns and the size of following acts."""
-        self.follow_readings.append((reading, follow))
 
     def matrix(self) -> Array:
         """The sum of forces and scaled moments on every body for a unit of each unknown.

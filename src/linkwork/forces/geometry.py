@@ -10,6 +10,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.results.quantities.definition import Solved
 from linkwork.results.quantity import Kind
@@ -41,8 +42,18 @@ class Geometry:
     @cached_property
     def rows(self) -> int:
         """B."""
-        first = next(iter(self.model.equations.points), None)
+        first = next(iter(self.points), None)
         return 1 if first is None else len(self.place(first).v)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """The points of the file."""
+        return self.model.motion_quantities.names.points
+
+    @cached_property
+    def input_rates(self) -> Array:
+        """The rate of every input with respect to the leading one, (p,)."""
+        return leading_input(self.model.rows)[1]
 
     def own(self, name: str) -> Jet:
         """A variable of the mechanism [rad] or [length]."""

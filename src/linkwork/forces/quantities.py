@@ -87,7 +87,7 @@ class _Evaluation:
     name: str
 
     def __call__(self, names: MechanismNames, solved: Solved, part: str) -> Jet:
-        points = self.solver.model.equations.points
+        points = names.points
         shape = np.shape(solved.place(next(iter(points))).v)
         value = self.solver.forces(solved).values[self.name].value
         return Jet(value.reshape(shape), UNKNOWN, UNKNOWN)

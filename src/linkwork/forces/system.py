@@ -11,14 +11,14 @@ import numpy as np
 
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.drives import drive_inputs, effort_kind, effort_name
-from linkwork.forces.equilibrium import Balance, balance
+from linkwork.forces.equilibrium import balance
 from linkwork.forces.free_bodies import Act, FreeBodies, Reading
 from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_parts
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import join_pins, read_first_links
 from linkwork.forces.virtual_work import efforts, energies
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
@@ -52,7 +52,7 @@ class ForceRows:
     """All forces in B rows: quantities by name, and the status code of every row."""
 
     values: Mapping[str, ForceValue]
-    status: Array
+    status: StatusArray
 
 
 @dataclass(eq=False)
@@ -67,7 +67,7 @@ class _Solution:
         undetermined: BoolArray | None = None, *, pushes: bool = False,
     ) -> None:  # fmt: skip
         none = np.zeros(self.geometry.rows, dtype=bool)
-        unknown = none if undetermined is None else undetermined
+        unknown = none if undetermined is None else undetermined & self.regular
         value = np.where(self.regular & ~unknown, value, np.nan)
         size = np.nanmax(np.abs(value), initial=0.0)
         lifted = value < -1e-9 * size if pushes else none
@@ -107,11 +107,11 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     status[lost] = ForceStatus.NO_POSITION.code
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
-    return ForceRows(values=found.values, status=status)
+    return ForceRows(values=found.values, status=status.astype(np.int8))
 
 
 def _anything(geometry: Geometry) -> Iterator[Array]:
-    for point in geometry.model.equations.points:
+    for point in geometry.points:
         if point not in geometry.model.equations.fixed:
             yield np.abs(geometry.place(point).v)
     yield np.zeros(geometry.rows)
@@ -122,7 +122,7 @@ def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
     most = np.zeros(geometry.rows)
     for link in geometry.links:
         most = np.fmax(most, np.abs(geometry.angle(link).d1))
-    for point in geometry.model.equations.points:
+    for point in geometry.points:
         most = np.fmax(most, np.abs(geometry.place(point).d1) / geometry.length)
     found: BoolArray = (most < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
     return found
@@ -140,7 +140,8 @@ def _known_acts(bodies: FreeBodies) -> list[Act]:
     """Everything that acts on the bodies and is known."""
     geometry, applied = bodies.geometry, bodies.applied
     acts = [
-        Act(bodies.at(point), geometry.place(point).v, force) for point, force in applied.forces
+        Act(bodies.link(link) if link else bodies.at(point), geometry.place(point).v, force)
+        for point, force, link in applied.forces
     ]
     none = np.zeros(geometry.rows, dtype=complex)
     acts += [Act(bodies.link(link), none, none, torque) for link, torque in applied.torques]
@@ -169,16 +170,14 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> None:
         r = r + amount[:, None] * answer
     found.regular &= np.isfinite(r).all(axis=1)
     read_first_links(bodies, acts)
-    for reading, follow in [(reading, None) for reading in bodies.readings] + [
-        (reading, k) for reading, k in bodies.follow_readings
-    ]:
+    for reading in bodies.readings:
         value, factors = _value(reading, r)
-        if follow is not None:
-            value = value + sizes[follow]
+        if reading.follow is not None:
+            value = value + sizes[reading.follow]
         doubt = known.undetermined(factors)
         for k, (doubtful, answer) in enumerate(unsure):
             change = np.abs((factors * answer).sum(axis=1))
-            doubt |= doubtful & ((change > 1e-9) | (follow == k))
+            doubt |= doubtful & ((change > 1e-9) | (reading.follow == k))
         found.add(reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes)
 
 
@@ -208,7 +207,7 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array) -> None:
             worst = np.fmax(worst, np.abs(found.values[name].value - by_work[k]) / size)
         kind = effort_kind(geometry.kind(variable.name))
         found.add(name, kind, f"effort of the input {variable.name}", by_work[k])
-        power += by_work[k] * geometry.own(variable.name).d1 * found.applied.rate
+        power += by_work[k] * geometry.input_rates[k] * found.applied.rate
     if not len(by_work):
         return
     found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
@@ -221,12 +220,18 @@ def _add_totals(found: _Solution) -> None:
     geometry, applied = found.geometry, found.applied
     force: ComplexArray = np.zeros(geometry.rows, dtype=complex)
     moment = np.zeros(geometry.rows)
-    pushes = [(geometry.place(point).v, own) for point, own in applied.forces]
+    pushes = [(geometry.place(point).v, own) for point, own, _ in applied.forces]
     for place, own in [*pushes, *((body.place, body.force) for body in applied.masses)]:
         force = force + own
         moment = moment + (place.conj() * own).imag
     for torque in [own for _, own in applied.torques] + [body.torque for body in applied.masses]:
         moment = moment + torque
+    for point in dict.fromkeys(point for point, _, _ in applied.forces):
+        total = np.zeros(geometry.rows, dtype=complex)
+        for own in (own for name, own, _ in applied.forces if name == point):
+            total += own
+        for axis, part in (("x", total.real), ("y", total.imag)):
+            found.add(f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part)
     found.add("shaking.x", Kind.FORCE, "force on the ground", force.real)
     found.add("shaking.y", Kind.FORCE, "force on the ground", force.imag)
     found.add("shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment)

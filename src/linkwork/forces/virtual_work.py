@@ -10,32 +10,36 @@ from collections.abc import Iterator
 import numpy as np
 
 from linkwork.forces.applied import AppliedLoads
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array
 
 __all__ = ["efforts", "energies"]
 
 
 def efforts(applied: AppliedLoads) -> tuple[Array, Array]:
-    """The effort of every input and the largest term of its sum, (p, B) each."""
+    """The effort of every input and the size of the largest term of its sum, (p, B) each.
+
+    The size of a term is that of its two factors: where a force is normal to the motion, rounding
+    errors are relative to it.
+    """
     geometry = applied.geometry
     shape = (len(geometry.model.equations.inputs), geometry.rows)
     total, largest = np.zeros(shape), np.zeros(shape)
-    for term in _terms(applied):
-        total -= term
-        largest = np.maximum(largest, np.abs(term))
+    for load, moved in _terms(applied):
+        total -= (np.conj(load) * moved).real
+        largest = np.maximum(largest, np.abs(load) * np.abs(moved))
     return total, largest
 
 
-def _terms(applied: AppliedLoads) -> Iterator[Array]:
-    """The work of every load per unit of every input, (p, B)."""
+def _terms(applied: AppliedLoads) -> Iterator[tuple[AnyArray, AnyArray]]:
+    """Every load (B,), and what it moves per unit of every input, (p, B)."""
     geometry = applied.geometry
-    for point, force in applied.forces:
-        yield (force.conj() * geometry.partial(point)).real
+    for point, force, _ in applied.forces:
+        yield force, geometry.partial(point)
     for link, torque in applied.torques:
-        yield torque * geometry.turning(link)
+        yield torque, geometry.turning(link)
     for body in applied.masses:
-        yield (body.force.conj() * geometry.partial_local(body.link, body.centre)).real
-        yield body.torque * geometry.turning(body.link)
+        yield body.force, geometry.partial_local(body.link, body.centre)
+        yield body.torque, geometry.turning(body.link)
 
 
 def energies(applied: AppliedLoads) -> dict[str, Array]:
@@ -46,7 +50,7 @@ def energies(applied: AppliedLoads) -> dict[str, Array]:
         "kinetic_energy": sum(applied.kinetic, zero),
         "stored_energy": sum(applied.stored, zero),
     }
-    pushed = sum(((f.conj() * geometry.place(p).d1).real for p, f in applied.forces), zero)
+    pushed = sum(((f.conj() * geometry.place(p).d1).real for p, f, _ in applied.forces), zero)
     turned = sum((torque * geometry.angle(link).d1 for link, torque in applied.torques), zero)
     weights = sum((body.weight_rate for body in applied.masses), zero)
     moving = sum((body.kinetic_rate for body in applied.masses), zero)

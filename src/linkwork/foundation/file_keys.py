@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
-    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number", "PlainNumber",
-    "Several", "Speed", "Table", "Tables", "Text", "Whole",
+    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number",
+    "PlainNumber", "Several", "Speed", "Table", "Tables", "Text", "Whole",
 ]  # fmt: skip
 
 

@@ -74,11 +74,11 @@ class LoadedBodies(Description):
 
 def check_masses(loaded: LoadedBodies, problems: Problems) -> None:
     """Report unknown units, masses of what is no link, and wrong numbers."""
-    for key, unit, known in (("mass", loaded.mass, MASSES), ("force", loaded.force, FORCES)):
+    for name, unit, known in (("mass", loaded.mass, MASSES), ("force", loaded.force, FORCES)):
         if unit not in known:
-            problems.add((key,), f'"{unit}" is not a known unit ({", ".join(known)})')
+            problems.add((name,), f'"{unit}" is not a known unit ({", ".join(known)})')
     if loaded.masses and loaded.length not in LENGTHS:
-        message = f'masses need a known unit of length ({", ".join(LENGTHS)})'
+        message = f"masses need a known unit of length ({', '.join(LENGTHS)})"
         problems.add(("length",), f'"{loaded.length}" cannot be converted: {message}')
     _check_gravity(loaded, problems)
     for link, mass in loaded.masses.items():
@@ -122,6 +122,7 @@ def _mistakes(loaded: LoadedBodies, link: str, mass: Mass) -> Iterator[tuple[str
             yield "shape", f'a rod needs two points, "{link}" has only {count}'
     elif mass.center is None and count != 1:
         yield "center", 'is missing: write center = [x, y], or shape = "rod"'
-    elif mass.center not in (None, (0, 0)) and count == 1:
-        if link not in loaded.turning_on_one_point:
-            yield "center", f'"{link}" has only one point and no direction: leave the centre there'
+    elif mass.center in (None, (0, 0)) or count > 1:
+        return
+    elif link not in loaded.turning_on_one_point:
+        yield "center", f'"{link}" has only one point and no direction: leave the centre there'

@@ -90,9 +90,12 @@ class Loops(_Equations, LoadedBodies):
         set_(self, "links", FrozenDict(links))
         set_(self, "masses", self.spelled_masses())
         check_entries("loads", Load, self.loads)
-        links_too = spelled | {canonical(name): name for name in self.links}
-        loads = (load.find_spelling(lambda n: links_too.get(canonical(n), n)) for load in self.loads)
-        set_(self, "loads", tuple(loads))
+        named = spelled | {canonical(name): name for name in self.links}
+
+        def same_in_loads(name: str) -> str:
+            return named.get(canonical(name), name)
+
+        set_(self, "loads", tuple(load.find_spelling(same_in_loads) for load in self.loads))
         set_(self, "trace", tuple(map(same, self.trace)))
         problems = Problems()
         self.check_common(

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.errors import UnknownNameError
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import find_spelling
+from linkwork.results.force import Force
 from linkwork.results.quantities.registry import nearest
 from linkwork.results.quantity import Kind
 from linkwork.results.summary import Summary
+from linkwork.results.table import Table
 
 __all__ = ["ForceStatus", "Reactions"]
 
@@ -25,7 +28,7 @@ class ForceStatus(CodedEnum):
     Examples
     --------
     >>> import linkwork as lw
-    >>> lw.example("four-bar-forces").forces(at=60).status.name
+    >>> lw.example("crank-press").forces(at=60).status.name
     'FOUND'
     """
 
@@ -44,8 +47,8 @@ class ForceStatus(CodedEnum):
 class Reactions:
     """Forces and moments of a mechanism, at one position or in the N rows of a motion.
 
-    ``reactions["A.force.x"]`` is a quantity in the units of the file, a number or (N,), NaN where it
-    is not determined.
+    ``reactions["A.force.x"]`` is a quantity in the units of the file, a number or (N,), NaN where
+    it is not determined.
 
     Parameters
     ----------
@@ -62,13 +65,11 @@ class Reactions:
         One for each row.
     undetermined, lifted : Mapping[str, array of bool]
         Where a self-stress changes a quantity; where a joint that can only push would have to pull.
-    forces : tuple of str
-        Points on whose pins forces act, with the stems of their quantities.
 
     Examples
     --------
     >>> import linkwork as lw
-    >>> reactions = lw.example("four-bar-forces").forces(at=60)
+    >>> reactions = lw.example("crank-press").forces(at=60)
     >>> reactions.units["crank.effort"]
     'N·mm'
     >>> reactions["disagreement"] < 1e-12
@@ -118,6 +119,39 @@ class Reactions:
     def efforts(self) -> tuple[str, ...]:
         """The names of the inputs' efforts."""
         return tuple(name for name in self.values if name.endswith(".effort"))
+
+    @property
+    def arrows(self) -> tuple[Force, ...]:
+        """Forces of pins and loads at one position, for drawings."""
+        found = []
+        for name in self.values:
+            stem, _, axis = name.rpartition(".")
+            if axis != "x" or not ({"force", "load"} & {*stem.split(".")[1:2]}):
+                continue
+            x, y = self[f"{stem}.x"], self[f"{stem}.y"]
+            if isinstance(x, float) and isinstance(y, float) and math.isfinite(x + y):
+                found.append(Force(at=stem.split(".")[0], x=x, y=y, unit=self.units[name]))
+        return tuple(found)
+
+    def table(self, *names: str) -> Table:
+        """Columns of all rows with units.
+
+        Parameters
+        ----------
+        names : str
+            Quantities; by default all.
+
+        Raises
+        ------
+        UnknownNameError
+            Lists the nearest names.
+        """
+        columns: dict[str, AnyArray] = {n: np.atleast_1d(v) for n, v in self.inputs.items()}
+        columns |= {name: np.atleast_1d(self[name]) for name in names or self.values}
+        columns["status"] = np.array([status.name for status in self.statuses])
+        units = {**self.units, **self.input_units, "status": ""}
+        index = next(iter(self.inputs), "status")
+        return Table(columns=columns, units={n: units[n] for n in columns}, index=index)
 
     def __repr__(self) -> str:
         return str(summary_of(self))

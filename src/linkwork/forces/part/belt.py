@@ -30,9 +30,9 @@ def write(belt: Belt, bodies: FreeBodies) -> None:
         about = f"tension of the strand {'left' if number == 1 else 'right'} of the centres"
         name = f"{belt.name}.tension{number}"
         reading = Reading(
-            name=name, kind=Kind.FORCE, about=about, terms=((pull, half),), pushes=True
+            name=name, kind=Kind.FORCE, about=about, terms=((pull, half),), follow=both, pushes=True
         )
-        bodies.read_following(reading, both)
+        bodies.readings.append(reading)
 
 
 def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, ComplexArray]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.forces.geometry import Geometry
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["moving_most", "normal_away", "sliding"]
 
 
 def sliding(geometry: Geometry, point: str, body: str, center: str) -> ComplexArray:
-    """A point's velocity relative to a body that carries a centre, per unit of each input, (p, B)."""
+    """The velocity of a point relative to a body with a centre, per unit of each input, (p, B)."""
     arm = geometry.place(point).v - geometry.place(center).v
     found: ComplexArray = (
         geometry.partial(point) - geometry.partial(center) - 1j * geometry.turning(body) * arm
@@ -19,9 +19,9 @@ def sliding(geometry: Geometry, point: str, body: str, center: str) -> ComplexAr
     return found
 
 
-def moving_most(rates: ComplexArray | Array) -> Array:
+def moving_most(rates: ComplexArray | Array) -> IndexArray:
     """Which input moves something most in every row, (1, B), for ``take_along_axis``."""
-    found: Array = np.argmax(np.nan_to_num(np.abs(rates)), axis=0)[None, :]
+    found: IndexArray = np.argmax(np.nan_to_num(np.abs(rates)), axis=0)[None, :]
     return found
 
 

@@ -25,4 +25,4 @@ def apply_load(load: Load, applied: AppliedLoads) -> None:
     force = x + 1j * y
     if load.turns_with is not None:
         force = force * applied.geometry.direction(load.turns_with).v
-    applied.push(load.point, force)
+    applied.push(load.point, force, load.link)

@@ -1,4 +1,4 @@
-"""Reactions of non-circular gears: forces at the pitch point, which moves on the line of centres."""
+"""Reactions of non-circular gears: forces at their pitch point, which moves."""
 
 from __future__ import annotations
 

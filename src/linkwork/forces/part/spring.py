@@ -6,7 +6,7 @@ import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Reading
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.mechanism.part.spring import Spring
 from linkwork.results.quantity import Kind
 
@@ -29,10 +29,10 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
     span = end - start
     length = np.abs(span.v)
     with np.errstate(all="ignore"):
-        along = span.v / length
+        along: ComplexArray = span.v / length
         rate = (along.conj() * span.d1).real
     tension = _force(spring, bodies, length - numbers(spring.free), rate)
-    along = np.where(length == 0.0, 0.0, along)  # a spring of no length has no direction
+    along[length == 0.0] = 0.0  # a spring of no length has no direction
     applied.push(between[0], tension * along)
     applied.push(between[1], -tension * along)
     about = "tension of the spring and its damper"

@@ -41,8 +41,10 @@ def mesh(
     acts = _pair(second, first, place, away)
     apart = bodies.follow(along, partial(_separating, pressure=pressure, slope=slope), *acts)
     about = f"force of {links[0]} on {links[1]} along the line of centres"
-    reading = Reading(name=f"{name}.radial", kind=Kind.FORCE, about=about, terms=())
-    bodies.read_following(reading, apart)
+    radial = f"{name}.radial"
+    bodies.readings.append(
+        Reading(name=radial, kind=Kind.FORCE, about=about, terms=(), follow=apart)
+    )
 
 
 def _pair(on: Holder, against: Holder, place: ComplexArray, way: ComplexArray) -> tuple[Act, Act]:

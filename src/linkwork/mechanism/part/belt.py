@@ -24,7 +24,6 @@ class BeltRun(Figure):
     centers: tuple[str, str]
     radii: tuple[float, float]
     crossed: bool = False
-    pretension: Number | None = None
 
     @property
     def turns_with(self) -> tuple[str, str]:
@@ -80,6 +79,7 @@ class Belt(WheelPair):
     disc_kind: ClassVar[str] = "pulley"
 
     crossed: bool = False
+    pretension: Number | None = None
 
     @property
     def together(self) -> bool:

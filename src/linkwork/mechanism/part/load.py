@@ -19,19 +19,20 @@ __all__ = ["Load"]
 class Load(Part):
     """A force on a point, or a torque on a link.
 
+    Where several links share the point, the force acts on the pin itself unless a link is given.
     Formulas may contain the mechanism's quantities, their rates and the time ``t``, and
     comparisons, which are 1 or 0: ``"-500*(t < 0.1)"``.
 
     Parameters
     ----------
     point : str, optional
-        The point on which a force acts; a force on a pin acts on the pin itself.
+        The point on which a force acts.
     force : (number, number), optional
         Its components along the axes of the ground, or of the link ``turns_with``.
     turns_with : str, optional
         The link in whose frame the components are given (``with`` in a file).
     link : str, optional
-        The link on which a torque acts.
+        The link on which a torque acts; for a force on a pin, the link at the pin that takes it.
     torque : number, optional
         Positive counter-clockwise [force · length].
 
@@ -48,7 +49,7 @@ class Load(Part):
         Key("point", POINT, "The point on which a force acts"),
         Key("force", ListOf(NumberKey(), "component", 2, 2), "Its components, or formulas of them"),
         Key("with", LINK, "The link with which the force turns", field="turns_with"),
-        Key("link", LINK, "Or the link on which a torque acts"),
+        Key("link", LINK, "The link on which a torque acts, or that takes a force on a pin"),
         Key("torque", NumberKey(), "The torque, or a formula; positive counter-clockwise"),
     )
 
@@ -72,8 +73,6 @@ class Load(Part):
             add(f"needs either a force or a torque, it has {what}")
             return
         on, noun = ("point", "force") if self.torque is None else ("link", "torque")
-        if self.torque is None and self.link is not None:
-            add("is used with torque only: a force acts on a point", "link")
         for field, given in (("point", self.point), ("with", self.turns_with)):
             if self.torque is not None and given is not None:
                 add("is used with force only", field)
@@ -86,6 +85,9 @@ class Load(Part):
             if name is not None and name not in known:
                 what = "point" if field == "point" else "link"
                 add(f'{what} "{name}" is not defined {choices(f"{what}s", known, name)}', field)
+        carried = loaded.carried.get(self.link or "", (self.point,))
+        if self.force is not None and self.point not in carried:
+            add(f'"{self.link}" does not carry {self.point}', "link")
         if self.force is not None and len(self.force) != 2:
             add(f"needs two components, got {len(self.force)}", "force")
         for key, number in self.formulas:
