@@ -295,7 +295,7 @@ class SolvableMechanism(DescribedMechanism):
         >>> import linkwork as lw
         >>> press = lw.example("crank-press")
         >>> round(press.forces(at=60)["crank.effort"])
-        1
+        3644
         """
         if at is not None:
             return forces.forces_of_position(

@@ -29,7 +29,7 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
     span = end - start
     length = np.abs(span.v)
     with np.errstate(all="ignore"):
-        along: ComplexArray = span.v / length
+        along: ComplexArray = np.asarray(span.v / length, dtype=complex)
         rate = (along.conj() * span.d1).real
     tension = _force(spring, bodies, length - numbers(spring.free), rate)
     along[length == 0.0] = 0.0  # a spring of no length has no direction
