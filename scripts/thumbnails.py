@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT / "src")]
 
 import linkwork as lw  # noqa: E402
 from linkwork.drawing.drawn_box import reach_of  # noqa: E402
-from linkwork.mechanism.figures import Disc  # noqa: E402
+from linkwork.mechanism.figures import Contour, Disc  # noqa: E402
 from linkwork.mechanism.skeleton import Skeleton  # noqa: E402
 from linkwork.viewer.play_order import play_order  # noqa: E402
 
@@ -57,8 +57,12 @@ def thumbnail(mechanism: lw.Mechanism) -> dict[str, Any] | None:
     rows = order[np.linspace(0, len(order) - 1, count + closed).round().astype(int)[:count]]
     places = np.array([motion.trace(name)[rows] for name in motion.points]).T
     traces = {name: motion.trace(name)[order] for name in motion.skeleton.traced}
+    turns = {
+        name: np.degrees(angle.value[rows] * motion.units.angle.radians)
+        for name, angle in motion.links.items()
+    }
     box = reach_of(motion)
-    return picture(motion.skeleton, list(motion.points), places, closed, traces, box.edges)
+    return picture(motion.skeleton, list(motion.points), places, closed, traces, turns, box.edges)
 
 
 def picture(
@@ -67,6 +71,7 @@ def picture(
     places: Any,
     closed: bool,
     traces: dict[str, Any] | None = None,
+    turns: dict[str, Any] | None = None,
     edges: tuple[float, ...] = (),
 ) -> dict[str, Any]:
     """Coordinates in whole numbers, y down."""
@@ -79,6 +84,19 @@ def picture(
     left, bottom = every.real.min(), every.imag.min()
     size = max(np.ptp(every.real), np.ptp(every.imag)) or 1.0
     high = np.ptp(every.imag) / size * SIZE
+
+    def outline(contour: Contour) -> dict[str, Any]:
+        points = np.array(contour.points)[:: max(1, len(contour.points) // 60)] / size * SIZE
+        angles = (turns or {}).get(contour.link, np.zeros(len(places)))
+        return {
+            "center": names.index(contour.center),
+            "points": np.round(np.stack([points.real, -points.imag], -1))
+            .astype(int)
+            .ravel()
+            .tolist(),
+            "closed": contour.closed,
+            "turns": np.round(-angles).astype(int).tolist(),
+        }
 
     def scaled(z: Any) -> list[int]:
         x, y = (z.real - left) / size * SIZE, high - (z.imag - bottom) / size * SIZE
@@ -96,6 +114,7 @@ def picture(
             if g.block
         ],
         "discs": [[names.index(d.center), round(d.radius / size * SIZE)] for d in discs],
+        "outlines": [outline(one) for one in skeleton.figures if isinstance(one, Contour)],
         "traces": [scaled(path[:: max(1, len(path) // 60)]) for path in (traces or {}).values()],
         "frames": [scaled(row) for row in places],
     }

@@ -46,8 +46,8 @@ export interface AddPoint {
   kind: "add_point";
   id?: number;
   name: string;
-  x: number;
-  y: number;
+  x: number | string;
+  y: number | string;
   links?: readonly (string)[];
 }
 
@@ -121,6 +121,36 @@ export interface ChooseConfiguration {
   kind: "choose_configuration";
   id?: number;
   name: string;
+}
+
+export interface ChangeUnits {
+  kind: "change_units";
+  id?: number;
+  convert: boolean;
+  length?: string;
+  angle?: string;
+}
+
+export interface Rename {
+  kind: "rename";
+  id?: number;
+  of: string;
+  name: string;
+  new: string;
+}
+
+export interface Duplicate {
+  kind: "duplicate";
+  id?: number;
+  names: Record<string, string>;
+  places: Record<string, readonly [number, number]>;
+  mirrored?: boolean;
+}
+
+export interface Mirror {
+  kind: "mirror";
+  id?: number;
+  places: Record<string, readonly [number, number]>;
 }
 
 export interface Together {
@@ -561,7 +591,11 @@ export type LiveEdit =
   | AddPart
   | RemovePart
   | TracePoint
-  | ChooseConfiguration;
+  | ChooseConfiguration
+  | ChangeUnits
+  | Rename
+  | Duplicate
+  | Mirror;
 
 export type LiveRequest =
   | SetNumber
@@ -580,6 +614,10 @@ export type LiveRequest =
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | ChangeUnits
+  | Rename
+  | Duplicate
+  | Mirror
   | Together
   | AssembleAt
   | SetText

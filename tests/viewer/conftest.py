@@ -37,28 +37,41 @@ def browser(request: pytest.FixtureRequest) -> Any:
 
 
 @pytest.fixture
-def open_page(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
-    """Opens an offline page from a file, without a network; fails on any message of the console."""
+def watched(browser: Any) -> Iterator[Callable[..., Any]]:
+    """Makes pages; fails on any message of the console, and on any request that does not begin with
+    one of the addresses in ``own``.
+    """
     said: list[str] = []
     contexts = []
+
+    def made(own: tuple[str, ...], **options: Any) -> Any:
+        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
+        context = browser.new_context(**(settings | options))
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("request", lambda r: None if r.url.startswith(own) else said.append(r.url))
+        return page
+
+    yield made
+    for context in contexts:
+        context.close()
+    assert said == []
+
+
+@pytest.fixture
+def open_page(watched: Callable[..., Any], tmp_path: Path) -> Callable[..., Any]:
+    """Opens an offline page from a file, without a network."""
 
     def opened(motions: dict[str, lw.Motion], **options: Any) -> Any:
         target = tmp_path / "page.html"
         own = ("equations", "loops", "forces")
         shown = {key: options.pop(key) for key in own if key in options}
         target.write_text(offline_page(motion_page(motions, **shown)), "utf-8")
-        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
-        context = browser.new_context(offline=True, **(settings | options))
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.on("request", lambda r: None if r.url.startswith("file:") else said.append(r.url))
+        page = watched(("file:",), offline=True, **options)
         page.goto(target.as_uri())
         page.wait_for_selector(".lw[data-row]")
         return page
 
-    yield opened
-    for context in contexts:
-        context.close()
-    assert said == []
+    return opened

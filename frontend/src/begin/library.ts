@@ -1,5 +1,13 @@
 // The mechanisms of the library, as they are kept in the page.
 
+/** A cam or a curve, about a point with which it turns [degrees, clockwise]. */
+export interface Outline {
+  readonly center: number;
+  readonly points: readonly number[];
+  readonly closed: boolean;
+  readonly turns: readonly number[];
+}
+
 export interface Picture {
   readonly box: readonly [number, number];
   readonly closed: boolean;
@@ -8,6 +16,7 @@ export interface Picture {
   readonly pins: readonly number[];
   readonly blocks: readonly (readonly [number, number, number])[];
   readonly discs: readonly (readonly [number, number])[];
+  readonly outlines: readonly Outline[];
   readonly traces: readonly (readonly number[])[];
   readonly frames: readonly (readonly number[])[];
 }

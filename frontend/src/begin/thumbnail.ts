@@ -1,14 +1,14 @@
 // A small moving picture of a mechanism, drawn from coordinates that were computed before.
 
 import { put, svg } from "../svg";
-import type { Picture } from "./library";
+import type { Outline, Picture } from "./library";
 
 const AIR = 16;
 const TONES = 6;
 
 export class Thumbnail {
   readonly element: SVGSVGElement;
-  private readonly moves: ((frame: readonly number[]) => void)[] = [];
+  private readonly moves: ((frame: readonly number[], number: number) => void)[] = [];
   private shown = -1;
 
   constructor(readonly picture: Picture) {
@@ -18,6 +18,7 @@ export class Thumbnail {
     this.element = svg("svg", { viewBox: `${left} ${top} ${side} ${side}`, class: "lw-thumbnail", "aria-hidden": "true" });
     for (const trace of picture.traces) svg("path", { class: "trace", d: line(trace, false) }, this.element);
     for (const [centre, radius] of picture.discs) this.disc(centre, radius);
+    for (const outline of picture.outlines) this.outline(outline);
     picture.bars.forEach((bar, k) => this.bar(bar, k));
     for (const block of picture.blocks) this.block(block);
     for (const point of picture.fixed) this.ground(point);
@@ -29,7 +30,7 @@ export class Thumbnail {
     if (number === this.shown) return;
     this.shown = number;
     const frame = this.picture.frames[number]!;
-    for (const move of this.moves) move(frame);
+    for (const move of this.moves) move(frame, number);
   }
 
   private bar(points: readonly number[], k: number): void {
@@ -43,6 +44,11 @@ export class Thumbnail {
       const angle = (Math.atan2(frame[2 * b + 1]! - frame[2 * a + 1]!, frame[2 * b]! - frame[2 * a]!) * 180) / Math.PI;
       put(block, { transform: `translate(${frame[2 * point]} ${frame[2 * point + 1]}) rotate(${angle})` });
     });
+  }
+
+  private outline({ center, points, closed, turns }: Outline): void {
+    const path = svg("path", { class: closed ? "disc" : "rail", d: line(points, closed) }, this.element);
+    this.moves.push((frame, number) => put(path, { transform: `translate(${frame[2 * center]} ${frame[2 * center + 1]}) rotate(${turns[number]})` }));
   }
 
   private disc(centre: number, radius: number): void {

@@ -22,7 +22,7 @@ export class Bar {
     this.file = html("span", { class: "lw-file" }, this.element);
     this.undo = this.button("↶", "Undo", () => desk.ask({ kind: "undo" }));
     this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
-    this.button("New", "Another mechanism, or a blank sheet", another);
+    this.button("New", "New: another mechanism, or a blank sheet", another);
     this.button("Reload", "Read the file again", () => desk.ask({ kind: "reload" }));
     this.link = new LinkDialog(desk);
     this.button("Share", "Share by link", () => this.link.open(this.element.closest(".lw")!));

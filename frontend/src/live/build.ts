@@ -27,19 +27,18 @@ export interface Piece {
   readonly edit: (entries: Entries) => LiveEdit;
 }
 
-const number = (text: Entry): number => Number(String(text).replace("\u2212", "-").replace(",", "."));
 const one = (name: string, entry: string, required = true): Field => ({ name, entry, required });
 
 const PLAIN: readonly Piece[] = [
   {
     title: "Point",
     doc: "x and y are its coordinates in the sketch of the file, the initial guess of the assembly",
-    fields: [one("name", "text"), one("x", "plain number"), one("y", "plain number"), one("on link", "link", false)],
+    fields: [one("name", "text"), one("x", "number"), one("y", "number"), one("on link", "link", false)],
     edit: (v) => ({
       kind: "add_point",
       name: String(v.name),
-      x: number(v.x!),
-      y: number(v.y!),
+      x: typed(String(v.x)),
+      y: typed(String(v.y)),
       links: v["on link"] ? [String(v["on link"])] : [],
     }),
   },
@@ -250,10 +249,6 @@ function entry(form: Element, what: Field, file: FileState): () => Entry {
   const input = field(form, label, "");
   input.required = required;
   input.parentElement!.title = doc;
-  if (kind === "plain number") {
-    input.pattern = "[\\-+\u2212]?(\\d+([.,]\\d*)?|[.,]\\d+)(e[\\-+]?\\d+)?";
-    input.title = "a number";
-  }
   if (kind !== "numbers") return () => input.value.trim();
   input.placeholder = "20, 40";
   return () => [input.value].filter((text) => text.trim());

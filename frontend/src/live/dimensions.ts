@@ -7,6 +7,7 @@ import { html } from "../svg";
 import type { Desk } from "./asking";
 import { fill } from "./fields";
 import { clean, rangeAround, typed } from "./ranges";
+import { Units } from "./units";
 
 /** Listed tables of the file with their headings; others are edited in the text. */
 const GROUPS: readonly (readonly [string, readonly string[], boolean])[] = [
@@ -26,9 +27,14 @@ export class Dimensions {
   private rows = new Map<string, Row>();
   private layout = "";
 
-  constructor(private readonly desk: Desk) {}
+  private readonly units: Units;
+
+  constructor(private readonly desk: Desk) {
+    this.units = new Units(desk);
+  }
 
   show(file: FileState): void {
+    this.units.show(file);
     const size = sizeOf(file);
     const layout = file.numbers.map((one) => `${one.table} ${one.name} ${one.formula !== ""}`).join("\n");
     if (layout !== this.layout) this.build(file);
@@ -38,7 +44,7 @@ export class Dimensions {
 
   private build(file: FileState): void {
     this.rows.clear();
-    this.element.replaceChildren();
+    this.element.replaceChildren(this.units.element);
     let first = true;
     for (const [title, tables, open] of GROUPS) {
       const own = file.numbers.filter((one) => tables.includes(one.table));

@@ -10,6 +10,7 @@ import { Busy } from "./busy";
 import { CircuitsPanel } from "./circuits";
 import { blank, closing } from "./closing";
 import { Dimensions } from "./dimensions";
+import { CanvasTools } from "./draw/canvas_tools";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
 import { ExportMenu } from "./export_menu";
@@ -43,6 +44,7 @@ export class LivePage {
   private readonly newton: Newton;
   private readonly build: Build;
   private readonly editor: Editor;
+  private readonly canvas: CanvasTools;
   private readonly readiness: Readiness;
   private readonly circuits: CircuitsPanel;
   private readonly plots: Plots;
@@ -81,6 +83,7 @@ export class LivePage {
       viewed: () => this.viewed(),
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
+    this.canvas = new CanvasTools(desk, this.editor);
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
     this.plots = new Plots(desk);
     this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
@@ -299,6 +302,7 @@ export class LivePage {
     this.newton.attach(page);
     this.plots.attach(page);
     this.editor.attach(page);
+    this.canvas.attach(page);
     if (view) page.places.drawing.see(view);
   }
 

@@ -2,14 +2,24 @@
 
 import { libraryOf } from "../begin/library";
 import { StartPage } from "../begin/start_page";
+import type { FileState } from "../messages";
 import type { Desk } from "./asking";
 
 /** The start page in sight; it may be there before the program that opens what is chosen. */
 let current: StartPage | null = null;
 
-/** Show the start page, or let another function open what is chosen on it. */
+/** What was chosen before there was a program to open it. */
+let chosen: string | null = null;
+
+/** Show the start page, or let another function open what is chosen on it, or was chosen already. */
 export function offerStart(open: (name: string) => void, close?: () => void): void {
   const hooks = { open, ...(close ? { close } : {}) };
+  const early = chosen;
+  chosen = null;
+  if (early !== null && !close) {
+    open(early);
+    return;
+  }
   if (current !== null && !close) {
     current.hooks = hooks;
     return;
@@ -17,6 +27,12 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   leaveStart();
   current = new StartPage(libraryOf(document), hooks);
   document.body.append(current.element);
+}
+
+/** Keep a choice for the program that is being loaded. */
+export function chooseEarly(name: string): void {
+  chosen = name;
+  leaveStart();
 }
 
 export function leaveStart(): void {
@@ -33,8 +49,9 @@ export class Starting {
   }
 
   private open(name: string): void {
-    const { unsaved, file } = this.desk.file();
-    const discard = unsaved && confirm(`Changes of ${file} are not saved. Discard them?`);
+    const state: FileState | null = this.desk.file(); // none before the first file is open
+    const unsaved = state?.unsaved ?? false;
+    const discard = unsaved && confirm(`Changes of ${state!.file} are not saved. Discard them?`);
     if (unsaved && !discard) return;
     leaveStart();
     this.desk.ask({ kind: "open_example", name, discard });

@@ -2,7 +2,7 @@
 
 import { setAppUrl } from "../live/link";
 import { LivePage } from "../live/live_page";
-import { leaveStart, offerStart } from "../live/starting";
+import { chooseEarly, offerStart } from "../live/starting";
 import { html } from "../svg";
 import { engineFiles, type Engine } from "./engine";
 import { keptWork } from "./keeping";
@@ -54,8 +54,12 @@ function begin(): void {
 }
 
 function choose(name: string): void {
-  history.replaceState(null, "", `#example=${encodeURIComponent(name)}`);
-  leaveStart();
+  chooseEarly(name);
+  try {
+    history.replaceState(null, "", `#example=${encodeURIComponent(name)}`);
+  } catch {
+    // a frame without an address of its own: the program asks what was chosen
+  }
 }
 
 /** On a host, the next visit needs no network. */

@@ -25,8 +25,9 @@ from dataclasses import dataclass
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import GREEK, canonical
+from linkwork.foundation.units import LENGTHS
 
-__all__ = ["CONSTANTS", "FUNCTIONS", "RESERVED", "parse", "parse_equation"]
+__all__ = ["CONSTANTS", "FUNCTIONS", "RESERVED", "number_end", "parse", "parse_equation"]
 
 #: Functions and their numbers of arguments (minimum, maximum).
 FUNCTIONS = {
@@ -46,10 +47,7 @@ _OPERATORS = {
 }  # fmt: skip
 _LONGEST = 10_000  # characters
 #: Units that are written behind a number by mistake, and the key that sets them.
-_UNITS = {
-    **dict.fromkeys(("mm", "cm", "dm", "m", "km", "in", "inch", "ft", "µm"), "length"),
-    **dict.fromkeys(("deg", "rad"), "angle"),
-}
+_UNITS = {**dict.fromkeys(LENGTHS, "length"), **dict.fromkeys(("deg", "rad"), "angle")}
 _MOST_TOKENS = 400  # a sum of n terms has depth n: keeps recursion below Python's limit
 _DEEPEST = 60
 
@@ -69,7 +67,7 @@ def _is_name_part(c: str) -> bool:
     return (c.isalnum() or c in "_'") and c not in _SUPERSCRIPT
 
 
-def _number_end(text: str, start: int) -> int:
+def number_end(text: str, start: int) -> int:
     """Index after the number that begins at ``start``."""
     end = start
     while end < len(text) and text[end] in "0123456789.":
@@ -109,7 +107,7 @@ def _tokens(text: str, comparing: bool) -> list[_Token]:
             k += 1
         # a dot without a digit does not begin a number
         elif c in "0123456789." and text[k : k + 2].strip("."):
-            end = _number_end(text, k)
+            end = number_end(text, k)
             found.append(_Token("number", text[k:end], column))
             k = end
         elif c in _SUPERSCRIPT:

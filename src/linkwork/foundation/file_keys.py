@@ -30,7 +30,14 @@ class Text:
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or a formula in the named dimensions."""
+    """A number, or a formula in the named dimensions.
+
+    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``lift``: as the
+    follower of the cam, ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring
+    between points or links.
+    """
+
+    of: str = "number"
 
 
 @dataclass(frozen=True)

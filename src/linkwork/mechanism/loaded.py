@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.foundation.errors import ExpressionError, InputError, choices
-from linkwork.foundation.force_units import FORCES, LENGTHS, MASSES
+from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import as_told

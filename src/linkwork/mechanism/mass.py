@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.file_keys import Key, ListOf, Measured, Number as NumberKey, Text
-from linkwork.foundation.force_units import LENGTHS
+from linkwork.foundation.units import LENGTHS
 from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number, Numbers
 
@@ -20,15 +20,15 @@ MASS_KEYS = (
     Key("mass", NumberKey(), "Mass of the link", required=True),
     Key(
         "center",
-        ListOf(NumberKey(), "coordinate", 2, 2),
+        ListOf(NumberKey("length"), "coordinate", 2, 2),
         "Centre of mass, from the link's first point towards its second",
     ),
-    Key("inertia", NumberKey(), "Moment of inertia about the centre of mass; default 0"),
+    Key("inertia", NumberKey("area"), "Moment of inertia about the centre of mass; default 0"),
     Key("shape", Text(_SHAPES), "A uniform rod between the link's first two points"),
 )
 GRAVITY_KEYS = (
     Key("size", Measured("9.81 m/s^2"), 'Acceleration; "9.81 m/s^2" unless given'),
-    Key("angle", NumberKey(), "Direction; downwards unless given"),
+    Key("angle", NumberKey("angle"), "Direction; downwards unless given"),
 )
 
 
@@ -112,4 +112,4 @@ class Gravity:
         if length not in LENGTHS:
             message = f"cannot be converted to {length}/s^2: write the number alone"
             raise ExpressionError(message, size, 1)
-        return numbers(number) * LENGTHS[own.strip()] / LENGTHS[length]
+        return numbers(number) * float(LENGTHS[own.strip()] / LENGTHS[length])

@@ -22,7 +22,7 @@ from linkwork.foundation.file_keys import (
     Tables,
     Text,
 )
-from linkwork.foundation.force_units import FORCES, MASSES
+from linkwork.foundation.units import FORCES, MASSES
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
@@ -48,7 +48,7 @@ class Form:
         return self.title.replace("-", "_").replace(" ", "_")
 
 
-_NAME_LIST = ListOf(Text(), "name")
+_POINT_LIST = ListOf(Text(), "point")
 
 _HEAD = (
     Key(
@@ -71,7 +71,7 @@ _HEAD = (
     Key("purpose", Text(), "What the mechanism is for, in one sentence"),
 )
 _DIMENSIONS = Key(
-    "dimensions", Named(Number()), "Named numbers and formulas, usable in place of numbers"
+    "dimensions", Named(Number("named")), "Named numbers and formulas, usable in place of numbers"
 )
 _OUTPUTS = Key(
     "outputs",
@@ -80,7 +80,7 @@ _OUTPUTS = Key(
 )
 _TRACE = Key(
     "trace",
-    Table((Key("points", _NAME_LIST, "Points whose paths are drawn", required=True),)),
+    Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
 )
 _FORCE_UNITS = (
@@ -93,16 +93,16 @@ _MASSES = (
 )
 _GUESS = Key(
     "guess",
-    Named(Number()),
+    Named(Number("named")),
     "Estimates of all unknowns at one input value",
     required=True,
 )
 _RANGE = (
-    Key("from", Number(), "First input value"),
-    Key("to", Number(), "Last input value"),
+    Key("from", Number("driven"), "First input value"),
+    Key("to", Number("driven"), "Last input value"),
     Key(
         "step",
-        Number(),
+        Number("driven"),
         "Step between input values; its sign points from the first value to the last",
     ),
     Key(
@@ -112,11 +112,15 @@ _RANGE = (
     ),
 )
 _DRIVES = (
-    Key("link", Text(), "The link whose angle is driven"),
-    Key("relative_to", Text(), "The link relative to which the angle is measured; default ground"),
-    Key("joint", Text(), "The pin whose relative angle is driven"),
-    Key("slider", Text(), "The slider or slot whose displacement is driven"),
-    Key("cylinder", Text(), "The cylinder whose length is driven"),
+    Key("link", Text(of="link"), "The link whose angle is driven"),
+    Key(
+        "relative_to",
+        Text(of="link"),
+        "The link relative to which the angle is measured; default ground",
+    ),
+    Key("joint", Text(of="point"), "The pin whose relative angle is driven"),
+    Key("slider", Text(of="slider"), "The slider or slot whose displacement is driven"),
+    Key("cylinder", Text(of="slider"), "The cylinder whose length is driven"),
     *_RANGE,
 )
 _VARIABLE = (
@@ -134,7 +138,7 @@ LINKAGE = Form(
         _DIMENSIONS,
         Key(
             "points",
-            Named(ListOf(Number(), "coordinate", 2, 2)),
+            Named(ListOf(Number("length"), "coordinate", 2, 2)),
             "One assembled position: A = [35, 20]; exact on ground, elsewhere a sketch is enough",
             required=True,
         ),
@@ -144,10 +148,10 @@ LINKAGE = Form(
             'The points each link carries: crank = ["O2", "A"]; "ground" is fixed',
             required=True,
         ),
-        Key("lengths", Named(Number(), 2), 'Exact distances in one link: "O2 A" = 40'),
+        Key("lengths", Named(Number("length"), 2), 'Exact distances in one link: "O2 A" = 40'),
         Key(
             "angles",
-            Named(Number(), 3),
+            Named(Number("angle"), 3),
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),

@@ -129,6 +129,26 @@ class TextEdits:
         if len(path) > 1 and not len(holder) and holder is not self._document:
             self.remove(path[:-1])
 
+    def rename(self, path: KeyPath, name: str) -> None:
+        """Give the key at a path another name; its place and comments stay.
+
+        Raises
+        ------
+        UnknownNameError
+            If the path does not exist.
+        """
+        import tomlkit
+
+        holder, key = self._existing(path)
+        body = getattr(holder, "value", holder).body
+        for k, (own, entry) in enumerate(body):
+            if own is not None and own.key == key:
+                written = own.as_string()  # with the blanks that align the equals signs
+                blanks = written[len(written.rstrip()) :]
+                body[k] = (tomlkit.items.SingleKey(name, sep=blanks + own.sep), entry)
+        # indices by the old name are gone
+        self._document = tomlkit.parse(self._document.as_string())
+
     def _existing(self, path: KeyPath) -> tuple[Any, Any]:
         found = self._found(path)
         if found is None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -93,14 +93,13 @@ class Served:
 
 
 @contextmanager
-def serving(path: Path) -> Iterator[Served]:
-    """A mechanism file behind a socket, ended at the end."""
-    workbench = Workbench(MechanismFile(path), lw.loads)
+def serving(workbench: Workbench) -> Iterator[LiveServer]:
+    """A workbench behind a socket, ended at the end."""
     server = LiveServer(workbench)
     thread = threading.Thread(target=server.run)
     thread.start()
     try:
-        yield Served(server, workbench, path)
+        yield server
     finally:
         server.stop()
         thread.join(10)
@@ -108,10 +107,18 @@ def serving(path: Path) -> Iterator[Served]:
 
 
 @pytest.fixture
+def serve() -> Iterator[Callable[[Workbench], LiveServer]]:
+    """Starts servers of workbenches; ask for it before a page, so that pages close first."""
+    with ExitStack() as ends:
+        yield lambda workbench: ends.enter_context(serving(workbench))
+
+
+@pytest.fixture
 def served(path: Path) -> Iterator[Served]:
     """A server of a test's own."""
-    with serving(path) as found:
-        yield found
+    workbench = Workbench(MechanismFile(path), lw.loads)
+    with serving(workbench) as server:
+        yield Served(server, workbench, path)
 
 
 @pytest.fixture(scope="module")
@@ -119,9 +126,10 @@ def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """A server for all tests of a module that leave it as it is."""
     file = tmp_path_factory.mktemp("standing") / "four-bar.toml"
     file.write_text(FOUR_BAR, encoding="utf-8")
-    with serving(file) as found:
-        yield found
-        assert not found.workbench.unsaved
+    workbench = Workbench(MechanismFile(file), lw.loads)
+    with serving(workbench) as server:
+        yield Served(server, workbench, file)
+        assert not workbench.unsaved
 
 
 def ask(page: ClientConnection, kind: str, **fields: Any) -> None:

@@ -126,7 +126,7 @@ def test_kept_work_is_unsaved_and_can_be_undone(
 
 @pytest.mark.parametrize(
     ("fragment", "file"),
-    [("", "four-bar.toml"), ("#", "four-bar.toml"), ("#example=jansen-leg", "jansen-leg.toml")],
+    [("#example=", "untitled.toml"), ("#example=jansen-leg", "jansen-leg.toml")],
 )
 def test_an_address_names_a_mechanism_of_the_library(
     fragment: str, file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -135,6 +135,16 @@ def test_an_address_names_a_mechanism_of_the_library(
     page = Page()
     page.desk.begin(fragment)
     assert page.told[1]["file"] == file
+
+
+@pytest.mark.parametrize("fragment", ["", "#"])
+def test_a_bare_address_offers_the_library(
+    fragment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = Page()
+    page.desk.begin(fragment)
+    assert page.kinds == ["palette_shown", "start_offered", "file_state", "sketch_shown"]
 
 
 def test_an_address_contains_a_mechanism(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,14 +156,14 @@ def test_an_address_contains_a_mechanism(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("fragment", ["#example=unknown", "#example=../../etc", "#\0<b>", "#lw1=A"])
-def test_a_bad_address_is_refused_and_a_mechanism_is_open(
+def test_a_bad_address_is_refused_and_the_library_is_offered(
     fragment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     page = Page()
     page.desk.begin(fragment)
-    assert page.kinds == ["palette_shown", "file_state", "motion_found", "refused"]
-    assert page.told[1]["file"] == "four-bar.toml"
+    assert {"start_offered", "refused"} < set(page.kinds)
+    assert page.told[2]["file"] == "untitled.toml"
 
 
 def test_names_stay_in_the_folder(page: Page, tmp_path: Path) -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import random
-import threading
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ import linkwork as lw
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
-from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 
 Place = tuple[float, float]
 
@@ -72,34 +70,24 @@ class Sheet:
 
 
 @pytest.fixture
-def open_sheet(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Sheet]]:
-    """Opens a blank sheet; fails on any message of the console."""
-    said: list[str] = []
-    ends: list[Callable[[], object]] = []
+def open_sheet(
+    serve: Callable[[Workbench], LiveServer], watched: Callable[..., Any], tmp_path: Path
+) -> Callable[..., Sheet]:
+    """Opens a blank sheet."""
 
     def opened(scale: float = 1.0, unit: str = "mm") -> Sheet:
         text = blank_sheet("drawn").replace('"mm"', f'"{unit}"')
         bench = Workbench(MechanismFile(tmp_path / "drawn.toml", text), lw.loads)
-        server = LiveServer(bench)
-        thread = threading.Thread(target=server.run)
-        thread.start()
-        ends.append(server.stop)
-        size = {"width": 1440, "height": 900}
-        context = browser.new_context(viewport=size, reduced_motion="reduce")
-        ends.append(context.close)
-        page = context.new_page()
+        server = serve(bench)
+        home = f"http://127.0.0.1:{server.port}/"
+        page = watched((home,), viewport={"width": 1440, "height": 900})
         page.set_default_timeout(10_000)
-        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(server.address)
         page.locator(".lw-tools [aria-pressed=true]", has_text="Link").wait_for()
         width = page.locator(".lw-drawing").evaluate("svg => svg.viewBox.baseVal.width")
         return Sheet(page, bench, scale * width / 240)
 
-    yield opened
-    for end in reversed(ends):
-        end()
-    assert said == []
+    return opened
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,6 @@ import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
 from linkwork.textfile.link import text_of_link
 from tests.described import described_as
-from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR, Served
 
 Open = Callable[..., Any]
@@ -29,29 +28,17 @@ radii = [20, 30]
 
 
 @pytest.fixture
-def open_live(browser: Any, served: Served) -> Iterator[Open]:
-    """Opens the live page; fails on any message of the console and on any foreign request."""
-    said: list[str] = []
-    contexts = []
+def open_live(served: Served, watched: Callable[..., Any]) -> Open:
+    """Opens the live page."""
 
     def opened(wait: str = ".lw[data-row]", **options: Any) -> Any:
-        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
-        context = browser.new_context(**(settings | options))
-        contexts.append(context)
-        page = context.new_page()
+        page = watched((f"http://{served.host}/",), **options)
         page.set_default_timeout(10_000)
-        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        home = f"http://{served.host}/"
-        page.on("request", lambda r: None if r.url.startswith(home) else said.append(r.url))
         page.goto(served.server.address)
         page.wait_for_selector(wait)
         return page
 
-    yield opened
-    for context in contexts:
-        context.close()
-    assert said == []
+    return opened
 
 
 def shown_row(page: Any) -> int:

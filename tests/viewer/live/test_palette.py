@@ -13,7 +13,9 @@ import linkwork as lw
 from linkwork.mechanism.part.index import PARTS
 from linkwork.viewer.live.events import PaletteField
 from linkwork.viewer.live.palette import PALETTE, Typed, part_of
+from linkwork.viewer.live.typed_units import TypedUnits
 
+MM = TypedUnits("mm", "deg")
 FIELDS = {part.table: {field.name: field for field in part.fields} for part in PALETTE}
 FILES = [file for file in (files("linkwork") / "library").iterdir() if file.name.endswith(".toml")]
 ROWS = [
@@ -58,7 +60,7 @@ def test_every_kind_of_part_has_its_fields() -> None:
 @pytest.mark.parametrize(("table", "row"), ROWS)
 def test_a_part_of_the_library_is_typed_as_its_file_has_it(table: str, row: Any) -> None:
     entered = {name: typed(FIELDS[table][name], entry) for name, entry in row.items()}
-    assert part_of(table, entered) == row
+    assert part_of(table, entered, MM) == row
 
 
 def test_numbers_may_be_formulas_and_what_is_empty_is_left_out() -> None:
@@ -66,7 +68,7 @@ def test_numbers_may_be_formulas_and_what_is_empty_is_left_out() -> None:
         "name": "c", "base": "r + 2", "radius": "", "start": "\u221230", "segments": (),
         "profile": ("1, 2", "", "3 4.5"), "slider": "s",
     }  # fmt: skip
-    assert part_of("cams", entered) == {
+    assert part_of("cams", entered, MM) == {
         "name": "c", "base": "r + 2", "start": -30, "profile": [[1, 2], [3, 4.5]], "slider": "s",
     }  # fmt: skip
 
@@ -84,5 +86,5 @@ def test_numbers_may_be_formulas_and_what_is_empty_is_left_out() -> None:
 )  # fmt: skip
 def test_what_is_no_part_is_refused(table: str, entered: dict[str, Any], message: str) -> None:
     with pytest.raises(lw.InputError) as caught:
-        part_of(table, entered)
+        part_of(table, entered, MM)
     assert message in str(caught.value)

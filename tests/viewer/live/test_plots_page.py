@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from tests.viewer.conftest import browser as browser  # fixtures, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR, Served
 from tests.viewer.live.test_live_page import open_live as open_live, shown_row, type_number
 

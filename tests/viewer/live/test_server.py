@@ -85,7 +85,7 @@ def test_nothing_that_is_served_carries_the_token_or_the_file(standing: Served) 
     for path in ("/", "/live.js"):
         _, body = answer(standing, path)
         assert standing.server.token.encode() not in body
-        assert b"four-bar" not in body
+        assert b"A four-bar to be dragged about" not in body
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,6 @@ from linkwork.viewer.live.browser_desk import BrowserDesk
 from linkwork.viewer.web.pyodide_files import pyodide_files
 from linkwork.viewer.web.web_app import web_folder
 from tests.library_mechanisms import driven_examples
-from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.web.comparing import differences
 
 _FOLDER = os.environ.get("LINKWORK_PYODIDE", "")
@@ -81,29 +80,18 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
 
 @pytest.fixture
-def open_web(browser: Any, site: Site) -> Iterator[Open]:
-    """Opens a page; fails on any message of the console and on any foreign request."""
-    said: list[str] = []
-    contexts = []
+def open_web(site: Site, watched: Callable[..., Any]) -> Open:
+    """Opens a page."""
 
     def opened(address: str, **options: Any) -> Any:
-        settings = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 800}}
-        context = browser.new_context(**(settings | options))
-        contexts.append(context)
-        context.set_default_timeout(_PATIENCE)
-        context.add_init_script(_LISTENING)
-        page = context.new_page()
-        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: said.append(str(error)))
         own = (site.address, site.folder.as_uri(), "blob:", "data:")
-        page.on("request", lambda r: None if r.url.startswith(own) else said.append(r.url))
+        page = watched(own, **options)
+        page.context.set_default_timeout(_PATIENCE)
+        page.context.add_init_script(_LISTENING)
         page.goto(address)
         return page
 
-    yield opened
-    for context in contexts:
-        context.close()
-    assert said == []
+    return opened
 
 
 def told(page: Any, kind: str) -> dict[str, Any]:
@@ -173,7 +161,7 @@ def assert_same(page: Any, names: list[str], folder: Path) -> None:
 def test_the_page_of_a_host_solves_as_python_does(
     open_web: Open, site: Site, tmp_path: Path
 ) -> None:
-    page = open_web(site.address)
+    page = open_web(f"{site.address}#example=four-bar")
     assert "For tests only" in page.locator("body").inner_text()
     page.wait_for_selector(_READY)
     assert_same(page, ["four-bar", "jansen-leg", "rapier-drive"], tmp_path)
@@ -197,7 +185,7 @@ def test_a_length_is_dragged_and_the_cycle_is_that_of_the_library(
 
 
 def test_files_are_exported_or_the_missing_package_is_named(open_web: Open, site: Site) -> None:
-    page = open_web(site.address)
+    page = open_web(f"{site.address}#example=four-bar")
     page.wait_for_selector(_READY)
     for suffix, kind in {"html": "exported", "csv": "exported", "xlsx": "refused"}.items():
         answer = asked(page, {"kind": "export", "format": suffix, "row": None, "dark": False})
@@ -227,10 +215,25 @@ def test_a_newer_change_cancels_a_cycle_that_is_being_solved(open_web: Open, sit
     assert [event["answers"] for event in events if event["kind"] == "motion_found"] == [None, 1001]
 
 
+@pytest.mark.parametrize("early", [True, False])
+def test_a_mechanism_of_the_library_is_chosen_while_the_engine_loads_or_later(
+    early: bool, open_web: Open, site: Site
+) -> None:
+    page = open_web(site.address)
+    if not early:
+        page.wait_for_function("() => window.said.some((told) => told.includes('start_offered'))")
+    page.locator(".lw-start [data-example=whitworth]").first.click()
+    page.locator(".lw-file", has_text="whitworth").wait_for()
+    assert told(page, "file_state")["text"] == example_text("whitworth")
+    assert page.locator(".lw-start").count() == 0
+
+
 def test_one_file_opens_from_a_disk_keeps_work_and_saves_it(open_web: Open, site: Site) -> None:
     page = open_web((site.folder / "index.html").as_uri(), offline=True)
+    page.locator(".lw-start [data-example=four-bar]").first.click()
     page.wait_for_selector(_READY)
-    assert page.url.endswith("/linkwork.html")  # a disk's folder cannot be read by a page
+    # a disk's folder cannot be read by a page
+    assert page.url.endswith("/linkwork.html#example=four-bar")
     page.locator('[data-number="A B"] input[type=text]').fill("125")
     page.keyboard.press("Enter")
     page.locator("[data-unsaved=true]").wait_for()
@@ -247,14 +250,16 @@ def test_one_file_opens_from_a_disk_keeps_work_and_saves_it(open_web: Open, site
 
 
 def test_a_sandboxed_frame_solves(open_web: Open, site: Site) -> None:
-    frame = f'<iframe sandbox="allow-scripts" src="{site.address}" width="1000" height="700">'
-    (site.folder / "course.html").write_text(f'<link rel="icon" href="data:,">{frame}</iframe>')
+    inside = f'<iframe sandbox="allow-scripts" src="{site.address}" width="1000" height="700">'
+    (site.folder / "course.html").write_text(f'<link rel="icon" href="data:,">{inside}</iframe>')
     page = open_web(f"{site.address}course.html")
-    page.frame_locator("iframe").locator(_READY).wait_for()
+    frame = page.frame_locator("iframe")
+    frame.locator(".lw-start [data-example=four-bar]").first.click()
+    frame.locator(_READY).wait_for()
 
 
 def test_the_second_visit_needs_no_network(open_web: Open, site: Site) -> None:
-    page = open_web(site.address)
+    page = open_web(f"{site.address}#example=four-bar")
     page.wait_for_selector(_READY)
     page.evaluate("() => navigator.serviceWorker.ready.then(() => undefined)")
     page.context.set_offline(True)
@@ -267,6 +272,6 @@ def test_the_second_visit_needs_no_network(open_web: Open, site: Site) -> None:
 def test_all_driven_mechanisms_are_solved_as_in_python(
     open_web: Open, site: Site, tmp_path: Path
 ) -> None:
-    page = open_web(site.address)
+    page = open_web(f"{site.address}#example=four-bar")
     page.wait_for_selector(_READY)
     assert_same(page, driven_examples(), tmp_path)

@@ -10,6 +10,7 @@ import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
 import { Overlay, pointsWithin } from "./overlay";
+import type { Expected, Held } from "./selected";
 import { ToolBar, TOOLS } from "./tool_bar";
 
 /** Attraction of points and links [px]: of a mouse, of a finger. */
@@ -46,6 +47,8 @@ export class Editor {
   private selected: ReadonlySet<string> = new Set();
   private chosen: Chosen | null = null;
   private gesture: Gesture | null = null;
+  /** What is selected with the next state of the file. */
+  private expected: Expected | null = null;
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -64,6 +67,12 @@ export class Editor {
   /** The tool in use. */
   get inUse(): string {
     return this.tool;
+  }
+
+  /** What is selected, for tools that copy it. */
+  get held(): Held {
+    const { chosen, selected, points, grid } = this;
+    return { chosen, selected, points, step: grid / 10, expect: (wanted) => (this.expected = wanted) };
   }
 
   attach(page: Mounted): void {
@@ -104,7 +113,22 @@ export class Editor {
     this.selected = new Set([...this.selected].filter((name) => known.has(name)));
     if (this.chosen && !(this.chosen.kind === "point" ? known : new Set(file.links.map((link) => link.name))).has(this.chosen.name)) this.chosen = null;
     this.inspector.show(this.chosen, file);
+    this.take(file);
     this.redraw();
+  }
+
+  /** Select what an edit has made. */
+  private take(file: FileState): void {
+    const { expected } = this;
+    this.expected = null;
+    if (!expected) return;
+    const points = expected.points.filter((name) => name in file.points);
+    if (expected.chosen && (expected.chosen.kind === "point" ? points.length : file.links.some(({ name }) => name === expected.chosen!.name))) this.select(expected.chosen);
+    else if (points.length) {
+      this.select(null);
+      this.selected = new Set(points);
+      this.inspector.showMany(points, file);
+    }
   }
 
   /** Begin anew with the tool that changes nothing. */

@@ -22,6 +22,8 @@ interface Action {
 export class Inspector {
   readonly element = html("section", { class: "lw-inspector", "aria-label": "Selection", hidden: "" });
   private readonly locks = new Set<string>();
+  /** Adds what concerns every selection. */
+  more: (panel: HTMLElement) => void = () => {};
 
   constructor(
     private readonly desk: Desk,
@@ -47,6 +49,7 @@ export class Inspector {
     this.begin(chosen.kind === "point" ? `Point ${chosen.name}` : `Link ${chosen.name}`);
     if (chosen.kind === "point") this.point(chosen.name, file);
     else this.link(chosen.name, file);
+    this.more(this.element);
   }
 
   showMany(names: readonly string[], file: FileState): void {
@@ -61,6 +64,7 @@ export class Inspector {
       { label: "Fix to ground", edits: [{ kind: "set_ground", points: names }] },
       { label: "Delete", edits: names.map((name) => ({ kind: "remove_point", name })) },
     ]);
+    this.more(this.element);
   }
 
   private begin(title: string): void {

@@ -38,8 +38,8 @@ _CONTACTS = ("knife", "roller", "flat")
 _SHORTEST = 1e-6  # minimum length of a segment, in turns
 _SEGMENT = (
     Key("law", Text(LAWS), "Motion law of the follower", required=True),
-    Key("over", NumberKey(), "Angle by which the cam turns", required=True),
-    Key("lift", NumberKey(), "Displacement of the follower, positive away from the centre"),
+    Key("over", NumberKey("angle"), "Angle by which the cam turns", required=True),
+    Key("lift", NumberKey("lift"), "Displacement of the follower, positive away from the centre"),
 )
 
 
@@ -147,9 +147,9 @@ class Cam(NamedPart):
             "With link: its knife edge, the centre of its roller or the end of its face",
         ),
         Key("contact", Text(_CONTACTS), "Kind of the follower; default knife"),
-        Key("radius", NumberKey(), "Radius of the roller"),
-        Key("base", NumberKey(), "Radius of the base circle, with segments"),
-        Key("start", NumberKey(), "Angle of the cam at which the segments begin; default 0"),
+        Key("radius", NumberKey("length"), "Radius of the roller"),
+        Key("base", NumberKey("length"), "Radius of the base circle, with segments"),
+        Key("start", NumberKey("angle"), "Angle of the cam at which the segments begin; default 0"),
         Key("segments", Tables(_SEGMENT), "Motion of the follower in one turn of the cam"),
         Key("profile", COORDINATES, "Or the outline, in the cam's frame about its centre"),
     )

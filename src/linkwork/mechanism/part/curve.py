@@ -17,7 +17,7 @@ from linkwork.mechanism.part.part import LINK, POINT, Inversion, NamedPart, Part
 
 __all__ = ["COORDINATES", "Curve", "CurvedSlot", "turned_back"]
 
-COORDINATES = ListOf(ListOf(NumberKey(), "coordinate", 2, 2), "point", 3)
+COORDINATES = ListOf(ListOf(NumberKey("length"), "coordinate", 2, 2), "point", 3)
 
 _Pairs = tuple[tuple[Number, Number], ...]
 

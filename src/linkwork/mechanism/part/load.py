@@ -50,7 +50,7 @@ class Load(Part):
         Key("force", ListOf(NumberKey(), "component", 2, 2), "Its components, or formulas of them"),
         Key("with", LINK, "The link with which the force turns", field="turns_with"),
         Key("link", LINK, "The link on which a torque acts, or that takes a force on a pin"),
-        Key("torque", NumberKey(), "The torque, or a formula; positive counter-clockwise"),
+        Key("torque", NumberKey("length"), "The torque, or a formula; positive counter-clockwise"),
     )
 
     point: str | None = None

@@ -24,7 +24,7 @@ from linkwork.mechanism.part.wheel_pair import ARM_KEYS, PHASE_KEY, ArmPair
 __all__ = ["NoncircularGear", "PitchCurve"]
 
 _LAWS = ("law", "table", "pitch_curve")
-_PAIRS = ListOf(ListOf(NumberKey(), "angle", 2, 2), "pair", 5)
+_PAIRS = ListOf(ListOf(NumberKey("angle"), "angle", 2, 2), "pair", 5)
 
 
 class PitchCurve(Contour):
@@ -76,7 +76,7 @@ class NoncircularGear(ToothedPart, ArmPair):
         Key("law", Formula(), "Angle of the second wheel as a formula of phi, the first one's"),
         Key("table", _PAIRS, "Or pairs of both angles over one turn of the first wheel"),
         Key("pitch_curve", COORDINATES, "Or the first wheel's pitch curve about its centre"),
-        Key("start", NumberKey(), "Angle of the first wheel at which phi is 0"),
+        Key("start", NumberKey("angle"), "Angle of the first wheel at which phi is 0"),
         PHASE_KEY,
         PRESSURE_KEY,
     )

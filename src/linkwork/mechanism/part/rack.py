@@ -68,7 +68,7 @@ class Rack(ToothedPart):
         Key("pinion", LINK, "The rotating link", required=True),
         Key("center", POINT, "Its centre of rotation", required=True),
         Key("slider", SLIDER, "The slider of the rack", required=True),
-        Key("radius", NumberKey(), "Pitch radius of the pinion", required=True),
+        Key("radius", NumberKey("length"), "Pitch radius of the pinion", required=True),
         PRESSURE_KEY,
     )
     kind = JointKind("G", 2, "rack and pinion")

@@ -84,11 +84,11 @@ class Rolling(NamedPart):
         ),
         Key("wheel", LINK, "The link that rolls", required=True),
         Key("center", POINT, "Its centre", required=True),
-        Key("radius", NumberKey(), "Its radius", required=True),
+        Key("radius", NumberKey("length"), "Its radius", required=True),
         Key("on", LINK, "The link on which it rolls; default ground"),
         Key("line", POINT_PAIR, "Two points of that link: it rolls along this line"),
         Key("circle", POINT, "Or the centre of the circle on which it rolls"),
-        Key("circle_radius", NumberKey(), "The radius of that circle"),
+        Key("circle_radius", NumberKey("length"), "The radius of that circle"),
         Key("inside", Flag(), "The smaller of wheel and circle is inside the larger one"),
     )
     kind = JointKind("W", 1, "rolling contact")

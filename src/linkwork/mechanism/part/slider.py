@@ -63,8 +63,16 @@ class Slider(GuidePart):
         ),
         Key("on", LINK, "The link along which it slides", required=True),
         Key("line", POINT_PAIR, "Two points of that link; positive from first to second", True),
-        Key("offset", NumberKey(), "Distance of the points from the line, positive to its left"),
-        Key("angle", NumberKey(), "With one point: the angle from the line to the sliding link"),
+        Key(
+            "offset",
+            NumberKey("length"),
+            "Distance of the points from the line, positive to its left",
+        ),
+        Key(
+            "angle",
+            NumberKey("angle"),
+            "With one point: the angle from the line to the sliding link",
+        ),
     )
     kind = JointKind.PRISMATIC
     holders = "sliders"

@@ -49,7 +49,7 @@ class Weld(Part):
     doc = "Two links that share a point and rotate together"
     keys = (
         Key("links", ListOf(Text(), "link", 2, 2), "Two links that share a point", required=True),
-        Key("angle", NumberKey(), "From the first link's direction to the second's"),
+        Key("angle", NumberKey("angle"), "From the first link's direction to the second's"),
     )
 
     links: tuple[str, str]

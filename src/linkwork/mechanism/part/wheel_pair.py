@@ -23,10 +23,12 @@ ARM_KEYS = (
     Key("arm", LINK, "The link with both centres; default ground"),
 )
 SIZE_KEYS = (
-    Key("radii", NUMBER_PAIR, "Pitch radii"),
+    Key("radii", ListOf(NumberKey("length"), "number", 2, 2), "Pitch radii"),
     Key("teeth", NUMBER_PAIR, "Numbers of teeth, instead of radii"),
 )
-PHASE_KEY = Key("phase", NumberKey(), "Angle of the second wheel where the first one's is zero")
+PHASE_KEY = Key(
+    "phase", NumberKey("angle"), "Angle of the second wheel where the first one's is zero"
+)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,7 +32,8 @@ _FAST = 6.0  # where a variable moves this many times faster than the input, a d
 _ASIDE = 0.2  # weighted: how far from it a circuit is begun
 _MOST_LEGS = 24  # a circuit that closes has up to ten; these take about a second
 _MOST_PROVED = 300  # steps of one: proofs that need more would take seconds
-_CARES = (replace(BOLD, most_steps=2000), TrackOptions(most_steps=4000))  # until one is proved
+_CARES = (replace(BOLD, most_steps=60), TrackOptions(most_steps=120))  # until one is proved
+_MOST_AGAIN = 600  # nodes times variables of a curve that is followed again with more care
 
 
 _T = TypeVar("_T", bound=TracedCurve | None)
@@ -171,17 +172,22 @@ def _circuit(leads: ParametrizedTable, v: Array, side: float) -> list[TracedCurv
 
 
 def _proved(follow: Callable[[TrackOptions], _T]) -> _T:
-    """What is followed with the least care that proves it, or else with the most."""
+    """What is followed with the least care that proves it, or else with the most that is cheap."""
     for care in _CARES:
         found = follow(care)
-        if found is None or found.certified:
+        if found is None or found.certified or _size(found) > _MOST_AGAIN:
             break
     return found
 
 
+def _size(walk: TracedCurve) -> int:
+    return sum(leg.v.size for leg in walk.curve.legs)
+
+
 def _walk(leads: ParametrizedTable, v: Array, side: float, care: TrackOptions) -> TracedCurve:
     """A curve with its proof and dead points, given up sooner than when it is asked for."""
-    curve = trace(leads, v, side, CurveOptions(most_legs=_MOST_LEGS, track=care))
+    given_up = CurveOptions(most_legs=_MOST_LEGS, most_proved_legs=0, track=care)
+    curve = trace(leads, v, side, given_up)
     if not curve.legs:
         return TracedCurve(curve=curve, proof=None, turns=())
     turns = tuple(turning_points(leads, curve))

@@ -33,8 +33,7 @@ __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
 _ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _APART = 0.3  # of the largest condition of ordinary steps: where these go on behind proved ones
-_MOST_PROVED = 4  # legs of proved steps past one place,
-_MOST_PROVED_LEGS = 32  # and on one curve, each within a second
+_MOST_PROVED = 4  # legs of proved steps past one place
 _MOST_NODES = 120  # of such a leg: more do not lead past
 _LEG = 8.0  # natural sizes of the leader, after which a leg ends if nothing else ends it
 
@@ -47,6 +46,7 @@ class CurveOptions:
     ``slow``: the parameter leads again where nothing moves faster than this many times its rate.
     ``far``: a length this many times the mechanism's own has run to infinity.
     ``most_turns``: of the parameter, after which the curve counts as never closing.
+    ``most_proved_legs``: of proved steps, each within a second, past places where steps shrink.
     """
 
     fast: float = 6.0
@@ -54,6 +54,7 @@ class CurveOptions:
     far: float = 1e4
     most_turns: int = 60
     most_legs: int = 2000
+    most_proved_legs: int = 32
     track: TrackOptions = field(default_factory=lambda: BOLD)
 
 
@@ -193,9 +194,10 @@ class _Tracer:
         """Whether legs of proved steps lead on, to where branches are apart again or the parameter
         has its starting value.
         """
+        most = self.options.most_proved_legs
         for _ in range(_MOST_PROVED):
             leader = self._leader(None)
-            if leader is None or not leader[0].provable or self.proved_legs == _MOST_PROVED_LEGS:
+            if leader is None or not leader[0].provable or self.proved_legs == most:
                 return False
             self.proved_legs += 1
             leg, _ = self._leg(*leader, prove=True)

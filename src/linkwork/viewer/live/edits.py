@@ -7,21 +7,20 @@ from functools import singledispatch
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import GROUND, canonical, find_spelling
-from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
-from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.textfile.copying import copy_selection, mirror_numbers
+from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
+from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
-from linkwork.viewer.live.moving_points import Before, held_places, move_points, put_place, rounded
+from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
+from linkwork.viewer.live.number_edits import set_input, set_number
 from linkwork.viewer.live.palette import part_name, part_of
+from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["Followed", "applied", "edit_title"]
-
-_DRIVES = ("link", "joint", "slider", "cylinder", "variable")
-_LENGTHS = ("slider", "cylinder")
-_RANGE = {"start": "from", "stop": "to", "step": "step", "speed": "speed"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,81 +45,8 @@ def applied(edit: ask.Edit, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.SetNumber, text: TextEdits, before: Before) -> Followed:
-    description = before.description
-    try:
-        quantity = number_named(description, edit.name)
-    except UnknownNameError:
-        if (measured := _measured(description, edit.name)) is None:
-            raise
-        text.put(("lengths", measured), edit.value)
-        _stretch(measured, edit.value, text, before)
-        return Followed()
-    written = quantity.written(description)
-    # a number in place of a formula would silently remove the dependence on dimensions
-    if isinstance(written, str) and not isinstance(edit.value, str) and not edit.any_formula:
-        raise InputError(
-            f'"{quantity.name}" is the formula {written}: change a dimension in '
-            "it, or send another formula"
-        )
-    if quantity.table == "lengths":
-        if _move_pivot(quantity, edit.value, text, description):
-            return Followed()
-        _stretch(quantity.key, edit.value, text, before)
-    text.put(_path(quantity, text), edit.value)
+    set_number(edit, text, before)
     return Followed()
-
-
-def _stretch(key: str, length: float | str, text: TextEdits, before: Before) -> None:
-    """Give a length to a draft, which is not assembled: its freer end moves in the sketch."""
-    draft = before.description
-    if not isinstance(draft, Draft) or not draft.problems or isinstance(length, str):
-        return
-    carriers = draft.drawable.carriers()
-    if not set(key.split()) <= carriers.keys():
-        return
-    fixed, free = sorted(key.split(), key=lambda point: -len(carriers[point]))
-    start, end = before.place(fixed), before.place(free)
-    if length > 0 and end != start and not any(isinstance(c, str) for c in draft.points[free]):
-        put_place(text, free, start + (end - start) / abs(end - start) * length)
-
-
-def _path(quantity: VariedNumber, text: TextEdits) -> tuple[str | int, ...]:
-    """The key path of a number in the text."""
-    if quantity.table == "points":
-        return ("points", quantity.key, quantity.axis)
-    if quantity.table == "sliders":
-        names = {canonical(str(row.get("name", ""))): k for k, row in text.entries("sliders")}
-        return ("sliders", names[canonical(quantity.key)], "offset")
-    return (quantity.table, quantity.key)
-
-
-def _measured(description: Description, name: str) -> str | None:
-    """The key of [lengths] for a named length between sketched points."""
-    if not isinstance(description, Draft):
-        return None
-    wanted = sorted(map(canonical, name.split()))
-    for measured in description.measured:
-        if sorted(map(canonical, measured.points)) == wanted:
-            return " ".join(measured.points)
-    return None
-
-
-def _move_pivot(
-    quantity: VariedNumber, length: float | str, text: TextEdits, description: Description
-) -> bool:
-    """Set a distance on ground by moving its second point along the line between the two."""
-    assert isinstance(description, Draft)
-    first, second = quantity.key.split()
-    pair = (*description.points[first], *description.points[second])
-    on_ground = {first, second} <= set(description.links[GROUND])
-    if not on_ground or isinstance(length, str) or any(isinstance(c, str) for c in pair):
-        return False
-    base = description.sketched(first)
-    span = description.sketched(second) - base
-    # lengths on ground follow from coordinates: both change together
-    put_place(text, second, base + span / abs(span) * length)
-    text.put(("lengths", quantity.key), length)
-    return True
 
 
 @applied.register
@@ -160,62 +86,15 @@ def _known_point(linkage: Draft, name: str) -> str:
 
 @applied.register
 def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
-    if (edit.drive is None) != (edit.name is None):
-        raise InputError("an input has a kind and a name: send drive and name, or neither")
-    count = len(before.description.inputs)
-    if edit.number == count and count and edit.drive is not None:
-        text.append("input", {edit.drive: edit.name})
-    elif not 0 <= edit.number < max(1, count):
-        raise InputError(f"there is no input {edit.number + 1}: the mechanism has {count}")
-    here: tuple[str | int, ...] = ("input", edit.number)
-    if edit.drive is not None:
-        if edit.drive not in _DRIVES:
-            raise UnknownNameError(
-                f'"{edit.drive}" cannot be driven {choices("kinds", _DRIVES, edit.drive)}'
-            )
-        text.put((*here, edit.drive), edit.name)
-        # an input has exactly one kind
-        for other in (*_DRIVES, "relative_to"):
-            if other != edit.drive and text.has((*here, other)):
-                text.remove((*here, other))
-        _write_range(edit.drive, edit.name or "", here, text, before)
-    for field, key in _RANGE.items():
-        if (entry := getattr(edit, field)) is not None:
-            text.put((*here, key), entry)
+    set_input(edit, text, before)
     return Followed()
-
-
-def _write_range(
-    drive: str, name: str, here: tuple[str | int, ...], text: TextEdits, before: Before
-) -> None:
-    """Replace a range that belongs to another kind of quantity; lengths have no natural one."""
-    number, inputs = here[-1], before.description.inputs
-    assert isinstance(number, int)
-    old = inputs[number].drives[0] if number < len(inputs) else "link"
-    if (old in _LENGTHS) == (drive in _LENGTHS):
-        return
-    for key in _RANGE.values():
-        if text.has((*here, key)):
-            text.remove((*here, key))
-    if drive in _LENGTHS:
-        span = _span_of(name, before)
-        for key, share in (("from", 0.25), ("to", 0.75), ("step", 0.005)):
-            text.put((*here, key), float(f"{share * span:.4g}"))
-
-
-def _span_of(name: str, before: Before) -> float:
-    """The length of a slider's line, or twice that of a cylinder."""
-    for part in getattr(before.description, "parts", ()):
-        if canonical(part.label) == canonical(name):
-            line = getattr(part, "line", None)
-            a, b = line or part.between
-            return abs(before.place(b) - before.place(a)) * (1.0 if line else 2.0) or 1.0
-    return 1.0
 
 
 @applied.register
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
-    _add(text, "points", edit.name, [rounded(edit.x), rounded(edit.y)])
+    units = TypedUnits.of(before.description)
+    place = [units.number(c, "length", letter) for c, letter in ((edit.x, "x"), (edit.y, "y"))]
+    _add(text, "points", edit.name, [c if isinstance(c, str) else rounded(c) for c in place])
     for link in edit.links:
         _carry(text, link, edit.name)
     return Followed()
@@ -299,7 +178,8 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
-    text.append(edit.table, part_of(edit.table, edit.typed))
+    units = TypedUnits.of(before.description)
+    text.append(edit.table, part_of(edit.table, edit.typed, units))
     return Followed()
 
 
@@ -328,6 +208,41 @@ def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
     elif text.has(("trace",)):
         text.remove(("trace",))
     return Followed()
+
+
+@applied.register
+def _(edit: ask.ChangeUnits, text: TextEdits, before: Before) -> Followed:
+    change_units(text, length=edit.length, angle=edit.angle, convert=edit.convert)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Rename, text: TextEdits, before: Before) -> Followed:
+    rename(text, edit.of, edit.name, edit.new.strip())
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Duplicate, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    taken = names_in_file(text)
+    for name, copy in edit.names.items():
+        if canonical(name) != canonical(copy) and canonical(copy) in taken:
+            raise InputError(f'"{copy}" is already in the file: choose another name')
+    for point, place in edit.places.items():
+        _known_point(linkage, point)
+        _add(text, "points", edit.names[point], [rounded(c) for c in place])
+    copy_selection(text, edit.names, mirrored=edit.mirrored)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
+    linkage = _sketched(before)
+    places = {_known_point(linkage, name): complex(*at) for name, at in edit.places.items()}
+    mirror_numbers(text, set(map(canonical, places)))
+    followed, stayed = move_points(text, before, linkage, places)
+    return Followed(followed=followed, stayed=stayed)
 
 
 @applied.register
@@ -387,6 +302,16 @@ def edit_title(edit: ask.Edit) -> str:
             return f"move {edit.point}"
         case ask.MovePoints():
             return f"move {', '.join(edit.places)}"
+        case ask.ChangeUnits():
+            units = " and ".join(filter(None, (edit.length, edit.angle)))
+            return f"{'convert to' if edit.convert else 'relabel as'} {units}"
+        case ask.Rename():
+            return f"rename {edit.name} as {edit.new.strip()}"
+        case ask.Duplicate():
+            how = "mirror a copy of" if edit.mirrored else "duplicate"
+            return f"{how} {', '.join(edit.names)}"
+        case ask.Mirror():
+            return f"mirror {', '.join(edit.places)}"
         case ask.ChooseConfiguration():
             return f"configuration {edit.name}".strip()
         case _:

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
+from linkwork.foundation.units import ANGLES, LENGTHS
 from linkwork.mechanism.part.index import PARTS
+from linkwork.textfile.entries import measured_by
 from linkwork.viewer.live.file_state import PaletteField, PalettePart
+from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
@@ -22,7 +26,7 @@ __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 Typed = str | tuple[str, ...]
 
 
-def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
+def part_of(table: str, typed: Mapping[str, Typed], units: TypedUnits) -> dict[str, object]:
     """An entry of a table of parts from user input; empty fields are omitted.
 
     Raises
@@ -38,7 +42,8 @@ def part_of(table: str, typed: Mapping[str, Typed]) -> dict[str, object]:
             raise UnknownNameError(
                 f'"{name}" is not a key of [[{table}]] {choices("keys", keys, name)}'
             )
-    return {name: _entry(keys[name], entry) for name, entry in typed.items() if entry}
+    reader = _Reader(units, typed)
+    return {name: reader.entry(keys[name], entry) for name, entry in typed.items() if entry}
 
 
 def part_name(row: Mapping[str, object]) -> str:
@@ -83,60 +88,79 @@ PALETTE: tuple[PalettePart, ...] = tuple(
 )
 
 
-def _entry(key: Key, typed: Typed) -> object:
-    """The kind of entry of a key."""
-    match key.kind:
-        case ListOf(Text()):
-            return list(_lines(key, typed))
-        case ListOf(Number()):
-            return [_number(word) for word in _words(" ".join(_lines(key, typed)))]
-        case ListOf():
-            return [[_number(word) for word in _words(line)] for line in _lines(key, typed)]
-        case Tables(keys):
-            return [_row(key, keys, line) for line in _lines(key, typed)]
-    if not isinstance(typed, str):
-        _refuse(key, "is one entry, got a list")
-    match key.kind:
-        case Number():
-            return _number(typed)
-        case Flag():
-            if typed not in ("true", "false"):
-                _refuse(key, f'must be true or false, got "{typed}"')
-            return typed == "true"
-        case _:
-            return typed
+@dataclass(frozen=True)
+class _Reader:
+    """Reads the fields of one completed form."""
 
+    units: TypedUnits
+    typed: Mapping[str, Typed]
 
-def _row(key: Key, keys: Sequence[Key], line: str) -> dict[str, object]:
-    """A row of a table from its words in order; trailing words may be omitted."""
-    words = _words(line)
-    if len(words) > len(keys):
-        named = " ".join(column.name for column in keys)
-        _refuse(key, f'a line has {named}, got "{line}"')
-    return {column.name: _entry(column, word) for column, word in zip(keys, words, strict=False)}
+    def entry(self, key: Key, typed: Typed) -> object:
+        """The kind of entry of a key."""
+        match key.kind:
+            case ListOf(Text()):
+                return list(_lines(key, typed))
+            case ListOf(Number() as kind):
+                line = " ".join(_lines(key, typed))
+                return [self._number(key, kind, word) for word in self._words(line)]
+            case ListOf(ListOf(Number() as kind)):
+                return [
+                    [self._number(key, kind, word) for word in self._words(line)]
+                    for line in _lines(key, typed)
+                ]
+            case Tables(keys):
+                return [self._row(key, keys, line) for line in _lines(key, typed)]
+        if not isinstance(typed, str):
+            _refuse(key, "is one entry, got a list")
+        match key.kind:
+            case Number() as kind:
+                return self._number(key, kind, typed)
+            case Flag():
+                if typed not in ("true", "false"):
+                    _refuse(key, f'must be true or false, got "{typed}"')
+                return typed == "true"
+            case _:
+                return typed
+
+    def _row(self, key: Key, keys: Sequence[Key], line: str) -> dict[str, object]:
+        """A row of a table from its words in order; trailing words may be omitted."""
+        words = self._words(line)
+        if len(words) > len(keys):
+            named = " ".join(column.name for column in keys)
+            _refuse(key, f'a line has {named}, got "{line}"')
+        return {
+            column.name: self.entry(column, word) for column, word in zip(keys, words, strict=False)
+        }
+
+    def _words(self, line: str) -> list[str]:
+        """Words separated by commas, or by blanks without commas (formulas may contain blanks)."""
+        if "," in line:
+            return [word.strip() for word in line.split(",")]
+        words: list[str] = []
+        for word in line.split():
+            if words and word in (*LENGTHS, *ANGLES, self.units.length):
+                words[-1] += f" {word}"
+            else:
+                words.append(word)
+        return words
+
+    def _number(self, key: Key, kind: Number, word: str) -> float | int | str:
+        """A number, or otherwise a formula."""
+        plain = word.strip().replace("\u2212", "-")
+        given = self.units.number(plain, measured_by(kind, self.typed), key.name)
+        try:
+            value = float(given)
+        except ValueError:
+            return plain
+        if not math.isfinite(value):
+            return plain  # the file reader reports the problem
+        return int(value) if value.is_integer() and abs(value) < 1e15 else value
 
 
 def _lines(key: Key, typed: Typed) -> tuple[str, ...]:
     if isinstance(typed, str):
         _refuse(key, f'must be a list, got "{typed}"')
     return tuple(line.strip() for line in typed if line.strip())
-
-
-def _words(line: str) -> list[str]:
-    """Words separated by commas, or by blanks without commas (formulas may contain blanks)."""
-    return [word.strip() for word in line.split(",")] if "," in line else line.split()
-
-
-def _number(word: str) -> float | int | str:
-    """A number, or otherwise a formula."""
-    plain = word.strip().replace("\u2212", "-")
-    try:
-        value = float(plain)
-    except ValueError:
-        return plain
-    if not math.isfinite(value):
-        return plain  # the file reader reports the problem
-    return int(value) if value.is_integer() and abs(value) < 1e15 else value
 
 
 def _refuse(key: Key, message: str) -> NoReturn:

@@ -14,7 +14,7 @@ Refusing = Callable[[Problem], bool]
 #: Edits that change numbers or choices, not what there is.
 _OF_NUMBERS = (
     ask.SetNumber, ask.MovePoint, ask.MovePoints, ask.SetInput, ask.ChooseConfiguration,
-    ask.TracePoint,
+    ask.TracePoint, ask.ChangeUnits,
 )  # fmt: skip
 
 

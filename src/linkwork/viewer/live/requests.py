@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
+
 __all__ = [
     "EDITS",
     "REQUESTS",
@@ -17,13 +19,16 @@ __all__ = [
     "AddPart",
     "AddPoint",
     "AssembleAt",
+    "ChangeUnits",
     "ChooseConfiguration",
+    "Duplicate",
     "Edit",
     "Export",
     "ListCircuits",
     "ListConfigurations",
     "ListQuantities",
     "MakeLink",
+    "Mirror",
     "MovePoint",
     "MovePoints",
     "NewtonSteps",
@@ -35,6 +40,7 @@ __all__ = [
     "RemoveLink",
     "RemovePart",
     "RemovePoint",
+    "Rename",
     "Request",
     "ReverseLink",
     "Save",
@@ -56,7 +62,8 @@ class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A number replaces a formula only with ``any_formula``.
+    length becomes a given one. A value may have a unit: "3 in". A number replaces a formula only
+    with ``any_formula``.
     """
 
     name: str
@@ -112,11 +119,11 @@ class SetInput:
 
 @dataclass(frozen=True, kw_only=True)
 class AddPoint:
-    """Add a point to the sketch and to links."""
+    """Add a point to the sketch and to links; coordinates may have a unit: "3 in"."""
 
     name: str
-    x: float
-    y: float
+    x: float | str
+    y: float | str
     links: tuple[str, ...] = ()
 
 
@@ -227,6 +234,10 @@ Edit = (
     | RemovePart
     | TracePoint
     | ChooseConfiguration
+    | ChangeUnits
+    | Rename
+    | Duplicate
+    | Mirror
 )
 
 
