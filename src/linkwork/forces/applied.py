@@ -13,8 +13,8 @@ from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.units import force_of_inertia
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.mass import Mass

@@ -32,8 +32,8 @@ class Text:
 class Number:
     """A number, or a formula in the named dimensions.
 
-    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``lift``: as the
-    follower of the cam, ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring
+    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``lift``: as
+    the follower of the cam, ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring
     between points or links.
     """
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.foundation.errors import ExpressionError, InputError, choices
-from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.mass import Gravity, Mass

@@ -16,7 +16,7 @@ __all__ = ["copy_selection", "mirror_numbers"]
 
 #: Numbers of parts that change sign in a mirror, and parts whose shape is not mirrored here.
 _TURNED = ("offset", "angle", "phase")
-_SHAPED = ("cams", "curves", "noncircular_gears")
+_SHAPED = ("cams", "curves", "noncircular_gears", "loads")
 
 
 def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool) -> None:
@@ -49,6 +49,7 @@ def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool
             edits.put(("links", new[canonical(link)]), copied)
     for table in ("lengths", "angles"):
         _copy_dimensions(edits, table, new, mirrored)
+    _copy_masses(edits, new, mirrored)
     _copy_parts(edits, new, mirrored)
     if edits.has(("trace", "points")):
         traced = [str(point) for point in edits.get(("trace", "points"))]
@@ -96,6 +97,16 @@ def _copy_dimensions(edits: TextEdits, table: str, new: Mapping[str, str], mirro
             edits.put((table, " ".join(copied)), _opposite(number) if turned else number)
 
 
+def _copy_masses(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> None:
+    for link in edits.keys(("masses",)):
+        if new.get(canonical(link)) not in (None, link):
+            mass = dict(edits.get(("masses", link)))
+            if mirrored and "center" in mass:
+                along, across = mass["center"]
+                mass["center"] = [along, _opposite(across)]
+            edits.put(("masses", new[canonical(link)]), mass)
+
+
 def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> None:
     known = {**new, canonical(GROUND): GROUND}
     taken = set(names_in_file(edits))
@@ -134,8 +145,9 @@ def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a part that change sign."""
     if table in _SHAPED:
         raise InputError(
-            f'"{row.get("name")}" ({PARTS[table].title.lower()}) cannot be mirrored: its shape '
-            "has a sense; duplicate without it, or move its points"
+            f'"{row.get("name", row.get("point", row.get("link")))}" '
+            f"({PARTS[table].title.lower()}) cannot be mirrored: its shape has a sense; duplicate "
+            "without it, or move its points"
         )
     return {key: _opposite(row[key]) for key in _TURNED if key in row}
 

@@ -10,7 +10,7 @@ from typing import Any
 from linkwork.expression.degrees import ANGLE, LENGTH, PURE, Degree, Degrees, Literal
 from linkwork.expression.grammar import parse, parse_equation
 from linkwork.foundation.errors import InputError, key_text
-from linkwork.foundation.file_keys import Formula, Number, Speed
+from linkwork.foundation.file_keys import Formula, Measured, Number, Speed
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.part.cylinder import Cylinder
@@ -152,6 +152,8 @@ class FileDegrees:
                 self._loads.append(key_text(entry.path))
             case Number() as kind:
                 self._number(entry, entry.given, self._measured(kind, entry))
+            case Measured() if not isinstance(entry.given, str):
+                self._number(entry, entry.given, LENGTH)
             case Speed():
                 self._speed(entry)
             case Formula(equation) if isinstance(entry.given, str):

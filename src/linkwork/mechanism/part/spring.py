@@ -66,9 +66,13 @@ class Spring(NamedPart):
         Key("name", Text(), "Name of the spring", required=True),
         Key("between", POINT_PAIR, "The two points it connects"),
         Key("links", ListOf(Text(), "link", 2, 2), "Or the two links of a torsion spring"),
-        Key("stiffness", NumberKey("stiffness"), "Force per length, or torque per radian; default 0"),
+        Key(
+            "stiffness", NumberKey("stiffness"), "Force per length, or torque per radian; default 0"
+        ),
         Key("free", NumberKey("free"), "Length or angle without force; default 0"),
-        Key("damping", NumberKey("stiffness"), "Force per velocity, or torque per rad/s; default 0"),
+        Key(
+            "damping", NumberKey("stiffness"), "Force per velocity, or torque per rad/s; default 0"
+        ),
     )
 
     between: tuple[str, str] | None = None

@@ -16,7 +16,9 @@ _USUAL = math.radians(20.0)  # ISO 53
 _STEEPEST = math.radians(45.0)
 
 PRESSURE_KEY = Key(
-    "pressure_angle", NumberKey("angle"), "Pressure angle of the teeth, for forces; default 20 degrees"
+    "pressure_angle",
+    NumberKey("angle"),
+    "Pressure angle of the teeth, for forces; default 20 degrees",
 )
 
 
