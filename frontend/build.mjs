@@ -36,5 +36,5 @@ await Promise.all([
     loader: { ".css": "text" },
     outfile: join(folder, "widget.js"),
   }),
-  build({ ...common, entryPoints: ["src/linkwork.css"], outfile: join(folder, "linkwork.css") }),
+  build({ ...common, entryPoints: ["src/page.css"], outfile: join(folder, "linkwork.css") }),
 ]);

@@ -56,7 +56,8 @@ export class Transport {
     const { input } = view;
     const text = `${input.shown} = ${measured(input.values[row]!, input.unit)}`;
     this.bar.value = String(index);
-    put(this.bar, { "aria-valuetext": `${text}, ${index + 1} of ${view.order.length}` });
+    const hidden = this.row.closest(".lw-hides-input") !== null;
+    put(this.bar, { "aria-valuetext": hidden ? `${index + 1} of ${view.order.length}` : `${text}, ${index + 1} of ${view.order.length}` });
     say(this.readout, text);
   }
 

@@ -1,6 +1,7 @@
 // The line of a quantity over an abscissa, interrupted at gaps and jumps.
 
 import type { MotionView } from "./motion";
+import { curveThrough, type Spot } from "./smooth";
 
 /** A place on the chart. */
 export type Place = (row: number) => readonly [number, number];
@@ -55,26 +56,24 @@ export function lineThrough(view: MotionView, values: readonly Values[], place: 
   return pen.path;
 }
 
-/** Writes a path; places that are not finite interrupt it. */
+/** Writes a smooth path; places that are not finite interrupt it. */
 class Pen {
   private readonly pieces: string[] = [];
-  private down = false;
+  private run: Spot[] = [];
 
   get path(): string {
+    this.lift();
     return this.pieces.join("");
   }
 
   lift(): void {
-    this.down = false;
+    if (this.run.length) this.pieces.push(curveThrough(this.run));
+    this.run = [];
   }
 
-  to([x, y]: readonly [number, number]): void {
-    if (!Number.isFinite(x) || !Number.isFinite(y)) {
-      this.down = false;
-      return;
-    }
-    this.pieces.push(`${this.down ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`);
-    this.down = true;
+  to(spot: Spot): void {
+    if (spot.every(Number.isFinite)) this.run.push(spot);
+    else this.lift();
   }
 }
 

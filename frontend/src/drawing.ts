@@ -254,7 +254,7 @@ export class Drawing {
     this.measured(part, ({ points, offset: [dx, dy], height }) => {
       [u, v] = points as [number, number];
       put(element, { x: dx!, y: -dy! });
-      const size = `calc(${height}px * var(--grow, 1))`;
+      const size = `calc(${height}px * var(--grow, 1) * var(--large, 1))`;
       if (element.style.fontSize !== size) element.style.fontSize = size;
       if (part.frame < 0) place(0);
     });

@@ -104,10 +104,27 @@ export interface AddPart {
   typed: Record<string, string | readonly (string)[]>;
 }
 
+export interface DrawPart {
+  kind: "draw_part";
+  id?: number;
+  table: string;
+  picks: readonly (Picked)[];
+  span: number;
+}
+
+export interface SetPart {
+  kind: "set_part";
+  id?: number;
+  name: string;
+  key: string;
+  typed: string | readonly (string)[];
+}
+
 export interface RemovePart {
   kind: "remove_part";
   id?: number;
   name: string;
+  whole?: boolean;
 }
 
 export interface TracePoint {
@@ -121,6 +138,13 @@ export interface ChooseConfiguration {
   kind: "choose_configuration";
   id?: number;
   name: string;
+}
+
+export interface AddOutput {
+  kind: "add_output";
+  id?: number;
+  name: string;
+  formula: string;
 }
 
 export interface ChangeUnits {
@@ -286,9 +310,11 @@ export interface FileState {
   points: Record<string, readonly [number, number]>;
   links: readonly (Link)[];
   parts: readonly (string)[];
+  part_entries: readonly (PartShown)[];
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
+  outputs: readonly (string)[];
   equations: readonly (string)[];
   lacks: readonly (Lack)[];
   readable: boolean;
@@ -448,11 +474,20 @@ export interface StartOffered {
   answers: number | null;
 }
 
+export interface Picked {
+  x: number;
+  y: number;
+  point?: string;
+  link?: string;
+  size?: number;
+}
+
 export interface PalettePart {
   table: string;
   title: string;
   doc: string;
   fields: readonly (PaletteField)[];
+  picks: readonly (Pick)[];
 }
 
 export interface PaletteField {
@@ -462,6 +497,13 @@ export interface PaletteField {
   required: boolean;
   words: readonly (string)[];
   named: readonly (string)[];
+}
+
+export interface Pick {
+  prompt: string;
+  takes: readonly (string)[];
+  sized: boolean;
+  repeated: boolean;
 }
 
 export interface ChangeableNumber {
@@ -490,6 +532,14 @@ export interface DrivenInput {
 
 export interface Link {
   name: string;
+  points: readonly (string)[];
+}
+
+export interface PartShown {
+  table: string;
+  name: string;
+  typed: Record<string, string | readonly (string)[]>;
+  links: readonly (string)[];
   points: readonly (string)[];
 }
 
@@ -589,9 +639,12 @@ export type LiveEdit =
   | AddJoint
   | RemoveJoint
   | AddPart
+  | DrawPart
+  | SetPart
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate
@@ -611,9 +664,12 @@ export type LiveRequest =
   | AddJoint
   | RemoveJoint
   | AddPart
+  | DrawPart
+  | SetPart
   | RemovePart
   | TracePoint
   | ChooseConfiguration
+  | AddOutput
   | ChangeUnits
   | Rename
   | Duplicate

@@ -6,11 +6,16 @@ import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
 import { Drawing } from "./drawing";
 import { Ghost } from "./ghost";
+import { InWords } from "./in_words";
+import { declareKeys, press, showKeys, type Command } from "./keys";
 import { MotionView } from "./motion";
 import { MotionNumbers } from "./motion_numbers";
 import { measured } from "./numbers";
 import type { MotionData, PageData } from "./page_data";
 import { Player } from "./player";
+import { Presentation } from "./presentation";
+import { Questions } from "./questions";
+import { Slowly } from "./slowly";
 import { html, say } from "./svg";
 import { RowTable } from "./table";
 import { themeButton } from "./theme_button";
@@ -53,6 +58,7 @@ export interface Mounted {
   readonly charts: Charts;
   /** The elements that accept additions. */
   readonly places: Places;
+  readonly presentation: Presentation;
   /** Show a row of a motion by number; if it has no position, the first found row. */
   goTo(motion: number, row: number): void;
   destroy(): void;
@@ -67,6 +73,9 @@ export interface Places {
   readonly toggles: HTMLElement;
   readonly drawing: Drawing;
 }
+
+/** Words about a motion that plays are renewed so often [ms]. */
+const SPOKEN_EVERY = 3000;
 
 /** Maximum interval of updates during a drag [ms]. */
 const UPDATED_WITHIN = 120;
@@ -115,6 +124,10 @@ class Page implements Mounted {
   private summary!: HTMLElement;
   private title!: HTMLElement;
   private equationBox!: HTMLElement;
+  presentation!: Presentation;
+  private readonly words: InWords;
+  private readonly questions: Questions;
+  private readonly reword = new Slowly(SPOKEN_EVERY, () => this.describe());
   private views: (MotionView | undefined)[] = [];
   private motion = 0;
   private frame = 0;
@@ -147,7 +160,10 @@ class Page implements Mounted {
       speed: (factor) => (this.player.speed = factor),
     });
     const toggles = this.toggles(stage);
+    this.words = new InWords(toggles, this.drawing.element, () => this.describe());
     const side = html("section", { class: "lw-side", "aria-label": "Numbers" }, this.root);
+    this.questions = new Questions(this.root, () => this.describe());
+    side.append(this.questions.element);
     const facts = html("div", { class: "lw-facts" }, side);
     this.charts = new Charts(hooks.embedded ? side : this.root, this.plotted(), (index) => this.hold(index));
     this.table = new RowTable(facts, 1e-10 * (data.view[2]! - data.view[0]!));
@@ -247,11 +263,13 @@ class Page implements Mounted {
     this.drawn = -1;
     if (this.data.motions.length > 1) this.drawing.renew({ ...this.data, view: view.data.view });
     this.drawing.show(view);
+    this.drawing.element.setAttribute("aria-label", this.data.title || "mechanism");
     this.ghost.show(this.past);
     this.arrows.show(view);
     this.transport.show(view);
     // During a drag, numbers are updated at half the rate of the drawing.
     const still = view.series.length === 0;
+    if (!still) this.questions.show(this.data, view.data, steady);
     if (!still && (!steady || this.updates++ % 2 === 0)) {
       this.charts.show(view, this.past, steady);
       this.table.show(view);
@@ -323,6 +341,7 @@ class Page implements Mounted {
       this.hooks.row?.(this.motion, row);
     }
     if (!this.player.playing) this.speakSoon();
+    else if (this.words.element.open) this.reword.soon();
   }
 
   private tick(now: number): void {
@@ -348,7 +367,12 @@ class Page implements Mounted {
       this.choice.addEventListener("change", () => this.choose(this.choice!.selectedIndex));
     }
     this.summary = html("p", { class: "lw-summary" }, head);
-    themeButton(head, this.root);
+    const corner = html("div", { class: "lw-corner" }, head);
+    themeButton(corner, this.root);
+    this.presentation = new Presentation(this.root, corner, this.gone.signal);
+    declareKeys("Motion", this.commands);
+    const keys = html("button", { type: "button", class: "lw-keys-button", "aria-label": "Keys", title: "All keys (?)" }, corner, "?");
+    keys.addEventListener("click", () => showKeys(this.root));
     return head;
   }
 
@@ -395,7 +419,7 @@ class Page implements Mounted {
     const box = html("details", { class: "lw-equations", open: "" }, this.equationBox);
     html("summary", {}, box, "Loop equations");
     for (const equation of this.data.equations) {
-      const line = html("div", { class: "lw-equation" }, box);
+      const line = html("div", { class: "lw-equation", tabindex: 0, role: "group", "aria-label": equation.label || "equation" }, box);
       html("span", {}, line, equation.label);
       const math = new DOMParser().parseFromString(equation.mathml, "text/html").body.firstElementChild;
       if (math) line.append(document.importNode(math, true));
@@ -411,31 +435,27 @@ class Page implements Mounted {
   }
 
   private key(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target as HTMLElement;
     if (target !== document.body && !this.root.contains(target)) return;
     const tag = target.tagName;
     const typed = ["SELECT", "TEXTAREA"].includes(tag) || (tag === "INPUT" && !target.closest(".lw-transport"));
     if (typed && event.key !== "Escape") return;
     if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY")) return;
-    const far = event.shiftKey ? 10 : 1;
-    const last = this.view.order.length - 1;
-    const actions: Record<string, () => void> = {
-      " ": () => this.player.play(!this.player.playing),
-      ArrowRight: () => this.player.step(far),
-      ArrowUp: () => this.player.step(far),
-      ArrowLeft: () => this.player.step(-far),
-      ArrowDown: () => this.player.step(-far),
-      Home: () => this.hold(0),
-      End: () => this.hold(last),
-      PageDown: () => this.neighbour(1),
-      PageUp: () => this.neighbour(-1),
-    };
-    const action = actions[event.key];
-    if (!action) return;
-    event.preventDefault();
-    action();
+    if (target.closest("dialog")) return;
+    if (this.presentation.on && press(this.presentation.commands, event)) return;
+    press([...this.commands, ...this.presentation.commands], event);
   }
+
+  private readonly commands: readonly Command[] = [
+    { keys: [" "], does: "Play, or stand still", act: () => this.player.play(!this.player.playing) },
+    { keys: ["ArrowRight", "ArrowUp"], does: "The next position; with Shift the tenth", act: (event) => this.player.step(event.shiftKey ? 10 : 1) },
+    { keys: ["ArrowLeft", "ArrowDown"], does: "The position before; with Shift ten before", act: (event) => this.player.step(event.shiftKey ? -10 : -1) },
+    { keys: ["Home"], does: "The first position", act: () => this.hold(0) },
+    { keys: ["End"], does: "The last position", act: () => this.hold(this.view.order.length - 1) },
+    { keys: ["PageDown", "PageUp"], does: "The next circuit, or the one before", act: (event) => this.neighbour(event.key === "PageDown" ? 1 : -1) },
+    { keys: ["."], does: "Say the position (screen readers)", act: () => this.sayAgain() },
+    { keys: ["?"], does: "All keys", act: () => showKeys(this.root) },
+  ];
 
   private neighbour(by: number): void {
     const count = this.data.motions.length;
@@ -493,16 +513,27 @@ class Page implements Mounted {
   /** Report the position to a screen reader when the motion stops. */
   private speakSoon(): void {
     clearTimeout(this.spoken);
-    this.spoken = window.setTimeout(() => this.speak(), 600);
+    this.spoken = window.setTimeout(() => !this.player.playing && this.speak(), 600);
+  }
+
+  private describe(): void {
+    this.words.show(this.data.title, this.view, this.view.order[this.player.at]!, this.player.playing, (what) => this.questions.hides(what));
+  }
+
+  /** Report the position even if it has been reported. */
+  private sayAgain(): void {
+    this.live.textContent = "";
+    setTimeout(() => this.speak(), 50);
   }
 
   private speak(): void {
-    if (this.player.playing) return;
+    this.describe();
     const view = this.view;
     const row = view.order[this.player.at]!;
-    const told = view.series.slice(0, 4).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
-    const limit = view.data.limits.find((one) => one.row === row)?.text;
+    const secret = this.questions.hides("input") ? 0 : this.questions.hides("numbers") ? 1 : 4;
+    const told = view.series.slice(0, secret).map((one) => `${one.shown} ${measured(one.values[row]!, one.unit)}`);
+    const limit = this.questions.hides("limits") ? undefined : view.data.limits.find((one) => one.row === row)?.text;
     this.live.textContent = [view.data.name, ...told, ...(limit ? [limit] : [])].join(", ");
-    this.drawing.element.setAttribute("aria-label", `${this.data.title}: ${told[0] ?? ""}`);
+    this.drawing.element.setAttribute("aria-label", [this.data.title || "mechanism", ...told.slice(0, 1)].join(": "));
   }
 }

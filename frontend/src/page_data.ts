@@ -1,5 +1,11 @@
 // Written by scripts/frontend types from src/linkwork/viewer/page_data.py.
 
+/** The right answers to a question, any one of which will do; none may be right, or none may be `known`. */
+export interface AnswerData {
+  readonly known: boolean;
+  readonly values: readonly number[];
+}
+
 /** A quantity over the rows: its printed name and unit; `group` is its list: `input`, `unknown`, `output`, `derived`, or `asked` for any other quantity or rate. `band`: lowest and highest recommended value. */
 export interface Column {
   readonly name: string;
@@ -56,6 +62,7 @@ export interface MotionData {
   readonly evidence: RowEvidence;
   readonly limits: readonly LimitMark[];
   readonly numbers: readonly MotionNumber[];
+  readonly answers: readonly AnswerData[];
   readonly view: readonly number[];
 }
 
@@ -93,6 +100,7 @@ export interface PageData {
   readonly forces: readonly ForceData[];
   readonly force_unit: string;
   readonly equations: readonly Equation[];
+  readonly questions: readonly QuestionData[];
 }
 
 /** A shape: `line`, `area`, `disc`, `strokes` or `text`. `points` are x, y, x, y, … in its frame (`frame` ≥ 0) or in the plane (-1); of a disc its centre, of a text its anchor. A deforming shape (`frame` -2) has packed x and y of each corner, and `shown` (1 or 0) in every row. Lengths are in the mechanism's unit. */
@@ -124,6 +132,15 @@ export interface PointData {
   readonly dy: PackedColumn;
   readonly ddx: PackedColumn;
   readonly ddy: PackedColumn;
+}
+
+/** A question: the unit, tolerance and whole turn (0: none) of its answer, and what is hidden until it is answered. */
+export interface QuestionData {
+  readonly text: string;
+  readonly unit: string;
+  readonly tolerance: number;
+  readonly turn: number;
+  readonly hide: readonly string[];
 }
 
 /** The style of a role: colours (`tone`: that of the link; "" for none), widths in strokes. */

@@ -91,7 +91,7 @@ export class RowTable {
   private table(heads: readonly string[]): HTMLElement {
     const table = html("table", {}, this.box);
     const line = html("tr", {}, html("thead", {}, table));
-    for (const head of heads) html("th", { scope: "col" }, line, head);
+    for (const head of heads) html(head ? "th" : "td", head ? { scope: "col" } : {}, line, head);
     return html("tbody", {}, table);
   }
 

@@ -9,11 +9,11 @@ export function themeRules(data: PageData, scope: string): string {
   const tones = data.light.tones.length;
   const rules = [
     `${scope}{${light}}`,
-    `@media (prefers-color-scheme:dark){${scope}:not([data-theme=light]){${dark}color-scheme:dark}}`,
-    `${scope}[data-theme=dark]{${dark}color-scheme:dark}`,
+    `@media screen and (prefers-color-scheme:dark){${scope}:not([data-theme=light]){${dark}color-scheme:dark}}`,
+    `@media screen{${scope}[data-theme=dark]{${dark}color-scheme:dark}}`,
     `${scope}[data-theme=light]{color-scheme:light}`,
     `${scope} .tone-0{--tone:var(--driven)}`,
-    `${scope} .tone-ground{--tone:var(--faint)}`,
+    `${scope} .tone-ground{--tone:var(--ground)}`,
   ];
   for (let k = 1; k <= tones; k++) rules.push(`${scope} .tone-${k}{--tone:var(--tone-${k})}`);
   for (const style of data.light.styles) rules.push(...roleRules(style, data.stroke, scope));
@@ -30,7 +30,8 @@ function colours(theme: ThemeData): string {
   const found = [
     `--page:${theme.background}`,
     `--ink:${theme.ink}`,
-    `--faint:${theme.faint}`,
+    `--faint:color-mix(in srgb,${theme.faint} 68%,${theme.ink})`,
+    `--ground:${theme.faint}`,
     `--driven:${theme.driven}`,
     ...theme.tones.map((tone, k) => `--tone-${k + 1}:${tone}`),
   ];
@@ -52,7 +53,7 @@ function roleRules(style: RoleStyle, stroke: number, scope: string): string[] {
   const dashes = style.dashes.map((part) => Number((part * width).toPrecision(4))).join(" ");
   const own = `${scope} .r-${style.role}`;
   return [
-    `${own}{stroke:${line};stroke-width:${width};fill:none;` +
+    `${own}{stroke:${line};stroke-width:calc(${width}px*var(--thick,1));fill:none;` +
       (dashes ? `stroke-dasharray:${dashes};` : "") +
       "stroke-linecap:round;stroke-linejoin:round}",
     `${own}.filled{fill:${fill};fill-opacity:${style.opacity}}`,

@@ -109,7 +109,7 @@ describe("configurations", () => {
 
 describe("the palette", () => {
   it("has points, links, joints and every kind of part that is offered", () => {
-    const spring = { table: "springs", title: "Spring", doc: "Drawn", fields: [] };
+    const spring = { table: "springs", title: "Spring", doc: "Drawn", fields: [], picks: [] };
     const pieces = piecesOf([spring]);
     expect(pieces.map((piece) => piece.title)).toEqual(["Point", "Link", "Joint", "Spring"]);
     expect(pieces[3]!.edit({ name: "s" })).toEqual({ kind: "add_part", table: "springs", typed: { name: "s" } });

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.part.slot import Slot as Slot
     from linkwork.mechanism.part.spring import Spring as Spring
     from linkwork.mechanism.part.weld import Weld as Weld
+    from linkwork.mechanism.question import Question as Question
     from linkwork.numerics.newton import NewtonOptions as NewtonOptions
     from linkwork.results.check import CheckReport as CheckReport
     from linkwork.results.circuits import (

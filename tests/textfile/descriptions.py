@@ -15,6 +15,7 @@ from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.slider import Slider
 from linkwork.mechanism.part.slot import Slot
 from linkwork.mechanism.part.spring import Spring
+from linkwork.mechanism.question import HIDDEN, Question
 
 __all__ = ["descriptions", "linkages", "loop_systems", "plain_systems"]
 
@@ -35,6 +36,15 @@ def distinct_names(least: int, most: int) -> st.SearchStrategy[list[str]]:
 primes = st.sampled_from(["", "'", "''"])
 
 
+questions = st.builds(
+    Question,
+    text=any_text.filter(str.strip),
+    answer=plain_numbers | st.sampled_from(["dead points", "change points"]),
+    tolerance=st.floats(1e-9, 1e9),
+    hide=st.lists(st.sampled_from(HIDDEN), max_size=2).map(tuple),
+)
+
+
 @st.composite
 def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict[str, Any]:
     """What every form has; the first dimension is a number, others may be formulas of it."""
@@ -50,6 +60,7 @@ def heads(draw: st.DrawFn, dimension_names: list[str]) -> dict[str, Any]:
         "configuration": draw(any_text),
         "angle": draw(units),
         "dimensions": dimensions,
+        "questions": draw(st.lists(questions, max_size=2)),
     }
 
 

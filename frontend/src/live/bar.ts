@@ -1,6 +1,7 @@
 // The toolbar: undo, redo, reload, link, save, and the mark of unsaved changes.
 
 import type { FileState } from "../messages";
+import { declareKeys, press, type Command } from "../keys";
 import { html } from "../svg";
 import type { Desk } from "./asking";
 import { LinkDialog } from "./link";
@@ -23,11 +24,12 @@ export class Bar {
     this.undo = this.button("↶", "Undo", () => desk.ask({ kind: "undo" }));
     this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
     this.button("New", "New: another mechanism, or a blank sheet", another);
-    this.button("Reload", "Read the file again", () => desk.ask({ kind: "reload" }));
+    this.button("Reload", "Reload: read the file again", () => desk.ask({ kind: "reload" }));
     this.link = new LinkDialog(desk);
     this.button("Share", "Share by link", () => this.link.open(this.element.closest(".lw")!));
     this.save = this.button("Save", "Save (Ctrl+S)", () => desk.ask({ kind: "save" }));
     this.save.classList.add("lw-save");
+    declareKeys("File", this.commands);
     document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });
     for (const kind of ["focusin", "change"]) document.addEventListener(kind, (event) => begin(event.target), { signal: this.gone.signal });
     window.addEventListener("beforeunload", (event) => {
@@ -61,15 +63,16 @@ export class Bar {
     return button;
   }
 
+  private readonly commands: readonly Command[] = [
+    { keys: ["s"], ctrl: true, does: "Save", act: () => this.desk.ask({ kind: "save" }) },
+    { keys: ["z"], ctrl: true, does: "Undo; with Shift redo", act: (event) => this.desk.ask({ kind: event.shiftKey ? "redo" : "undo" }) },
+    { keys: ["y"], ctrl: true, does: "Redo", act: () => this.desk.ask({ kind: "redo" }) },
+  ];
+
   private key(event: KeyboardEvent): void {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
     const key = event.key.toLowerCase();
-    const typing = (event.target as HTMLElement).matches("textarea") || (key === "z" && restored(event.target));
-    if (key === "s") this.desk.ask({ kind: "save" });
-    else if (key === "z" && !typing) this.desk.ask({ kind: event.shiftKey ? "redo" : "undo" });
-    else if (key === "y" && !typing) this.desk.ask({ kind: "redo" });
-    else return;
-    event.preventDefault();
+    const typing = (event.target as HTMLElement).matches("textarea") || (key === "z" && (event.ctrlKey || event.metaKey) && restored(event.target));
+    if (key === "s" || !typing) press(this.commands, event);
   }
 }
 

@@ -14,11 +14,13 @@ import { CanvasTools } from "./draw/canvas_tools";
 import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
 import { ExportMenu } from "./export_menu";
+import { firstHint } from "./first_hint";
 import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { Plots } from "./plots";
+import { presentNewton } from "./presented";
 import { Starting } from "./starting";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
@@ -64,6 +66,7 @@ export class LivePage {
   private charted = false;
   private hint: Element | null = null;
   private readonly starting: Starting;
+  private readonly first = firstHint();
   /** The width of the sheet that was told last. */
   private width = 1;
   private resizing: ReturnType<typeof setTimeout> | undefined;
@@ -156,6 +159,7 @@ export class LivePage {
         break;
       case "palette_shown":
         this.build.offer(event.parts);
+        this.editor.offer(event.parts);
         break;
       case "file_state":
         this.state(event);
@@ -292,18 +296,25 @@ export class LivePage {
     const view = this.page && this.editor.edited ? this.page.places.drawing.window : null;
     this.page?.destroy();
     const still = data.motions[0]!.columns.length === 0;
-    const page = (this.page = mount(this.element, data, { row: () => this.newton.moved(), changing: true, still }));
+    const page = (this.page = mount(this.element, data, { row: () => this.rowShown(), changing: true, still }));
     const { head, canvas, side } = page.places;
-    head.insertBefore(this.bar.element, head.querySelector(".lw-theme"));
+    head.insertBefore(this.bar.element, head.querySelector(".lw-corner"));
     canvas.after(this.readiness.element, this.notices.element);
-    side.prepend(this.tabs.element);
+    side.querySelector(".lw-questions")!.after(this.tabs.element);
     this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
     this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
     this.plots.attach(page);
-    this.editor.attach(page);
+    presentNewton(page, this.tabs, this.newton, () => !this.rowless && this.moving !== null && this.editor.choose("move"));
+    if (this.first) canvas.before(this.first);
     this.canvas.attach(page);
+    this.editor.attach(page);
     if (view) page.places.drawing.see(view);
+  }
+
+  private rowShown(): void {
+    this.newton.moved();
+    this.canvas.moved();
   }
 
   /** Another tool: the sketch is asked for while it is edited. */

@@ -41,8 +41,8 @@ export class Newton {
     this.guesses = html("div", {}, this.element);
     const row = html("div", { class: "lw-newton-row" }, this.element);
     this.button(row, "Guess of the file", () => this.begin());
-    this.button(row, "‹ Step", () => this.choose(this.chosen - 1));
-    this.button(row, "Step ›", () => this.choose(this.chosen + 1));
+    this.button(row, "‹ Step", () => this.step(-1));
+    this.button(row, "Step ›", () => this.step(1));
     const label = html("label", { class: "lw-toggle", title: "The plain textbook method, without a limit on the length of a step" }, row);
     this.full = html("input", { type: "checkbox" }, label);
     label.append("Full steps");
@@ -79,6 +79,11 @@ export class Newton {
     if (!this.on) return;
     this.at = this.desk.here();
     this.find();
+  }
+
+  /** Choose another step. */
+  step(by: number): void {
+    this.choose(Math.max(0, this.chosen + by));
   }
 
   show(found: NewtonShown): void {
@@ -187,7 +192,8 @@ export class Newton {
     const table = html("table", {}, this.detail);
     html("caption", {}, table, "F and the Jacobian ∂F/∂q at this step");
     const head = html("tr", {}, html("thead", {}, table));
-    for (const title of ["", "F", ...names]) html("th", { scope: "col" }, head, title);
+    html("td", {}, head);
+    for (const title of ["F", ...names]) html("th", { scope: "col" }, head, title);
     const body = html("tbody", {}, table);
     const values = html("tr", {}, body);
     html("th", { scope: "row" }, values, "q");
@@ -208,7 +214,7 @@ export class Newton {
     if (!this.held) this.page?.places.drawing.include("newton", [...Object.values(iterate.points), ...iterate.open_ends.map((end) => end.end)]);
     const matrix = this.page?.places.drawing.element.getScreenCTM();
     if (!matrix) return;
-    const stroke = 1.2 / matrix.a;
+    const stroke = (this.page!.presentation.on ? 2.4 : 1.2) / matrix.a;
     drawLinks(this.links, this.desk.file().links, iterate.points, { stroke, names: 11 * stroke, ends: iterate.open_ends });
     if (!this.held) this.handles.replaceChildren();
     if (this.held || this.chosen !== 0) return;

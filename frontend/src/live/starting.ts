@@ -7,6 +7,8 @@ import type { Desk } from "./asking";
 
 /** The start page in sight; it may be there before the program that opens what is chosen. */
 let current: StartPage | null = null;
+/** What had the focus before. */
+let before: Element | null = null;
 
 /** What was chosen before there was a program to open it. */
 let chosen: string | null = null;
@@ -26,7 +28,9 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   }
   leaveStart();
   current = new StartPage(libraryOf(document), hooks);
+  before = document.activeElement;
   document.body.append(current.element);
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = true;
 }
 
 /** Keep a choice for the program that is being loaded. */
@@ -36,8 +40,11 @@ export function chooseEarly(name: string): void {
 }
 
 export function leaveStart(): void {
-  current?.destroy();
+  if (current === null) return;
+  current.destroy();
   current = null;
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = false;
+  if (before instanceof HTMLElement) before.focus();
 }
 
 export class Starting {

@@ -35,6 +35,15 @@ export class Tabs {
     this.mark();
   }
 
+  /** The number of the panel in sight. */
+  get chosen(): number {
+    return this.at;
+  }
+
+  indexOf(title: string): number {
+    return this.panels.findIndex((panel) => panel.title === title);
+  }
+
   choose(k: number): void {
     if (k === this.at) return;
     this.panels[this.at]!.shown?.(false);

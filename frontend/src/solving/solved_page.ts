@@ -3,6 +3,7 @@
 import { measured } from "../numbers";
 import { MotionView } from "../motion";
 import type { Column, LimitMark, MotionData, PackedColumn, PageData, Part, PointData, SolverData } from "../page_data";
+import { pointsThrough } from "../smooth";
 import { dense, ready } from "../unpack";
 import { March, type Found, type Program } from "./march";
 
@@ -16,6 +17,8 @@ export interface Solved {
 /** Steps nearer than this many of the largest are neighbours on a closed motion. */
 const MEETING = 1.5;
 const SAME_PLACE = 1e-3;
+/** Of a stroke: deviations from a path that are not seen. */
+const UNSEEN = 0.05;
 const STATUS = ["converged", "not reached: beyond the end of the branch"];
 const PROOF = ["certified", "no position"];
 
@@ -198,6 +201,7 @@ export class SolvedPages {
         branch_names: [""],
       },
       limits,
+      answers: [],
       numbers: [],
     };
     return { ...motion, parts: this.parts(motion, order.rows, numbers) };
@@ -233,7 +237,7 @@ export class SolvedPages {
     );
     return motion.parts.map((part, k) => {
       if (hidden.has(k)) return nothing(part);
-      if (part.role === "trace") return { ...part, points: pathOf(view, rows, part.of, motion.closed) };
+      if (part.role === "trace") return { ...part, points: pathOf(view, rows, part.of, motion.closed, UNSEEN * this.page.stroke) };
       const before = this.anchored[k]!;
       if (!before.length) return part;
       const now = this.places(view, part, k, rows[0]);
@@ -305,11 +309,11 @@ function pointOf(point: PointData, columns: readonly Float64Array[]): PointData 
 }
 
 /** The path of a point over the rows: x, y, x, y, … */
-function pathOf(view: MotionView, rows: readonly number[], name: string, closed: boolean): number[] {
+function pathOf(view: MotionView, rows: readonly number[], name: string, closed: boolean, unseen: number): number[] {
   const point = view.points.find((one) => one.name === name);
   if (!point) return [];
   const around = closed ? [...rows, rows[0]!] : rows;
-  return around.flatMap((row) => [point.x[row]!, point.y[row]!]);
+  return pointsThrough(around.map((row) => [point.x[row]!, point.y[row]!]), unseen);
 }
 
 /** A part of which nothing is seen; its elements stay. */

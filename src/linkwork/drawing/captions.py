@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -27,6 +28,7 @@ _INDEX = re.compile(r"(?<=[^\W\d_])\d+(?![.\d])")  # after a letter
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
+@lru_cache(maxsize=4096)  # asked for again and again while a dimension is dragged
 def printed_name(name: str) -> str:
     """A name as printed in a figure: ``theta12`` → ``θ₁₂``, ``O2.x`` → ``O₂.x``."""
     point, _, axis = name.rpartition(".")

@@ -10,12 +10,13 @@ import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import islice, pairwise, product
 
 import numpy as np
 
 from linkwork.drawing.box import Box
 from linkwork.drawing.guide_symbols import Track
+from linkwork.drawing.label_placement import Kept
 from linkwork.drawing.link_symbols import convex_outline, in_line
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.obstacles import Obstacles
@@ -49,38 +50,48 @@ class _Place:
 
 
 def input_arrows(
-    pose: Pose, found: list[Track], measures: Measures, sense: float, drawn: Sequence[Primitive]
+    pose: Pose,
+    found: list[Track],
+    measures: Measures,
+    sense: float,
+    drawn: Sequence[Primitive],
+    kept: Kept | None = None,
 ) -> list[Primitive]:
     """An arrow for every input in its positive direction, reversed if ``sense`` is negative.
 
-    The arrows avoid covering ``drawn``.
+    The arrows avoid covering ``drawn``; those in ``kept`` are placed as before.
     """
+    kept = {} if kept is None else kept
     guided = {track.name: track for track in found}
     struts = {strut.name: strut for strut in pose.skeleton.struts}
     bars = {bar.name: bar for bar in pose.skeleton.bars}
     arrows: list[Primitive] = []
     for part in pose.skeleton.driven:
         turn = -1 if sense < 0 or part.backwards else 1
-        places: list[_Place] = []
+        places: Iterator[_Place] = iter(())
         if part.name in guided:
-            places = list(_along_track(part, guided[part.name], measures, turn))
+            places = _along_track(part, guided[part.name], measures, turn)
         elif part.name in struts:
-            places = list(_along_strut(pose, struts[part.name], measures, turn))
+            places = _along_strut(pose, struts[part.name], measures, turn)
         elif part.name in bars:
-            places = list(_around_pivot(pose, part, bars[part.name], measures, turn))
-        if places:
-            arrows.append(_freest(places, Obstacles.of([*drawn, *arrows]), measures))
+            places = _around_pivot(pose, part, bars[part.name], measures, turn)
+        key = Role.INPUT, part.name
+        choices = list(islice(places, kept[key], kept[key] + 1) if key in kept else places)
+        if len(choices) > 1:
+            kept[key] = _freest(choices, Obstacles.of([*drawn, *arrows]), measures)
+            choices = choices[kept[key] :]
+        arrows += [place.arrow for place in choices[:1]]
     return arrows
 
 
-def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> Primitive:
-    """The arrow that covers least; the first among equals."""
+def _freest(places: Sequence[_Place], obstacles: Obstacles, measures: Measures) -> int:
+    """The number of the arrow that covers least; the first among equals."""
     boxes = [[box.edges for box in _boxes(place.arrow, measures)] for place in places]
     # arrays need equal counts: shorter arrows repeat their last box
     most = max(map(len, boxes))
     filled = np.array([own + own[-1:] * (most - len(own)) for own in boxes])
     cost = np.array([place.cost for place in places]) + obstacles.costs(filled)
-    return places[int(np.argmin(cost))].arrow
+    return int(np.argmin(cost))
 
 
 def _boxes(arrow: Arc | Polyline, measures: Measures) -> list[Box]:

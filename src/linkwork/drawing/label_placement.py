@@ -26,6 +26,7 @@ from linkwork.mechanism.figures import Contour, Disc
 
 __all__ = [
     "Choice",
+    "Kept",
     "link_names",
     "placed",
     "places_along",
@@ -41,6 +42,10 @@ _ACROSS = 13  # positions of a text across an area, and as many vertically
 _CLEAR = 0.12  # margin of every name [em]: half a thick line and some space
 #: The first position tried is above right.
 _PREFERENCE = {45: 0.0, 135: 0.3, 90: 0.5, 0: 0.6, 180: 0.7, 315: 0.8, 225: 0.9, 270: 1.0}
+
+
+#: The chosen places of names and arrows by role and part, for further pictures of a drag.
+Kept = dict[tuple[Role, str], int]
 
 
 @dataclass(frozen=True)
@@ -228,8 +233,10 @@ def _beside_line(
     ]
 
 
-def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
-    """The best position for every name, given the drawn parts.
+def placed(
+    choices: Sequence[Choice], drawn: Iterable[Primitive], kept: Kept | None = None
+) -> list[Text]:
+    """The best position for every name, given the drawn parts; as before if all are in ``kept``.
 
     Notes
     -----
@@ -238,6 +245,10 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
     """
     if not choices:
         return []
+    kept = {} if kept is None else kept
+    keys = [(choice.places[0].role, choice.places[0].of) for choice in choices]
+    if kept.keys() >= set(keys):
+        return [choice.places[kept[key]] for choice, key in zip(choices, keys, strict=True)]
     obstacles = Obstacles.of(drawn)
     edges = [
         np.array([text.box.grown(_CLEAR * text.height).edges for text in choice.places])
@@ -259,6 +270,7 @@ def placed(choices: Sequence[Choice], drawn: Iterable[Primitive]) -> list[Text]:
             taken[k] = int(np.argmin(cost))
         if taken == before:
             break
+    kept.update({key: taken[k] for k, key in enumerate(keys)})
     return [choices[k].places[taken[k]] for k in range(len(choices))]
 
 

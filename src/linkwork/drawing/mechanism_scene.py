@@ -19,7 +19,7 @@ from linkwork.drawing.further_positions import (
 from linkwork.drawing.ground_symbols import ground_symbols
 from linkwork.drawing.guide_symbols import Track, guide_symbols, track_gaps, tracks
 from linkwork.drawing.input_arrow import input_arrows
-from linkwork.drawing.label_placement import link_names, placed, point_names
+from linkwork.drawing.label_placement import Kept, link_names, placed, point_names
 from linkwork.drawing.link_symbols import link_symbols, pin_symbols, tones
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.part.index import part_symbols
@@ -120,10 +120,13 @@ def scene_of(
     )
 
 
-def scene_of_pose(pose: Pose, *, size: float, unit: str = "", title: str = "") -> Scene:
+def scene_of_pose(
+    pose: Pose, *, size: float, unit: str = "", title: str = "", kept: Kept | None = None
+) -> Scene:
     """The symbols, input arrows and names of a pose, which need not be a solved position.
 
     ``size``: the least length by which symbols are sized, such as half the width of a sheet.
+    ``kept``: places of names and arrows in a similar picture, which stay; others are added to it.
     """
     drawn = drawn_box(pose, (), []) if pose.points else Box(0.0, 0.0, size, size)
     left, bottom = drawn.left, drawn.bottom
@@ -131,8 +134,8 @@ def scene_of_pose(pose: Pose, *, size: float, unit: str = "", title: str = "") -
     measures = Measures.of(within, pose.gaps)
     found = tracks(pose, measures, tones(pose))
     primitives = list(symbols(pose, found, (), measures))
-    primitives += input_arrows(pose, found, measures, 1.0, primitives)
-    primitives += placed(point_names(pose, measures), primitives)
+    primitives += input_arrows(pose, found, measures, 1.0, primitives, kept)
+    primitives += placed(point_names(pose, measures), primitives, kept)
     return Scene(
         primitives=tuple(primitives), measures=measures, within=drawn, unit=unit, title=title
     )

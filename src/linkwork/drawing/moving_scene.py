@@ -42,7 +42,7 @@ from linkwork.drawing.scene import (
 )
 from linkwork.drawing.shape_corners import corners, with_corners
 from linkwork.drawing.trace_path import trace_symbols
-from linkwork.foundation.arrays import BoolArray, CountArray
+from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 
@@ -101,18 +101,23 @@ class MovingScene:
         """The box of the picture over the whole motion."""
         box = self.scene.box
         rows = np.flatnonzero(self.found)
+        outlines: dict[Frame, list[complex]] = {}
+        around: list[ComplexArray] = []
         for part in self.parts:
             # names may be clipped at the edge, so that the picture does not jump
             if part.frame == STILL or isinstance(part.shape, Text):
                 continue
-            if part.frame is None:
-                assert part.course is not None
-                around = part.course[rows]
-            else:
-                outline = np.array([complex(*place) for place in part.shape.outline])
-                local = self.frames.local(part.frame, outline[None], np.array([self.row]))[0]
-                around = self.frames.placed(part.frame, local, rows)
-            places = around[np.isfinite(around)]
+            if part.frame is not None:
+                outlines.setdefault(part.frame, []).extend(
+                    complex(*place) for place in part.shape.outline
+                )
+            elif part.course is not None:
+                around.append(part.course[rows])
+        for frame, outline in outlines.items():
+            local = self.frames.local(frame, np.array([outline]), np.array([self.row]))[0]
+            around.append(self.frames.placed(frame, local, rows))
+        for some in around:
+            places = some[np.isfinite(some)]
             if len(places):
                 x, y = places.real, places.imag
                 box = box.with_box(

@@ -40,14 +40,15 @@ class Travel:
 class Pose:
     """Coordinates x + iy of all points in one position, and over the motion if given.
 
-    ``paths`` have one entry per row of the motion, NaN without a position. ``angles`` are the
-    current angles of the links [rad].
+    ``paths`` have one entry per row of the motion, NaN without a position; ``rates`` are their
+    first and second derivatives. ``angles`` are the current angles of the links [rad].
     """
 
     skeleton: Skeleton
     points: dict[str, complex]
     paths: dict[str, Path]
     angles: dict[str, float] = field(default_factory=dict)
+    rates: dict[str, tuple[Path, Path]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, position: Position, motion: Motion | None, *, bare: bool = False) -> Pose:
@@ -63,7 +64,10 @@ class Pose:
         paths = {} if motion is None else {name: _path(motion, name) for name in points}
         radians = position.units.angle.radians
         angles = {name: value * radians for name, value in position.links.items()}
-        return cls(skeleton=position.skeleton, points=points, paths=paths, angles=angles)
+        rates = {} if motion is None else _rates(motion)
+        return cls(
+            skeleton=position.skeleton, points=points, paths=paths, angles=angles, rates=rates
+        )
 
     @classmethod
     def still(cls, skeleton: Skeleton, points: Mapping[str, complex]) -> Pose:
@@ -84,7 +88,8 @@ class Pose:
     def at_row(cls, motion: Motion, row: int) -> Pose:
         """The pose of a found row of a motion."""
         paths = {name: _path(motion, name) for name in motion.points}
-        return cls(skeleton=motion.skeleton, points={}, paths=paths).moved_to(motion, row)
+        still = cls(skeleton=motion.skeleton, points={}, paths=paths, rates=_rates(motion))
+        return still.moved_to(motion, row)
 
     def moved_to(self, motion: Motion, row: int) -> Pose:
         """The pose of another row of the motion."""
@@ -232,6 +237,12 @@ def _apart(points: Mapping[str, complex]) -> dict[str, complex]:
 def _path(motion: Motion, name: str) -> Path:
     path: Path = np.where(motion.found, motion.trace(name), complex(np.nan, np.nan))
     return path
+
+
+def _rates(motion: Motion) -> dict[str, tuple[Path, Path]]:
+    """First and second derivatives of the paths of all points."""
+    jets = {name: motion.place(name) for name in motion.points}
+    return {name: (jet.d1, jet.d2) for name, jet in jets.items()}
 
 
 def _along(p: Path, a: Path, b: Path) -> Real:

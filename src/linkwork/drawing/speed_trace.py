@@ -14,6 +14,7 @@ from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.rate_arrows import rate_of, usual_most
 from linkwork.drawing.scene import Polygon, Polyline, Primitive, Role, Text, xy
+from linkwork.drawing.smooth_path import UNSEEN, smoothed
 from linkwork.foundation.arrays import Array
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
@@ -35,28 +36,31 @@ def speed_traces(
     every = np.concatenate([speed[motion.found] for speed in speeds.values()])
     most = usual_most(every) or 1.0
     drawn = [
-        piece for name in names for piece in _pieces(name, pose.paths[name], speeds[name] / most)
+        piece
+        for name in names
+        for piece in _pieces(name, pose, speeds[name] / most, UNSEEN * measures.size)
     ]
     return drawn, most, bool(np.nanmax(every, initial=0.0) > most)
 
 
-def _pieces(name: str, path: np.ndarray, share: Array) -> list[Primitive]:
+def _pieces(name: str, pose: Pose, share: Array, unseen: float) -> list[Primitive]:
     """Runs of one colour, given by the mean speed of two rows."""
+    path, (first, second) = pose.paths[name], pose.rates[name]
     mean = np.where(np.isfinite(share), share, 1.0)
     mean = np.clip((mean[:-1] + mean[1:]) / 2, 0.0, 1.0)
     levels = np.minimum((mean * _CLASSES).astype(int), _CLASSES - 1)
     there = np.isfinite(path[:-1]) & np.isfinite(path[1:])
     key = np.where(there, levels, -1)
     edges = [0, *(np.flatnonzero(np.diff(key)) + 1).tolist(), len(key)]
+    runs = [(slice(a, b + 1), key[a]) for a, b in pairwise(edges) if b > a and key[a] >= 0]
     return [
         Polyline(
             role=Role.SPEED_TRACE,
             of=name,
-            level=(int(key[a]) + 0.5) / _CLASSES,
-            points=tuple(map(xy, path[a : b + 1])),
+            level=(int(level) + 0.5) / _CLASSES,
+            points=tuple(map(xy, smoothed(path[run], unseen, first[run], second[run]))),
         )
-        for a, b in pairwise(edges)
-        if b > a and key[a] >= 0
+        for run, level in runs
     ]
 
 

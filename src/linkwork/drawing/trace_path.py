@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Path, Pose
 from linkwork.drawing.scene import Disc, Polyline, Primitive, Role, xy
+from linkwork.drawing.smooth_path import UNSEEN, smoothed
 from linkwork.foundation.arrays import ComplexArray, IndexArray
 
 __all__ = ["drawn_once", "thinned", "trace_symbols"]
@@ -18,7 +19,8 @@ def trace_symbols(pose: Pose, names: tuple[str, ...], measures: Measures) -> Ite
     """The path of every named point; an isolated position is a dot."""
     width = measures.stroke / 2
     for name in names:
-        for run in drawn_once(thinned(pose.paths[name], width), width):
+        path = smoothed(pose.paths[name], UNSEEN * measures.size, *pose.rates[name])
+        for run in drawn_once(thinned(path, width), width):
             if len(run) > 1:
                 yield Polyline(role=Role.TRACE, of=name, points=tuple(map(xy, run)))
             else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import cast
 
@@ -85,6 +85,8 @@ def _canonical(name: str) -> str:
 
 def find_spelling(name: str, known: Iterable[str]) -> str:
     """The spelling of a name in ``known``, or the name itself if it is not there."""
+    if isinstance(known, Mapping) and as_name(name) in known:
+        return name
     folded = canonical(name)
     return next((other for other in known if canonical(other) == folded), name)
 

@@ -25,7 +25,8 @@ from linkwork.foundation.names import canonical, is_name
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.field_types import check_field_types
+from linkwork.mechanism.field_types import check_entries, check_field_types
+from linkwork.mechanism.question import Question
 from linkwork.mechanism.speed import speed_per_second
 
 __all__ = ["Description", "Key", "Problems", "declared"]
@@ -76,6 +77,8 @@ class Description:
         The heading in lists of mechanisms.
     configuration : str
         The configuration or branch to start from instead of the guess.
+    questions : tuple of Question
+        Questions asked on pages, with hidden answers.
 
     Raises
     ------
@@ -94,6 +97,7 @@ class Description:
     source: str = ""
     family: str = ""
     configuration: str = ""
+    questions: tuple[Question, ...] = ()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -109,6 +113,8 @@ class Description:
             )
         set_(self, "inputs", tuple(self.inputs))
         set_(self, "trace", tuple(self.trace))
+        check_entries("questions", Question, self.questions)
+        set_(self, "questions", tuple(self.questions))
         for field in ("dimensions", "outputs"):
             set_(self, field, FrozenDict.of(getattr(self, field)))
 
@@ -158,6 +164,9 @@ class Description:
         self.numbers.check(problems.add)
         for key, name in declared("outputs", self.outputs):
             _check_name(problems, key, name, taken)
+        for k, question in enumerate(self.questions):
+            for field, message in question.problems():
+                problems.add(("questions", k, field), message)
         for k, which in enumerate(self.inputs):
             _check_rows(self, which, self.input_key(k), problems)
         self._check_lock_step(problems)

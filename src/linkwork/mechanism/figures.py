@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from linkwork.foundation.names import GROUND
 
-__all__ = ["Contour", "Disc", "Figure", "Guide", "Mesh", "Outlines"]
+__all__ = ["Contour", "Disc", "Figure", "Guide", "Mesh", "Outline", "Outlines", "circle"]
 
-#: For every outline, by name: body, centre, and points relative to it in the body's frame.
-Outlines = Mapping[str, tuple[str, str, Iterable[complex]]]
+_CORNERS = 72  # of a circle
+
+#: Body, centre, and points relative to it in the body's frame [length].
+Outline = tuple[str, str, Iterable[complex]]
+#: Outlines by name.
+Outlines = Mapping[str, Outline]
+
+
+def circle(radius: float) -> list[complex]:
+    """Corners of a circle about the origin [length]."""
+    return [cmath.rect(radius, math.tau * k / _CORNERS) for k in range(_CORNERS)]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.figures import Disc, Figure, Guide, Mesh, Outlines
 from linkwork.mechanism.part.cylinder import Strut
 from linkwork.mechanism.part.weld import RigidJoint
+from linkwork.mechanism.question import Question
 
 __all__ = ["Bar", "DrivenPart", "Rail", "Skeleton"]
 
@@ -59,7 +60,8 @@ class DrivenPart:
 class Skeleton:
     """The data of a picture except coordinates.
 
-    ``fixed`` are the points on ground, ``pins`` the points where bodies are joined.
+    ``fixed`` are the points on ground, ``pins`` the points where bodies are joined; ``questions``
+    are asked beside the picture.
     """
 
     fixed: tuple[str, ...] = ()
@@ -71,6 +73,7 @@ class Skeleton:
     driven: tuple[DrivenPart, ...] = ()
     traced: tuple[str, ...] = ()
     figures: tuple[Figure, ...] = ()
+    questions: tuple[Question, ...] = ()
 
     @classmethod
     def of_linkage(cls, linkage: Draft, outlines: Outlines) -> Skeleton:

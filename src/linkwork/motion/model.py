@@ -31,6 +31,7 @@ from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.guides_from_equations import rails_of
 from linkwork.motion.leading_input import leading_input
+from linkwork.motion.questions import question_problems
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results import quantities
@@ -269,10 +270,14 @@ def model_of(description: Description) -> Model:
             raise TypeError(f"no equations are known for {type(description).__name__}")
     compiled = compile_equations(equations, where)
     check_redundancy(compiled, where)
+    skeleton = replace(skeleton, questions=description.questions)
     model = Model(description, equations, compiled, skeleton)
     _check_outputs(model, where)
     # what cannot be read is an error of the file, found with the others
-    _ = model.speed, model.quantities
+    _ = model.speed
+    unknown = question_problems(description.questions, model.quantities)
+    if unknown:
+        raise MechanismError(unknown, where)
     return model
 
 

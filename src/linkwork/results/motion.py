@@ -32,6 +32,8 @@ from linkwork.results.table import Table
 
 __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 
+_FEW_ROWS = 4000  # of motions that are drawn
+
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
@@ -261,12 +263,25 @@ class Motion:
 
     def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""
-        if as_name(point) not in self.points:
+        known = self._places.get(as_name(point))
+        if known is not None:
+            return known
+        if point not in self.points:
             raise UnknownNameError(
                 f'there is no point "{point}" {choices("points", self.points, point)}'
             )
         x, y = self.points[point]
-        return Jet(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
+        jet = Jet(x.value + 1j * y.value, x.first + 1j * y.first, x.second + 1j * y.second)
+        if len(self) <= _FEW_ROWS:  # longer tables would take twice the memory
+            for part in (jet.v, jet.d1, jet.d2):
+                part.flags.writeable = False
+            self._places[point] = jet
+        return jet
+
+    @cached_property
+    def _places(self) -> dict[str, Jet]:
+        """The places asked for so far: a drawing asks again and again."""
+        return {}
 
     @cached_property
     def found(self) -> BoolArray:

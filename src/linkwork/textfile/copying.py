@@ -6,17 +6,18 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.file_keys import ListOf
 from linkwork.foundation.names import GROUND, canonical, free_name
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.load import Load
 from linkwork.textfile.entries import entries
 from linkwork.textfile.renaming import names_in_file
 from linkwork.textfile.text_edits import TextEdits
 
 __all__ = ["copy_selection", "mirror_numbers"]
 
-#: Numbers of parts that change sign in a mirror, and parts whose shape is not mirrored here.
+#: Numbers of parts that change sign in a mirror.
 _TURNED = ("offset", "angle", "phase")
-_SHAPED = ("cams", "curves", "noncircular_gears", "loads")
 
 
 def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool) -> None:
@@ -143,7 +144,9 @@ def _references(table: str, row: Mapping[str, Any]) -> Iterator[tuple[str, str]]
 
 def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a part that change sign."""
-    if table in _SHAPED:
+    keys = PARTS[table].keys
+    shaped = any(isinstance(key.kind, ListOf) and isinstance(key.kind.of, ListOf) for key in keys)
+    if shaped or PARTS[table] is Load:
         raise InputError(
             f'"{row.get("name", row.get("point", row.get("link")))}" '
             f"({PARTS[table].title.lower()}) cannot be mirrored: its shape has a sense; duplicate "

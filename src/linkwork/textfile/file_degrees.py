@@ -13,7 +13,11 @@ from linkwork.foundation.errors import InputError, key_text
 from linkwork.foundation.file_keys import Formula, Measured, Number, Speed
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.part.curve import Curve
 from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.guide import GuidePart
+from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.part import Part
 from linkwork.mechanism.speed import split_speed
 from linkwork.results.quantities.index import row_quantity
 from linkwork.textfile.entries import Entry, entries, measured_by
@@ -25,7 +29,7 @@ _BY_WORD = {
     "length": LENGTH, "angle": ANGLE, "number": PURE, "per length": Degree(Fraction(-1)),
     "area": Degree(Fraction(2)),
 }  # fmt: skip
-_GUIDES = ("sliders", "slots", "cylinders", "curves")
+_SLIDING = (GuidePart, Cylinder, Curve)  # parts whose name is that of a length
 
 
 @dataclass(frozen=True)
@@ -140,10 +144,10 @@ class FileDegrees:
                 yield canonical(name), ANGLE
             elif entry.path[-1] == "law":
                 yield "phi", ANGLE
-            elif table in _GUIDES and entry.path[-1] == "name":
+            elif entry.path[-1] == "name" and issubclass(PARTS.get(str(table), Part), _SLIDING):
                 own = str(entry.given)
                 yield canonical(own), ANGLE if entry.row.get("closed") else LENGTH
-                if table == "cylinders":
+                if PARTS[str(table)] is Cylinder:
                     yield canonical(Cylinder(name=own, between=("", "")).angle_name), ANGLE
 
     def _read(self, entry: Entry) -> None:

@@ -17,6 +17,7 @@ from linkwork.foundation.file_keys import (
     ListOf,
     Named,
     Number,
+    PlainNumber,
     Speed,
     Table,
     Tables,
@@ -26,6 +27,7 @@ from linkwork.foundation.units import FORCES, MASSES
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
+from linkwork.mechanism.question import HIDDEN
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
@@ -90,6 +92,35 @@ _FORCE_UNITS = (
 _MASSES = (
     Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
     Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
+)
+_QUESTIONS = Key(
+    "questions",
+    Tables(
+        (
+            Key("text", Text(), "The question", required=True),
+            Key(
+                "answer",
+                Number(),
+                '"dead points", "change points", a number of the whole motion such as '
+                '"stroke(rocker)", with at a quantity such as "mu", or the number itself',
+                required=True,
+            ),
+            Key("at", PlainNumber(), "The input value at which the quantity is asked"),
+            Key(
+                "tolerance",
+                PlainNumber(),
+                "How far an answer may be from the right one, in its unit",
+                required=True,
+            ),
+            Key("unit", Text(), "The unit of an answer that is given as a number"),
+            Key(
+                "hide",
+                ListOf(Text(HIDDEN), "word"),
+                "What a page hides until the question is answered; default all but equations",
+            ),
+        )
+    ),
+    "Questions asked on pages; answers are computed, and hidden until they are asked for",
 )
 _GUESS = Key(
     "guess",
@@ -159,6 +190,7 @@ LINKAGE = Form(
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 LOOPS = Form(
@@ -195,6 +227,7 @@ LOOPS = Form(
         Key("loads", Tables(Load.keys), Load.doc),
         _TRACE,
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 EQUATIONS = Form(
@@ -213,6 +246,7 @@ EQUATIONS = Form(
         _GUESS,
         Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
         _OUTPUTS,
+        _QUESTIONS,
     ),
 )
 FORMS = (LINKAGE, LOOPS, EQUATIONS)

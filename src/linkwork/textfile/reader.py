@@ -15,6 +15,7 @@ from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.mass import Gravity, Mass
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
+from linkwork.mechanism.question import Question
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
@@ -34,6 +35,7 @@ __all__ = [
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
     {"name", "purpose", "length", "source", "family", "configuration", "input", "trace", "outputs"}
+    | {"questions"}
 )
 
 
@@ -203,6 +205,7 @@ def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
         if key in content
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))
+    fields["questions"] = tuple(map(_question, content.get("questions", ())))
     fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
     return fields
 
@@ -235,6 +238,11 @@ def _without(
             named = content[key].items()
             kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
     return kept
+
+
+def _question(table: dict[str, Any]) -> Question:
+    listed = {key: tuple(entry) for key, entry in table.items() if key == "hide"}
+    return Question(**{**table, **listed})
 
 
 def _input(table: dict[str, Any]) -> Input:

@@ -128,6 +128,7 @@ def _tables(description: Description) -> _Tables:
             raise TypeError(f"a {type(description).__name__} has no file format")
     found["trace"] = {"points": description.trace} if description.trace else {}
     found["outputs"] = dict(description.outputs)
+    found["questions"] = [_given(question) for question in description.questions]
     needed = ("guess",)  # the reader requires it even if there are no unknowns
     return {name: table for name, table in found.items() if table or name in needed}
 

@@ -35,6 +35,7 @@ from linkwork.viewer.page_data import (
     RowEvidence,
     ThemeData,
 )
+from linkwork.viewer.page_questions import answers_of, questions_of
 from linkwork.viewer.page_shapes import shapes_of
 from linkwork.viewer.play_order import play_order
 
@@ -135,6 +136,7 @@ def drawn_page(
                 _motion(name, motion, scene, () if loops is None else loops(motion), pack),
                 columns=tuple(columns_of(motion, pack, asked)),
                 numbers=() if brief else tuple(numbers_of(motion, asked)),
+                answers=() if brief else tuple(answers_of(motion)),
                 view=own.edges,
             )
             for (name, motion), scene, own in zip(motions.items(), scenes, views, strict=True)
@@ -144,6 +146,7 @@ def drawn_page(
         forces=tuple(_forces(first, forces)),
         force_unit=force_unit(forces),
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
+        questions=tuple(questions_of(first)),
     )
 
 

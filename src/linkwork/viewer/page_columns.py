@@ -66,7 +66,9 @@ def _column(motion: Motion, asked: Asked, group: str, pack: Pack) -> Column:
     found, own, rate = motion.found, asked.own, asked.rate
     bounded = rate is None
     plain = bounded and asked.group is not Group.EVIDENCE
-    first = motion.series(asked.name).first if plain and asked.needs < 2 else None
+    series = motion.series(asked.name) if plain else None
+    values = motion[asked.name].astype(float) if series is None else series.value
+    first = None if series is None or asked.needs > 1 else series.first
     band: tuple[float, ...] = ()
     if bounded and asked.row is TRANSMISSION_ANGLE:
         band = tuple(bound / motion.units.angle.radians for bound in RECOMMENDED)
@@ -75,7 +77,7 @@ def _column(motion: Motion, asked: Asked, group: str, pack: Pack) -> Column:
         shown=_label(motion, asked),
         unit=asked.unit,
         group=group,
-        values=pack(motion[asked.name].astype(float), found, rate=not bounded),
+        values=pack(values, found, rate=not bounded),
         first=None if first is None else pack(first, found, rate=True),
         first_unit=Rate.FIRST.unit(own.kind, motion.units, motion.derivative_unit),
         band=band,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
+    "AnswerData",
     "Column",
     "Equation",
     "ForceData",
@@ -20,6 +21,7 @@ __all__ = [
     "PageData",
     "Part",
     "PointData",
+    "QuestionData",
     "RoleStyle",
     "RowEvidence",
     "SliderData",
@@ -178,6 +180,29 @@ class RowEvidence:
 
 
 @dataclass(frozen=True, kw_only=True)
+class QuestionData:
+    """A question: the unit, tolerance and whole turn (0: none) of its answer, and what is hidden
+    until it is answered.
+    """
+
+    text: str
+    unit: str
+    tolerance: float
+    turn: float
+    hide: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswerData:
+    """The right answers to a question, any one of which will do; none may be right, or none may be
+    ``known``.
+    """
+
+    known: bool
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class MotionData:
     """One displayed circuit or branch.
 
@@ -203,6 +228,7 @@ class MotionData:
     evidence: RowEvidence
     limits: tuple[LimitMark, ...]
     numbers: tuple[MotionNumber, ...] = ()
+    answers: tuple[AnswerData, ...] = ()
     view: tuple[float, ...] = ()
 
 
@@ -259,6 +285,7 @@ class PageData:
     forces: tuple[ForceData, ...]
     force_unit: str
     equations: tuple[Equation, ...]
+    questions: tuple[QuestionData, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.drawing.captions import printed_name
+from linkwork.drawing.label_placement import Kept
 from linkwork.drawing.mechanism_scene import scene_of_pose
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Scene
@@ -30,6 +31,7 @@ def still_page(
     units: Units,
     title: str = "",
     size: float = 0.0,
+    kept: Kept | None = None,
 ) -> PageData:
     """The data of a page with one row and no columns.
 
@@ -45,9 +47,12 @@ def still_page(
         The title of the page.
     size : float
         The least length by which symbols are sized [length].
+    kept : dict, optional
+        Places of names and arrows, see
+        :func:`~linkwork.drawing.mechanism_scene.scene_of_pose`.
     """
     pose = Pose.still(skeleton, {name: complex(*place) for name, place in points.items()})
-    scene = scene_of_pose(pose, size=size or 1.0, unit=units.length, title=title)
+    scene = scene_of_pose(pose, size=size or 1.0, unit=units.length, title=title, kept=kept)
     view = scene.box.grown(MARGIN * scene.measures.size)
     light, dark = themes()
     return PageData(

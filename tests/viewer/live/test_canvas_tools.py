@@ -5,6 +5,8 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable
 
+import pytest
+
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.test_drawing import Sheet, open_sheet as open_sheet
 
@@ -35,3 +37,54 @@ def test_a_link_is_copied_renamed_and_measured_in_inches(open_sheet: Callable[..
     before = drawing.evaluate(width)
     sheet.page.get_by_role("button", name="Zoom in").click()
     assert drawing.evaluate(width) < before
+
+
+@pytest.mark.extended
+def test_a_drawing_is_measured_and_dimensioned(open_sheet: Callable[..., Sheet]) -> None:
+    sheet = open_sheet()
+    page = sheet.page
+    sheet.drag((-60, -20), (20, 20))
+    sheet.key("v")
+    page.get_by_role("button", name="Dimensions on the drawing").click()
+    page.locator('[data-dimension="A B"] text').click()
+    field = page.get_by_role("textbox", name="A B [mm]", exact=True)
+    field.fill("10 cm")
+    sheet._done(lambda: field.press("Enter"))
+    assert tomllib.loads(sheet.bench.text)["lengths"] == {"A B": 100}
+    sheet.key("q")
+    for point in sheet.bench.cycle.subject.description.points.values():  # type: ignore[attr-defined]
+        page.mouse.click(*sheet._on_screen(tuple(c / sheet.scale for c in point)))
+    page.locator(".lw-measured", has_text="A B: 100 mm (horizontal").wait_for()
+    sheet._done(page.get_by_role("button", name="Add as output").click)
+    formula = "hypot(B.x - A.x, B.y - A.y)"
+    assert tomllib.loads(sheet.bench.text)["outputs"] == {"distance1": formula}
+    sheet.key("Escape")
+    assert page.locator(".lw-measured").is_hidden()
+
+
+@pytest.mark.extended
+def test_a_photograph_is_scaled_and_stays_in_the_browser(open_sheet: Callable[..., Sheet]) -> None:
+    sheet = open_sheet()
+    page = sheet.page
+    page.get_by_role("button", name="Photograph behind the drawing").click()
+    picture = b"<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'/>"
+    chosen = {"name": "a.svg", "mimeType": "image/svg+xml", "buffer": picture}
+    page.get_by_label("Choose a picture").set_input_files(chosen)
+    image = page.locator("image.lw-photograph")
+    image.wait_for(state="attached")
+    width = float(image.get_attribute("width"))
+    page.get_by_role("button", name="Scale", exact=True).click()
+    page.mouse.move(*sheet._on_screen((-40, 0)))
+    page.mouse.down()
+    page.mouse.move(*sheet._on_screen((40, 0)), steps=3)
+    page.mouse.up()
+    length = page.get_by_role("textbox", name="Length of the line")
+    length.fill("40")
+    length.press("Enter")
+    assert float(image.get_attribute("width")) == pytest.approx(width / 2, rel=0.01)
+    page.reload()
+    image.wait_for(state="attached")
+    assert "image" not in sheet.bench.text
+    page.get_by_role("button", name="Photograph behind the drawing").click()
+    page.get_by_role("button", name="Remove", exact=True).click()
+    assert image.count() == 0

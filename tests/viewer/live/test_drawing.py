@@ -57,6 +57,14 @@ class Sheet:
     def click(self, place: Place) -> None:
         self._done(lambda: self.page.mouse.click(*self._on_screen(place)))
 
+    def pick(self, place: Place) -> None:
+        """A click after which more is to be picked."""
+        self.actions += 1
+        told = self.page.locator(".lw-part-prompt")
+        before = told.inner_text()
+        self.page.mouse.click(*self._on_screen(place))
+        told.filter(has_not_text=before).wait_for()
+
     def remedy(self, label: str) -> None:
         self._done(self.page.get_by_role("button", name=label, exact=True).click)
 
@@ -146,9 +154,77 @@ def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
     assert len(motion.unknowns) == 4
     assert sheet.actions <= 20
     sheet.key("d")
+    sheet.page.wait_for_timeout(300)  # the sketch that the tool shows
     sheet.click((55, 15))
     assert sheet.mechanism.description.inputs[0].link == "link6"
     assert sheet.mechanism.sweep().found.any()
+
+
+def test_gears_on_an_arm_take_nine_actions_and_are_changed_in_their_panel(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    panel = sheet.page.locator(".lw-inspector")
+    sheet.drag((-40, -10), (10, 10))
+    sheet.key("g")
+    sheet.click((-40, -10))
+    sheet.key("e")
+    sheet.pick((-40, -10))
+    sheet.drag((10, 10), (10, -12))
+    sheet.remedy("Drive link2")
+    sheet.remedy("Hold gear1")
+    sheet.key("m")
+    assert int(sheet.mechanism.sweep().certified.sum()) == 361
+    assert sheet.actions <= 9
+    sheet.key("v")
+    sheet.page.wait_for_timeout(200)
+    sheet.page.mouse.click(*sheet._on_screen((10, 22)))  # the second gear's disc
+    panel.get_by_text("Gear pair").wait_for()
+    assert panel.get_by_label("Name of the part").input_value() == "mesh1"
+    teeth = panel.get_by_label("teeth")
+    teeth.fill("20, 40")
+    sheet._done(lambda: teeth.press("Enter"))
+    assert tomllib.loads(sheet.bench.text)["gears"][0]["teeth"] == [20, 40]
+    panel.get_by_role("button", name="Close").click()
+    sheet.page.mouse.click(*sheet._on_screen((10, 22)))
+    panel.get_by_text("Gear pair").wait_for()
+    assert panel.get_by_label("Name of the part").input_value() == "mesh1"
+    sheet.key("Delete")
+    sheet.page.locator("[aria-label='Undo: remove part mesh1']").wait_for()
+    assert "gears" not in tomllib.loads(sheet.bench.text)
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_every_tool_of_parts_is_in_sight_and_a_half_done_pick_can_be_dropped(
+    size: tuple[int, int], open_sheet: Callable[..., Sheet]
+) -> None:
+    sheet = open_sheet()
+    page = sheet.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    blank = sheet.bench.text
+    page.get_by_role("button", name="Parts").click()
+    tools = page.locator(".lw-part-tools button")
+    assert tools.count() == 11
+    for k in range(11):
+        box = tools.nth(k).bounding_box()
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= size[0]
+        assert box["y"] + box["height"] <= size[1]
+    keys = {tools.nth(k).get_attribute("aria-keyshortcuts") for k in range(11)}
+    tools.nth(3).focus()
+    page.keyboard.press("Enter")
+    told = page.locator(".lw-part-prompt")
+    told.filter(has_text="Gear pair 1 of 2").wait_for()
+    sheet.pick((-20, 0))
+    page.keyboard.press("Escape")
+    told.filter(has_text="Gear pair 1 of 2").wait_for()
+    assert sheet.bench.text == blank
+    bar = page.locator(".lw-tools [aria-keyshortcuts]").evaluate_all(
+        "all => all.map(one => one.getAttribute('aria-keyshortcuts'))"
+    )
+    assert keys.isdisjoint(bar)
+    assert len(keys) == 11
 
 
 @pytest.mark.parametrize("scale", [1e-3, pytest.param(1e3, marks=pytest.mark.extended)])

@@ -1,7 +1,8 @@
 // Drawing on the canvas: tools, pointer and keys change the file.
 
-import type { FileState, LiveEdit } from "../../messages";
+import type { FileState, LiveEdit, PalettePart, Picked } from "../../messages";
 import type { Mounted } from "../../mount";
+import { declareKeys, press, type Command } from "../../keys";
 import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
@@ -9,7 +10,11 @@ import { clean } from "../ranges";
 import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
+import { KeyPointer } from "./key_pointer";
 import { Overlay, pointsWithin } from "./overlay";
+import { PART_TOOLS } from "./part_tools";
+import { Picking } from "./picking";
+import { symbolsAt, type Under } from "./symbols";
 import type { Expected, Held } from "./selected";
 import { ToolBar, TOOLS } from "./tool_bar";
 
@@ -17,6 +22,8 @@ import { ToolBar, TOOLS } from "./tool_bar";
 const REACH = { mouse: 12, touch: 24 };
 /** A pointer that moves less has clicked [px]. */
 const STILL = 4;
+/** Tools that act on a click; with others a line is drawn, or a part is picked. */
+const CLICKED: ReadonlySet<string> = new Set(["ground", "drive", "trace"]);
 const ARROWS: Readonly<Record<string, Place>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export interface EditorHooks {
@@ -40,6 +47,7 @@ export class Editor {
   readonly tools = new ToolBar((name) => this.choose(name));
   readonly inspector: Inspector;
   private readonly overlay = new Overlay();
+  private readonly keyed: KeyPointer;
   private page: Mounted | null = null;
   private file: FileState | null = null;
   private tool = "move";
@@ -47,8 +55,15 @@ export class Editor {
   private selected: ReadonlySet<string> = new Set();
   private chosen: Chosen | null = null;
   private gesture: Gesture | null = null;
+  /** Picks of the part that is being drawn. */
+  private picking: Picking | null = null;
+  /** The parts before one was drawn, which is then selected. */
+  private before: ReadonlySet<string> | null = null;
+  private under: Under = {};
   /** What is selected with the next state of the file. */
   private expected: Expected | null = null;
+  /** Called after the drawing has been drawn again. */
+  redrawn: () => void = () => {};
   private panned = false;
   private readonly touches = new Map<number, Place>();
   private gone = new AbortController();
@@ -57,7 +72,19 @@ export class Editor {
     private readonly desk: Desk,
     private readonly hooks: EditorHooks,
   ) {
-    this.inspector = new Inspector(desk, () => this.select(null));
+    this.inspector = new Inspector(desk, () => this.select(null), (chosen) => this.select(chosen));
+    this.keyed = new KeyPointer({
+      choose: (chosen) => this.select(chosen),
+      hint: hooks.hint,
+      clicks: () => CLICKED.has(this.tool) || (this.picking !== null && !this.picking.next.sized),
+    });
+    declareKeys("Drawing", this.commands);
+  }
+
+  /** Offer tools for these kinds of parts. */
+  offer(parts: readonly PalettePart[]): void {
+    this.tools.parts.offer(parts);
+    this.inspector.parts.kinds = parts;
   }
 
   get edited(): boolean {
@@ -80,8 +107,9 @@ export class Editor {
     this.gone = new AbortController();
     this.page = page;
     this.overlay.attach(page);
+    this.keyed.attach(page, this.gone.signal);
     const { canvas, drawing } = page.places;
-    canvas.append(this.tools.element, this.inspector.element);
+    canvas.append(this.tools.element, this.tools.parts.element, this.tools.parts.prompt, this.inspector.element);
     const options = { capture: true, signal: this.gone.signal };
     const canvasEvents: [string, (event: PointerEvent) => void][] = [
       ["pointerdown", (event) => this.down(event)],
@@ -111,7 +139,10 @@ export class Editor {
     else this.tools.disable(ready ? [] : ["move"], "this draft does not move yet");
     const known = new Set([...Object.keys(file.points)]);
     this.selected = new Set([...this.selected].filter((name) => known.has(name)));
-    if (this.chosen && !(this.chosen.kind === "point" ? known : new Set(file.links.map((link) => link.name))).has(this.chosen.name)) this.chosen = null;
+    const there = { point: known, link: new Set(file.links.map((link) => link.name)), part: new Set(file.parts) };
+    if (this.chosen && !there[this.chosen.kind].has(this.chosen.name)) this.chosen = null;
+    const added = file.part_entries.find(({ table, name }) => table === this.tool && this.before && !this.before.has(name));
+    if (added) this.select({ kind: "part", name: added.name }, this.tool);
     this.inspector.show(this.chosen, file);
     this.take(file);
     this.redraw();
@@ -123,7 +154,8 @@ export class Editor {
     this.expected = null;
     if (!expected) return;
     const points = expected.points.filter((name) => name in file.points);
-    if (expected.chosen && (expected.chosen.kind === "point" ? points.length : file.links.some(({ name }) => name === expected.chosen!.name))) this.select(expected.chosen);
+    const there = { point: points, link: file.links.map(({ name }) => name), part: file.parts };
+    if (expected.chosen && there[expected.chosen.kind].includes(expected.chosen.name)) this.select(expected.chosen);
     else if (points.length) {
       this.select(null);
       this.selected = new Set(points);
@@ -134,28 +166,33 @@ export class Editor {
   /** Begin anew with the tool that changes nothing. */
   rest(): void {
     this.page = null;
-    [this.chosen, this.selected, this.tool] = [null, new Set(), "move"];
+    [this.chosen, this.selected, this.tool, this.picking] = [null, new Set(), "move", null];
     this.tools.show("move");
   }
 
   choose(name: string): void {
     if (name === this.tool) return;
     const before = this.edited;
-    this.tool = name;
+    this.keyed.rest();
+    const part = this.tools.part(name);
+    [this.tool, this.before] = [name, null];
+    this.picking = part ? new Picking(part, (table, picks) => this.drawn(table, picks)) : null;
     this.tools.show(name);
     if (name !== "select") this.select(null);
     this.overlay.clear();
     if (before !== this.edited) this.hooks.mode(this.edited);
-    this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
+    if (this.picking) this.tell();
+    else this.hooks.hint(TOOLS.find((tool) => tool.name === name)!.use);
     this.redraw();
   }
 
   /** Select a point or link, as a message asks. */
-  select(chosen: Chosen | null): void {
-    if (chosen) this.choose("select");
-    this.chosen = chosen;
-    const link = chosen?.kind === "link" ? this.file?.links.find((one) => one.name === chosen.name) : undefined;
-    this.selected = new Set(chosen === null ? [] : chosen.kind === "point" ? [chosen.name] : (link?.points ?? []));
+  select(chosen: Chosen | null, tool = "select"): void {
+    if (chosen) this.choose(tool);
+    [this.chosen, this.before] = [chosen, null];
+    const things = chosen?.kind === "link" ? this.file?.links : this.file?.part_entries;
+    const own = things?.find((one) => one.name === chosen?.name);
+    this.selected = new Set(chosen === null ? [] : chosen.kind === "point" ? [chosen.name] : (own?.points ?? []));
     if (this.file) this.inspector.show(chosen, this.file);
     this.redraw();
   }
@@ -168,8 +205,10 @@ export class Editor {
     drawing.element.classList.toggle("lw-edited", this.edited);
     this.grid = this.overlay.drawGrid(this.page, this.edited);
     const points = this.points;
-    this.overlay.select([...this.selected].flatMap((name) => (points[name] ? [points[name]!] : [])), drawing.pixel);
-    this.overlay.focusable(this.tool === "select" ? points : {}, drawing.pixel, (name) => this.select({ kind: "point", name }));
+    const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
+    this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
+    this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
+    this.redrawn();
   }
 
   private get points(): Places {
@@ -181,6 +220,7 @@ export class Editor {
   }
 
   private place(event: PointerEvent): Place {
+    this.under = symbolsAt(event, this.page!.places.drawing.element, this.file!);
     return this.page!.places.drawing.placeAt(event);
   }
 
@@ -189,7 +229,9 @@ export class Editor {
   }
 
   private anchor(at: Place, reach: number, from?: Place): Anchor {
-    return anchorAt(this.sketch, at, { reach, grid: this.grid / 10, ...(from ? { from } : {}) });
+    const found = anchorAt(this.sketch, at, { reach, grid: this.grid / 10, ...(from ? { from } : {}) });
+    const { link } = this.under;
+    return link && !found.point && !found.link ? { ...found, link } : found;
   }
 
   private down(event: PointerEvent): void {
@@ -202,8 +244,10 @@ export class Editor {
     if (!this.edited && !panned && this.touches.size < 2) return;
     event.stopImmediatePropagation();
     event.preventDefault();
-    (document.activeElement as HTMLElement | null)?.blur?.();
-    this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    if (event.isTrusted) {
+      (document.activeElement as HTMLElement | null)?.blur?.();
+      this.page!.places.drawing.element.setPointerCapture(event.pointerId);
+    }
     this.panned = panned;
     if (panned || this.touches.size > 1 || event.button !== 0) return;
     const [at, reach] = [this.place(event), this.reach(event)];
@@ -211,9 +255,9 @@ export class Editor {
     let drag: Places | null = null;
     if (this.tool === "select") {
       if (start.point && !this.selected.has(start.point)) this.select({ kind: "point", name: start.point });
-      else if (!start.point && start.link) this.select({ kind: "link", name: start.link });
+      else if (!start.point) this.selectUnder(start);
       const held = [...this.selected].flatMap((name) => (this.points[name] ? [[name, this.points[name]!] as const] : []));
-      drag = start.point || start.link ? Object.fromEntries(held) : null;
+      drag = start.point || start.link || this.under.part ? Object.fromEntries(held) : null;
     }
     this.gesture = { start, reach, from: at, moved: false, drag };
     if (this.tool === "link") this.overlay.mark(start.at, start.hint ?? "", this.page!.places.drawing.pixel);
@@ -240,7 +284,7 @@ export class Editor {
     gesture.moved ||= distance(at, gesture.from) > STILL * pixel;
     if (!gesture.moved) return;
     if (this.tool === "select") this.drag(gesture, at, true);
-    else if (["link", "slider", "point"].includes(this.tool)) this.draft(gesture, at, pixel);
+    else if (this.picking || ["link", "slider", "point"].includes(this.tool)) this.draft(gesture, at, pixel);
   }
 
   /** Pan with one pointer that holds nothing, zoom with two; whether that was done. */
@@ -263,6 +307,14 @@ export class Editor {
   private hover(at: Place, reach: number, pixel: number): void {
     this.overlay.clear();
     if (this.tool === "select") return;
+    if (this.picking) {
+      const { from, next } = this.picking;
+      const found = this.picking.taken(this.anchor(at, reach, from));
+      const text = found?.point ?? found?.link ?? "";
+      if (found && from && next.takes.includes("place")) this.overlay.preview(from, found.at, text, pixel);
+      else if (found) this.overlay.mark(found.at, text, pixel);
+      return;
+    }
     const found = this.anchor(at, reach);
     const wanted = this.tool === "link" || found.point || (found.link && this.tool !== "ground" && this.tool !== "slider");
     if (wanted) this.overlay.mark(found.at, found.point ?? found.link ?? "", pixel);
@@ -273,6 +325,10 @@ export class Editor {
     const end = this.end(gesture, at, reach);
     const [dx, dy] = [end.at[0] - start.at[0], end.at[1] - start.at[1]];
     const unit = this.file?.length_unit ?? "";
+    if (this.picking?.next.sized) {
+      this.overlay.circle(start.at, Math.hypot(dx, dy), this.picking.told(start.at, end.at, unit), pixel);
+      return;
+    }
     const angle = trimmed(shortNumber((Math.atan2(dy, dx) * 180) / Math.PI, 4));
     const parts = [`${trimmed(shortNumber(Math.hypot(dx, dy), 4))} ${unit}`.trim(), `${angle}°`, end.point ?? end.link ?? end.hint ?? ""];
     this.overlay.preview(start.at, end.at, parts.filter(Boolean).join("  "), pixel);
@@ -319,7 +375,7 @@ export class Editor {
   private dropped(gesture: Gesture, at: Place): void {
     if (gesture.moved) this.drag(gesture, at, false);
     else if (gesture.start.point) this.select({ kind: "point", name: gesture.start.point });
-    else if (!gesture.start.link) this.select(null);
+    else if (!gesture.start.link && !this.under.part) this.select(null);
     if (gesture.moved && gesture.drag === null) this.inspector.showMany([...this.selected], this.file!);
   }
 
@@ -329,6 +385,13 @@ export class Editor {
     const file = this.file!;
     const end = this.end(gesture, at, reach);
     const known = { points: file.points, links: file.links, parts: file.parts };
+    if (this.picking) {
+      this.select(null);
+      const possible = this.picking.pick(start, moved ? end : null);
+      this.tell(possible ? "" : "Not here. ");
+      this.redraw();
+      return;
+    }
     const send = (edits: readonly LiveEdit[] | null): void => {
       if (edits?.length) this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
     };
@@ -352,7 +415,7 @@ export class Editor {
         else this.hooks.hint("Click a pin.");
         return;
       case "drive":
-        if (start.link || start.point) send(this.driven(start));
+        send(this.driven(start));
         return;
       case "trace":
         if (start.point) send([{ kind: "trace_point", point: start.point, on: !file.traced.includes(start.point) }]);
@@ -361,11 +424,33 @@ export class Editor {
     }
   }
 
+  /** Select the symbol or link under the pointer. */
+  private selectUnder({ link }: Anchor): void {
+    const { part } = this.under;
+    if (part) this.select({ kind: "part", name: part });
+    else if (link) this.select({ kind: "link", name: link });
+  }
+
+  /** Tell what to pick next. */
+  private tell(before = ""): void {
+    if (!this.picking) return;
+    this.hooks.hint(before + this.picking.prompt);
+    this.tools.parts.tell(before + this.picking.prompt);
+  }
+
+  /** A part was picked; it is selected when it is there. */
+  private drawn(table: string, picks: readonly Picked[]): void {
+    this.before = new Set(this.file!.parts);
+    this.desk.ask({ kind: "draw_part", table, picks, span: 4 * this.grid });
+  }
+
   private isFixed(point: string): boolean {
     return this.file!.links.some(({ name, points }) => name === "ground" && points.includes(point));
   }
 
   private driven({ link, point }: Anchor): LiveEdit[] {
+    const symbol = point ? undefined : this.file!.drives.find(({ kind, name }) => kind !== "link" && name === this.under.part);
+    if (symbol) return [{ kind: "set_input", drive: symbol.kind, name: symbol.name }];
     const own = this.file!.links.filter(({ name, points }) => name !== "ground" && points.includes(point ?? ""));
     const name = link ?? own[0]?.name;
     return name ? [{ kind: "set_input", drive: "link", name }] : [];
@@ -385,19 +470,27 @@ export class Editor {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || this.page === null) return;
+    if (this.page === null) return;
     if (document.querySelector("dialog[open]")) return; // its keys are its own
     if (target.closest("input, textarea, select") && event.key !== "Escape") return;
-    const tool = TOOLS.find(({ key }) => key === event.key.toLowerCase());
-    if (tool) this.tools.element.querySelector<HTMLButtonElement>(`[aria-keyshortcuts="${tool.key.toUpperCase()}"]`)!.click();
-    else if (event.key === "Escape") this.escape();
-    else if (event.key === "f" || event.key === "F") this.page.places.drawing.see(null);
-    else if (["Delete", "Backspace"].includes(event.key) && this.selected.size) this.remove();
-    else if (event.key in ARROWS && this.selected.size && this.tool === "select") this.shift(ARROWS[event.key]!, event.shiftKey);
-    else return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
+    if (target.closest(".lw-part-tools") && event.key === "Escape") return;
+    if (event.key === "Enter" && target !== document.body) return; // it presses what has the focus
+    if (press(this.commands, event)) event.stopImmediatePropagation();
   }
+
+  private readonly commands: readonly Command[] = [
+    ...[...TOOLS, ...PART_TOOLS].map(({ name, key, title }) => ({ keys: [key], does: title, act: () => this.tools.press(name) })),
+    { keys: ["Enter"], does: "End what is picked point by point", when: () => this.picking?.next.repeated === true, act: () => this.picking!.finish() && this.tell() },
+    { keys: ["f"], does: "See the whole mechanism", act: () => this.page!.places.drawing.see(null) },
+    { keys: ["Escape"], does: "Drop what is begun; select nothing", when: () => this.edited, act: () => this.escape() },
+    { keys: ["Delete", "Backspace"], does: "Delete the selection", when: () => this.selected.size > 0 || this.chosen !== null, act: () => this.remove() },
+    {
+      keys: Object.keys(ARROWS),
+      does: "Move the selection; with Shift ten times as far",
+      when: () => this.tool === "select" && this.selected.size > 0 && this.keyed.idle,
+      act: (event) => this.shift(ARROWS[event.key]!, event.shiftKey),
+    },
+  ];
 
   /** Move the selected points by a step of the grid. */
   private shift([dx, dy]: Place, far: boolean): void {
@@ -413,6 +506,9 @@ export class Editor {
 
   private escape(): void {
     this.gesture = null;
+    this.keyed.rest();
+    this.picking?.cancel();
+    this.tell();
     this.overlay.clear();
     this.select(null);
   }
@@ -420,7 +516,9 @@ export class Editor {
   /** Remove the selected link or points. */
   private remove(): void {
     const edits: LiveEdit[] =
-      this.chosen?.kind === "link"
+      this.chosen?.kind === "part"
+        ? [{ kind: "remove_part", name: this.chosen.name, whole: true }]
+        : this.chosen?.kind === "link"
         ? [{ kind: "remove_link", name: this.chosen.name }]
         : [...this.selected].map((name) => ({ kind: "remove_point", name }));
     this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });

@@ -1,14 +1,16 @@
 // The panel at the selected point or link: its numbers, and what can be done with it.
 
-import type { FileState, LiveEdit } from "../../messages";
+import type { FileState, LiveEdit, PartShown } from "../../messages";
 import { shortNumber, trimmed } from "../../numbers";
 import { html } from "../../svg";
 import type { Desk } from "../asking";
 import { fill } from "../fields";
 import { typed } from "../ranges";
+import { PartPanel } from "./part_panel";
+import { partsOf } from "./symbols";
 
 export interface Chosen {
-  readonly kind: "point" | "link";
+  readonly kind: "point" | "link" | "part";
   readonly name: string;
 }
 
@@ -21,6 +23,7 @@ interface Action {
 
 export class Inspector {
   readonly element = html("section", { class: "lw-inspector", "aria-label": "Selection", hidden: "" });
+  readonly parts: PartPanel;
   private readonly locks = new Set<string>();
   /** Adds what concerns every selection. */
   more: (panel: HTMLElement) => void = () => {};
@@ -28,7 +31,9 @@ export class Inspector {
   constructor(
     private readonly desk: Desk,
     private readonly closed: () => void,
+    private readonly goTo: (chosen: Chosen) => void,
   ) {
+    this.parts = new PartPanel(desk, (name) => goTo({ kind: "link", name }));
     this.element.addEventListener("pointerdown", (event) => event.stopPropagation());
   }
 
@@ -46,10 +51,17 @@ export class Inspector {
       return;
     }
     this.element.dataset.of = `${chosen.kind} ${chosen.name}`;
-    this.begin(chosen.kind === "point" ? `Point ${chosen.name}` : `Link ${chosen.name}`);
+    const part = chosen.kind === "part" ? partNamed(chosen.name, file) : undefined;
+    this.begin(part ? this.parts.title(part) : chosen.kind === "point" ? `Point ${chosen.name}` : `Link ${chosen.name}`);
     if (chosen.kind === "point") this.point(chosen.name, file);
-    else this.link(chosen.name, file);
+    else if (chosen.kind === "link") this.link(chosen.name, file);
+    else if (part) this.part(part, file);
     this.more(this.element);
+  }
+
+  private part(part: PartShown, file: FileState): void {
+    this.parts.show(this.element, part);
+    this.actions(this.parts.actions(part, file));
   }
 
   showMany(names: readonly string[], file: FileState): void {
@@ -100,6 +112,11 @@ export class Inspector {
       { label: "Turn direction", edits: [{ kind: "reverse_link", name }], ...(own.points.length < 2 ? { reason: "a link of one point has no direction" } : {}) },
       { label: "Delete", edits: [{ kind: "remove_link", name }] },
     ]);
+    const box = html("div", { class: "lw-inspected-actions" }, this.element);
+    for (const part of partsOf(name, file)) {
+      const button = html("button", { type: "button" }, box, this.parts.title(part));
+      button.addEventListener("click", () => this.goTo({ kind: "part", name: part.name }));
+    }
   }
 
   /** The lengths from a point to its neighbours. */
@@ -136,6 +153,8 @@ export class Inspector {
 
   /** Other values of the same numbers. */
   private refresh(file: FileState): void {
+    const part = partNamed(this.element.dataset.of!.replace(/^part /, ""), file);
+    if (part) this.parts.refresh(this.element, part);
     for (const input of this.element.querySelectorAll<HTMLInputElement>("input[data-number]")) {
       const number = find(file, input.dataset.number!);
       if (number) fill(input, number.formula || trimmed(shortNumber(number.value, 6)));
@@ -156,4 +175,8 @@ export class Inspector {
 function find(file: FileState, name: string): FileState["numbers"][number] | undefined {
   const turned = name.split(" ").reverse().join(" ");
   return file.numbers.find((one) => one.name === name) ?? file.numbers.find((one) => one.name === turned);
+}
+
+function partNamed(name: string, file: FileState): PartShown | undefined {
+  return file.part_entries.find((part) => part.name === name);
 }

@@ -11,7 +11,6 @@ export class Overlay {
   private readonly group = svg("g", { class: "lw-draft" });
   private readonly traced = svg("g", {}, this.group);
   private readonly marks = svg("g", {}, this.group);
-  private readonly handles = svg("g", {}, this.group);
   private readonly line = svg("path", { class: "lw-draft-line" }, this.group);
   private readonly box = svg("rect", { class: "lw-draft-box" }, this.group);
   private readonly end = svg("circle", { class: "lw-draft-end" }, this.group);
@@ -57,29 +56,18 @@ export class Overlay {
     this.mark(to, text, pixel);
   }
 
+  /** A circle that is being drawn, with its radius. */
+  circle(centre: Place, radius: number, text: string, pixel: number): void {
+    this.mark(centre, text, pixel);
+    put(this.end, { r: radius });
+  }
+
   /** A place that is being pointed at. */
   mark(at: Place, text: string, pixel: number): void {
     put(this.end, { cx: at[0], cy: -at[1], r: 7 * pixel });
     this.text.textContent = text;
     this.text.style.fontSize = `${13 * pixel}px`;
     put(this.text, { x: at[0] + 12 * pixel, y: -at[1] - 12 * pixel });
-  }
-
-  /** Points that are reached by the tabulator key. */
-  focusable(points: Places, pixel: number, chosen: (name: string) => void): void {
-    const names = Object.keys(points).join(" ");
-    if (this.handles.dataset.names !== names) {
-      this.handles.dataset.names = names;
-      this.handles.replaceChildren();
-      for (const name of Object.keys(points)) {
-        const handle = svg("circle", { class: "lw-focusable", "data-sketched": name, tabindex: 0, role: "button" }, this.handles);
-        handle.addEventListener("focus", () => chosen(name));
-      }
-    }
-    Object.entries(points).forEach(([name, [x, y]], k) => {
-      const handle = this.handles.children[k]!;
-      put(handle, { cx: x, cy: -y, r: 11 * pixel, "aria-label": `Point ${name} at ${round(x)}, ${round(y)}: arrow keys move it` });
-    });
   }
 
   rubber(one: Place, other: Place): void {
@@ -100,8 +88,6 @@ export class Overlay {
     this.text.textContent = "";
   }
 }
-
-const round = (value: number): number => Number(value.toPrecision(6));
 
 /** Names of points inside a box. */
 export function pointsWithin(points: Places, one: Place, other: Place): string[] {

@@ -30,7 +30,7 @@ export class Readiness {
       button.addEventListener("click", () => this.desk.ask({ kind: "together", edits }));
     }
     const { kind, name } = lack;
-    if (kind === "point" || kind === "link") {
+    if (kind === "point" || kind === "link" || kind === "part") {
       const show = html("button", { type: "button", class: "lw-show" }, line, "Show");
       show.addEventListener("click", () => this.goTo({ kind, name }));
     }

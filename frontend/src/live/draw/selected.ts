@@ -33,8 +33,9 @@ export class Selected {
   /** Add the fields and buttons to the panel of the selection. */
   fill(panel: HTMLElement): void {
     const { chosen } = this.held();
-    if (chosen && chosen.name !== "ground") this.name(panel, chosen);
     const file = this.desk.file();
+    const weld = chosen?.kind === "part" && file.part_entries.some(({ table, name }) => table === "welds" && name === chosen.name);
+    if (chosen && chosen.name !== "ground" && !weld) this.name(panel, chosen);
     if (!this.selection(file)) return;
     const box = html("div", { class: "lw-inspected-actions lw-copies" }, panel);
     const button = (label: string, title: string, act: () => void): void => {
@@ -93,8 +94,8 @@ export class Selected {
   /** The name in the head of the panel, to be typed. */
   private name(panel: HTMLElement, { kind, name }: Chosen): void {
     const head = panel.querySelector("header strong");
-    if (!head) return;
-    head.textContent = kind.slice(0, 1).toUpperCase() + kind.slice(1);
+    if (!head || name.includes(" ")) return; // a weld is named by its links
+    head.textContent = head.textContent!.slice(0, -name.length).trim();
     const field = html("input", { type: "text", class: "lw-name-field", "aria-label": `Name of the ${kind}`, autocomplete: "off", spellcheck: "false" });
     field.value = name;
     head.after(field);
@@ -104,9 +105,11 @@ export class Selected {
         field.value = name;
         return;
       }
+      const { points, links, parts } = this.desk.file();
+      const taken = wanted in points || parts.includes(wanted) || links.some((link) => link.name === wanted);
       this.desk.ask({ kind: "rename", of: kind, name, new: wanted });
       field.blur();
-      this.held().expect({ chosen: { kind, name: wanted }, points: [wanted] });
+      if (!taken) this.held().expect({ chosen: { kind, name: wanted }, points: [wanted] });
     });
   }
 }

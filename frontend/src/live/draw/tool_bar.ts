@@ -1,6 +1,8 @@
 // The tools of the drawing: a button with a symbol and a key for each.
 
+import type { PalettePart } from "../../messages";
 import { html, svg } from "../../svg";
+import { PartTools } from "./part_tools";
 
 export interface Tool {
   readonly name: string;
@@ -25,9 +27,11 @@ export const TOOLS: readonly Tool[] = [
 
 export class ToolBar {
   readonly element = html("div", { class: "lw-tools", role: "toolbar", "aria-label": "Drawing", "aria-orientation": "vertical" });
+  readonly parts: PartTools;
   private readonly buttons = new Map<string, HTMLButtonElement>();
 
   constructor(chosen: (name: string) => void) {
+    this.parts = new PartTools(chosen);
     for (const { name, key, title, use, icon } of TOOLS) {
       const button = html("button", { type: "button", "aria-pressed": "false", title: `${title} (${key.toUpperCase()}): ${use}` }, this.element);
       button.setAttribute("aria-label", title);
@@ -37,14 +41,28 @@ export class ToolBar {
       button.addEventListener("click", () => chosen(name));
       this.buttons.set(name, button);
     }
+    this.element.append(this.parts.opener);
+  }
+
+  /** The kind of part that a tool draws. */
+  part(name: string): PalettePart | undefined {
+    return this.parts.part(name);
+  }
+
+  /** As a click would: not if it is disabled. */
+  press(name: string): void {
+    this.buttons.get(name)?.click();
+    this.parts.press(name);
   }
 
   show(name: string): void {
     for (const [own, button] of this.buttons) button.setAttribute("aria-pressed", String(own === name));
+    this.parts.show(name);
   }
 
   /** Tools that cannot be used, with the reason. */
   disable(names: readonly string[], reason: string): void {
+    this.parts.disable(names.includes("link") ? reason : "");
     for (const [own, button] of this.buttons) {
       button.disabled = names.includes(own);
       const { title, key, use } = TOOLS.find((tool) => tool.name === own)!;

@@ -1,5 +1,6 @@
 // Buttons and keys that zoom the drawing.
 
+import type { Command } from "../../keys";
 import type { Mounted } from "../../mount";
 import { html } from "../../svg";
 
@@ -25,12 +26,11 @@ export class Zoom {
     page.places.canvas.append(this.element);
   }
 
-  /** Zoom by a key; whether it is one. */
-  key(key: string): boolean {
-    const act = { "+": () => this.by(STEP), "=": () => this.by(STEP), "-": () => this.by(1 / STEP), "0": () => this.whole() }[key];
-    act?.();
-    return act !== undefined;
-  }
+  readonly commands: readonly Command[] = [
+    { keys: ["+", "="], does: "Zoom in", act: () => this.by(STEP) },
+    { keys: ["-"], does: "Zoom out", act: () => this.by(1 / STEP) },
+    { keys: ["0"], does: "See the whole mechanism", act: () => this.whole() },
+  ];
 
   private by(factor: number): void {
     const { drawing } = this.page!.places;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from linkwork.drawing.charts.chart import Axis, Curve, Mark, Panel, Pen, Rule, S
 from linkwork.drawing.charts.page import SMALL
 from linkwork.drawing.charts.theme import ChartTheme
 from linkwork.drawing.scene import text_width
+from linkwork.drawing.smooth_path import UNSEEN, smoothed
 from linkwork.foundation.arrays import Array, BoolArray
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ _LINE, _WIDER = (
     1.7,
 )  # points: width of a curve, and increase per curve on top
 _QUIET = 1.0
+_FLAT = 0.35  # height of a usual panel by its width
 _DOT = 2.2  # points: the diameter of an isolated value
 _TICK = 0.9 * SMALL
 _STATION, _STATION_TEXT = 3.2, 7.5
@@ -55,7 +58,7 @@ def draw_panel(ax: Axes, panel: Panel, across: Axis, theme: ChartTheme) -> None:
     for rule in panel.rules:
         _rule(ax, rule, theme)
     for curve in panel.curves:
-        _curve(ax, curve, turned, theme, leaves)
+        _curve(ax, _bent(panel, across, curve), turned, theme, leaves)
     for mark in panel.marks:
         _mark(ax, mark, turned, theme, leaves)
     _scale(ax.yaxis, panel.axis, ax.set_ylim)
@@ -118,6 +121,21 @@ def _curve(ax: Axes, curve: Curve, turned: float, theme: ChartTheme, leaves: boo
     if curve.pen is Pen.LINE and alone.any():
         dots = {"color": style["color"], "linestyle": "none", "marker": "o", "markersize": _LINE}
         ax.plot(x[alone], y[alone], gid=f"alone:{curve.name}", **dots, **place)
+
+
+def _bent(panel: Panel, across: Axis, curve: Curve) -> Curve:
+    """A curve with points between its rows, where it turns quickly on linear axes."""
+    x, y = curve.x, curve.y
+    there = np.isfinite(x) & np.isfinite(y)
+    linear = across.scale is Scale.LINEAR and panel.axis.scale is Scale.LINEAR
+    if panel.shape is Shape.POLAR or not linear or not there.any():
+        return curve
+    wide, tall = (float(np.ptp(one[there])) or 1.0 for one in (x, y))
+    tall /= _FLAT
+    if panel.shape is Shape.PLANE:
+        wide = tall = max(wide, _FLAT * tall)
+    path = smoothed(x / wide + 1j * y / tall, UNSEEN)
+    return replace(curve, x=wide * path.real, y=tall * path.imag)
 
 
 def _alone(y: Array) -> BoolArray:

@@ -13,10 +13,10 @@ from linkwork.foundation.names import GROUND
 from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Contour, Disc, Figure, Outlines
+from linkwork.mechanism.figures import Contour, Disc, Figure, Outline, Outlines, circle
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.motion_laws import LAWS
-from linkwork.mechanism.part.curve import COORDINATES, turned_back
+from linkwork.mechanism.part.curve import COORDINATES, coordinates, turned_back
 from linkwork.mechanism.part.guide import GuidePart, guide_named
 from linkwork.mechanism.part.part import (
     AGREE,
@@ -318,6 +318,12 @@ class Cam(NamedPart):
                 name=self.name, link=link, center=center, points=tuple(map(complex, points))
             )
         yield follower
+
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """The base circle, or the given points."""
+        base = 0.0 if self.base is None else linkage.numbers(self.base)
+        points = coordinates(self.profile, linkage) if self.profile else circle(base)
+        yield self.name, (self.cam, self.center, points)
 
     def _follower(self, linkage: Bodies) -> Follower:
         guide = guide_named(linkage, self.slider)

@@ -11,11 +11,11 @@ from linkwork.foundation.file_keys import Flag, Key, ListOf, Number as NumberKey
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Contour, Figure, Outlines
+from linkwork.mechanism.figures import Contour, Figure, Outline, Outlines
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.part import LINK, POINT, Inversion, NamedPart, PartChecks, pinned
 
-__all__ = ["COORDINATES", "Curve", "CurvedSlot", "turned_back"]
+__all__ = ["COORDINATES", "Curve", "CurvedSlot", "coordinates", "turned_back"]
 
 COORDINATES = ListOf(ListOf(NumberKey("length"), "coordinate", 2, 2), "point", 3)
 
@@ -105,6 +105,10 @@ class Curve(NamedPart):
             )
         checks.outline(self.through, "through", closed=self.closed)
 
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """The given points."""
+        yield self.name, (self.on, self.origin, coordinates(self.through, linkage))
+
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         if self.name in outlines:
             link, center, points = outlines[self.name]
@@ -123,6 +127,11 @@ class Curve(NamedPart):
         if self.on != GROUND:
             return same
         return replace(same, through=turned_back(self.through, inversion.turn))
+
+
+def coordinates(pairs: _Pairs, linkage: Bodies) -> list[complex]:
+    """Points given by numbers or formulas."""
+    return [complex(linkage.numbers(x), linkage.numbers(y)) for x, y in pairs]
 
 
 def turned_back(pairs: _Pairs, turn: float) -> _Pairs:

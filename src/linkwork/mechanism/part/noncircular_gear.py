@@ -14,7 +14,7 @@ from linkwork.foundation.file_keys import Formula, Key, ListOf, Number as Number
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Contour, Figure, Outlines
+from linkwork.mechanism.figures import Contour, Figure, Outline, Outlines, circle
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.curve import COORDINATES, turned_back
 from linkwork.mechanism.part.part import AGREE, Inversion, PartChecks
@@ -134,6 +134,11 @@ class NoncircularGear(ToothedPart, ArmPair):
         turn, over = checks.linkage.angle.turn, pairs[-1][0] - pairs[0][0]
         if abs(over - turn) > AGREE * turn:
             checks.add(f"covers {over:.10g}: one turn of the first wheel is {turn:g}", "table")
+
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """Circles that share the distance of the centres."""
+        for suffix, wheel, center in zip(self.curves, self.wheels, self.centers, strict=True):
+            yield f"{self.name}{suffix}", (wheel, center, circle(self.distance(linkage) / 2))
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         for suffix in self.curves:

@@ -18,7 +18,7 @@ from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.figures import Disc, Figure, Outlines
+from linkwork.mechanism.figures import Disc, Figure, Outline, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
 
 __all__ = [
@@ -128,6 +128,10 @@ class Part:
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         """The figures of the part."""
+        return iter(())
+
+    def sketched_outlines(self, linkage: Bodies) -> Iterator[tuple[str, Outline]]:
+        """Outlines by name before the equations are solved."""
         return iter(())
 
     def size_of(self, link: str, linkage: Bodies) -> float | None:

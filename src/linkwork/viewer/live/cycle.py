@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from linkwork.drawing.label_placement import Kept
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
 from linkwork.mechanism.part.part import LARGEST
@@ -12,7 +13,7 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input
 from linkwork.viewer.live.answers import GivenUpError, check_quantities
-from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.motion_picture import MotionPicture, paths_on
 from linkwork.viewer.live.queries import answered, nearest_closure
 from linkwork.viewer.live.solvable import Solvable
 from linkwork.viewer.live.subject import Subject
@@ -57,6 +58,8 @@ class Cycle:
         self.motion: Motion | None = None
         self.owed = False
         self._picture, self._sheet = MotionPicture(), ask.SetSheet(width=0.0)
+        self._paths_only = False  # whether the last motion was told without its parts and columns
+        self._kept: Kept = {}  # names and arrows of the sketch stay in their places during a drag
 
     def take(self, subject: Subject) -> None:
         """Continue with a changed subject."""
@@ -73,7 +76,7 @@ class Cycle:
         mechanism = self.subject.solvable
         if mechanism is None:
             self.motion, self.owed = None, False
-            return self._sketch()
+            return list(self._sketch(live))
         if not mechanism.description.inputs:
             return answered(ask.SolveAt(at={}), mechanism)
         try:
@@ -83,7 +86,14 @@ class Cycle:
             return []
         self.motion, self.owed = motion, False
         found = telling.motion_found(motion, live=live, message=message)
-        events: Events = [*self._sketch(), self._pictured(found, motion)]
+        sketch = self._sketch(live)
+        # in an edited sketch nothing else of the motion is seen
+        self._paths_only = live and bool(sketch)
+        if self._paths_only:
+            page = paths_on(sketch[0].page, motion) if motion.found.any() else None
+            events: Events = [*sketch, replace(found, page=page)]
+        else:
+            events = [*sketch, self._pictured(found, motion)]
         if not motion.found.any() and motion.limits:  # in addition to the rows of the table
             events += answered(ask.SolveAt(at={}), mechanism)
         elif all(status is Status.NO_START for status in motion.status):
@@ -99,7 +109,9 @@ class Cycle:
         if not 0 <= sheet.width <= LARGEST:
             raise InputError(f"the width of the view must be from 0 to {LARGEST:g}")
         self._sheet = sheet
-        return self._sketch()
+        if self._paths_only and not sheet.edited:
+            return self.events()
+        return list(self._sketch())
 
     def with_quantities(self, names: tuple[str, ...]) -> Events:
         """The motion with quantities besides the usual ones."""
@@ -138,11 +150,13 @@ class Cycle:
             raise GivenUpError
         self.working(fraction)
 
-    def _sketch(self) -> Events:
+    def _sketch(self, live: bool = False) -> list[tell.SketchShown]:
         """The points as sketched, if they are edited in the drawing or there is no motion."""
         if self.subject.solvable is not None and not self._sheet.edited:
             return []
-        page = self.subject.page(self._sheet.width / 2)
+        if not live:
+            self._kept.clear()
+        page = self.subject.page(self._sheet.width / 2, self._kept, certify=not live)
         return [] if page is None else [tell.SketchShown(page=page)]
 
     def _pictured(self, event: tell.Event, motion: Motion) -> tell.Event:

@@ -17,8 +17,18 @@ from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
 from linkwork.viewer.live.number_edits import set_input, set_number
-from linkwork.viewer.live.palette import part_name, part_of
+from linkwork.viewer.live.palette import part_of
+from linkwork.viewer.live.part.index import edits_of_drawing
+from linkwork.viewer.live.part_entries import alone_with, part_row, put_entry
 from linkwork.viewer.live.typed_units import TypedUnits
+from linkwork.viewer.live.written_links import (
+    add_entry,
+    carry,
+    check_point,
+    drop_loose_dimensions,
+    drop_lost_inputs,
+    points_of,
+)
 
 __all__ = ["Followed", "applied", "edit_title"]
 
@@ -94,63 +104,64 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
     units = TypedUnits.of(before.description)
     place = [units.number(c, "length", letter) for c, letter in ((edit.x, "x"), (edit.y, "y"))]
-    _add(text, "points", edit.name, [c if isinstance(c, str) else rounded(c) for c in place])
+    add_entry(text, "points", edit.name, [c if isinstance(c, str) else rounded(c) for c in place])
     for link in edit.links:
-        _carry(text, link, edit.name)
+        carry(text, link, edit.name)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.AddLink, text: TextEdits, before: Before) -> Followed:
     for name in edit.points:
-        _check_point(text, name)
-    _add(text, "links", edit.name, list(edit.points))
+        check_point(text, name)
+    add_entry(text, "links", edit.name, list(edit.points))
     return Followed()
 
 
 @applied.register
 def _(edit: ask.SetGround, text: TextEdits, before: Before) -> Followed:
-    fixed = _points_of(text, GROUND) if text.has(("links", GROUND)) else []
-    wanted = {canonical(name): _check_point(text, name) for name in edit.points}
+    fixed = points_of(text, GROUND) if text.has(("links", GROUND)) else []
+    wanted = {canonical(name): check_point(text, name) for name in edit.points}
     left = [point for point in fixed if canonical(point) not in wanted]
     if on := [*left, *wanted.values()] if edit.on else left:
         text.put(("links", GROUND), on)
     elif fixed:
         text.remove(("links", GROUND))
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.AddJoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.point)
-    _carry(text, edit.link, edit.point)
+    check_point(text, edit.point)
+    carry(text, edit.link, edit.point)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.RemoveJoint, text: TextEdits, before: Before) -> Followed:
-    points = _points_of(text, edit.link)
+    points = points_of(text, edit.link)
     left = [point for point in points if canonical(point) != canonical(edit.point)]
     if len(left) == len(points):
         message = f'"{edit.link}" does not carry "{edit.point}" {choices("points", points)}'
         raise UnknownNameError(message)
     text.put(("links", edit.link), left)
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
-    _points_of(text, edit.name)
+    points_of(text, edit.name)
     text.remove(("links", edit.name))
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
+    drop_lost_inputs(text, edit.name)
     return Followed()
 
 
 @applied.register
 def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
-    first, second, *rest = [*_points_of(text, edit.name), "", ""]
+    first, second, *rest = [*points_of(text, edit.name), "", ""]
     if not second:
         raise InputError(f'"{edit.name}" has no direction: it has one point')
     text.put(("links", edit.name), [second, first, *filter(None, rest)])
@@ -159,10 +170,10 @@ def _(edit: ask.ReverseLink, text: TextEdits, before: Before) -> Followed:
 
 @applied.register
 def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.name)
+    check_point(text, edit.name)
     text.remove(("points", edit.name))
     for link in text.keys(("links",)):
-        points = _points_of(text, link)
+        points = points_of(text, link)
         left = [point for point in points if canonical(point) != canonical(edit.name)]
         if not left:
             text.remove(("links", link))
@@ -172,7 +183,7 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
         traced = text.get(("trace", "points"))
         left = [point for point in traced if canonical(point) != canonical(edit.name)]
         text.put(("trace", "points"), left)
-    _drop_loose_dimensions(text)
+    drop_loose_dimensions(text)
     return Followed()
 
 
@@ -184,21 +195,31 @@ def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.DrawPart, text: TextEdits, before: Before) -> Followed:
+    for each in edits_of_drawing(edit, before):
+        applied(each, text, before)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.SetPart, text: TextEdits, before: Before) -> Followed:
+    put_entry(edit, text, TypedUnits.of(before.description))
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
-    names: list[str] = []
-    for table in PARTS:
-        for k, row in text.entries(table):
-            name = part_name(row)
-            if canonical(edit.name) == canonical(name):
-                text.remove((table, k))
-                return Followed()
-            names.append(name)
-    raise UnknownNameError(f'there is no "{edit.name}" {choices("parts", names, edit.name)}')
+    text.remove(part_row(text, edit.name))
+    drop_lost_inputs(text, edit.name)
+    if edit.whole and isinstance(before.description, Draft):
+        for each in alone_with(edit.name, before.description):
+            applied(each, text, before)
+    return Followed()
 
 
 @applied.register
 def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
-    _check_point(text, edit.point)
+    check_point(text, edit.point)
     traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
     left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
     if edit.on:
@@ -231,7 +252,7 @@ def _(edit: ask.Duplicate, text: TextEdits, before: Before) -> Followed:
             raise InputError(f'"{copy}" is already in the file: choose another name')
     for point, place in edit.places.items():
         _known_point(linkage, point)
-        _add(text, "points", edit.names[point], [rounded(c) for c in place])
+        add_entry(text, "points", edit.names[point], [rounded(c) for c in place])
     copy_selection(text, edit.names, mirrored=edit.mirrored)
     return Followed()
 
@@ -246,50 +267,18 @@ def _(edit: ask.Mirror, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.AddOutput, text: TextEdits, before: Before) -> Followed:
+    add_entry(text, "outputs", edit.name, edit.formula)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.ChooseConfiguration, text: TextEdits, before: Before) -> Followed:
     if edit.name:
         text.put(("configuration",), edit.name)
     elif text.has(("configuration",)):
         text.remove(("configuration",))
     return Followed()
-
-
-def _check_point(text: TextEdits, name: str) -> str:
-    """A point as it is spelled in the text; an error if there is none."""
-    known = text.keys(("points",))
-    for own in known:
-        if canonical(own) == canonical(name):
-            return own
-    raise UnknownNameError(f'there is no point "{name}" {choices("points", known, name)}')
-
-
-def _add(text: TextEdits, table: str, name: str, entry: object) -> None:
-    if text.has((table, name)):
-        raise InputError(f'"{name}" is already in [{table}]: choose another name')
-    text.put((table, name), entry)
-
-
-def _points_of(text: TextEdits, link: str) -> list[str]:
-    if not text.has(("links", link)):
-        known = text.keys(("links",))
-        raise UnknownNameError(f'there is no link "{link}" {choices("links", known, link)}')
-    return [str(point) for point in text.get(("links", link))]
-
-
-def _carry(text: TextEdits, link: str, point: str) -> None:
-    points = _points_of(text, link)
-    if canonical(point) in map(canonical, points):
-        raise InputError(f'"{link}" carries "{point}" already')
-    text.put(("links", link), [*points, point])
-
-
-def _drop_loose_dimensions(text: TextEdits) -> None:
-    """Remove lengths and angles between points that are no longer on one link."""
-    links = [{canonical(p) for p in _points_of(text, link)} for link in text.keys(("links",))]
-    for table in ("lengths", "angles"):
-        for key in text.keys((table,)):
-            if not any({canonical(p) for p in key.split()} <= points for points in links):
-                text.remove((table, key))
 
 
 def edit_title(edit: ask.Edit) -> str:
@@ -302,6 +291,10 @@ def edit_title(edit: ask.Edit) -> str:
             return f"move {edit.point}"
         case ask.MovePoints():
             return f"move {', '.join(edit.places)}"
+        case ask.DrawPart():
+            return f"add {PARTS[edit.table].title.lower()}"
+        case ask.SetPart():
+            return f"{edit.name}: {edit.key}"
         case ask.ChangeUnits():
             units = " and ".join(filter(None, (edit.length, edit.angle)))
             return f"{'convert to' if edit.convert else 'relabel as'} {units}"

@@ -15,6 +15,8 @@ __all__ = [
     "Link",
     "PaletteField",
     "PalettePart",
+    "PartShown",
+    "Pick",
     "Point",
     "Remedy",
     "Unknown",
@@ -94,13 +96,42 @@ class PaletteField:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Pick:
+    """A thing or place of the drawing that a part needs.
+
+    ``takes``: ``point``, ``link``, ``place``; ``sized``: a drag from it sets a radius;
+    ``repeated``: as often as wanted.
+    """
+
+    prompt: str
+    takes: tuple[str, ...]
+    sized: bool
+    repeated: bool
+
+
+@dataclass(frozen=True, kw_only=True)
 class PalettePart:
-    """A kind of part, with its table in the file."""
+    """A kind of part, with its table in the file; ``picks`` draw it."""
 
     table: str
     title: str
     doc: str
     fields: tuple[PaletteField, ...]
+    picks: tuple[Pick, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartShown:
+    """A part of the file: its entries as they would be typed.
+
+    ``links`` and ``points``: those that it joins.
+    """
+
+    table: str
+    name: str
+    typed: dict[str, str | tuple[str, ...]]
+    links: tuple[str, ...]
+    points: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,8 +163,8 @@ class FileState:
 
     ``lacks``: what keeps it from being a mechanism; ``readable``: whether it is at least a draft.
 
-    ``parts``: names of sliders, gears, cams, …; for a weld its two links. ``drives``: possible
-    inputs. ``traceable``: points whose paths can be shown.
+    ``parts``: names of sliders, gears, cams, …; for a weld its two links; ``part_entries``: what
+    they are. ``drives``: possible inputs. ``traceable``: points whose paths can be shown.
     """
 
     file: str
@@ -152,9 +183,11 @@ class FileState:
     points: dict[str, Point]
     links: tuple[Link, ...]
     parts: tuple[str, ...]
+    part_entries: tuple[PartShown, ...]  # noqa: V107
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]
+    outputs: tuple[str, ...]
     equations: tuple[str, ...]
     lacks: tuple[Lack, ...]
     readable: bool

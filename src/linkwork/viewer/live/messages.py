@@ -172,6 +172,8 @@ def _value(entry: Any, kind: Any, where: str, longest: int) -> Any:
         for name in table:
             _text(name, f"{where}: a name", longest)
         return dict(zip(table, _each(table.values(), parts[1], where, longest), strict=True))
+    if dataclasses.is_dataclass(kind):
+        return _filled(typing.cast(type, kind), _tabled(entry, where), f"{where}: ")
     return _plain(entry, kind, where, longest)
 
 

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from linkwork.drawing.box import Box
+from linkwork.drawing.measures import Measures
+from linkwork.drawing.mechanism_scene import traced
 from linkwork.drawing.moving_scene import MovingScene, moving_scene
+from linkwork.drawing.pose import Pose
+from linkwork.drawing.trace_path import trace_symbols
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.viewer.packing import shortened, unpressed
 from linkwork.viewer.page_building import Loops, drawn_page
 from linkwork.viewer.page_data import PageData
+from linkwork.viewer.page_shapes import still_shape
 
-__all__ = ["MotionPicture"]
+__all__ = ["MotionPicture", "paths_on"]
 
 
 class MotionPicture:
@@ -52,3 +61,12 @@ class MotionPicture:
             asked=asked,
             brief=brief,
         )
+
+
+def paths_on(sketch: PageData, motion: Motion) -> PageData:
+    """The page of a sketch with nothing but the paths of a motion, which has positions."""
+    pose = Pose.at_row(motion, int(np.flatnonzero(motion.found)[0]))
+    measures = Measures.of(Box(*sketch.view), pose.gaps)
+    paths = trace_symbols(pose, traced(pose, None), measures)
+    parts = tuple(still_shape(path, measures.size) for path in paths)
+    return replace(sketch, motions=(replace(sketch.motions[0], parts=parts),))

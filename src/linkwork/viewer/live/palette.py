@@ -13,21 +13,27 @@ from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import ANGLES, LENGTHS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.entries import measured_by
 from linkwork.viewer.live.file_state import PaletteField, PalettePart
+from linkwork.viewer.live.part.index import picks_of
+from linkwork.viewer.live.part_requests import Typed
 from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["PALETTE", "Typed", "part_name", "part_of"]
 
-#: User input of a field: one entry or several; a row of numbers or of a table is one line,
-#: "10, 20".
-Typed = str | tuple[str, ...]
 
-
-def part_of(table: str, typed: Mapping[str, Typed], units: TypedUnits) -> dict[str, object]:
+def part_of(
+    table: str,
+    typed: Mapping[str, Typed],
+    units: TypedUnits,
+    row: Mapping[str, object] = FrozenDict(),
+) -> dict[str, object]:
     """An entry of a table of parts from user input; empty fields are omitted.
+
+    ``row``: the other fields, of a part that exists.
 
     Raises
     ------
@@ -42,7 +48,7 @@ def part_of(table: str, typed: Mapping[str, Typed], units: TypedUnits) -> dict[s
             raise UnknownNameError(
                 f'"{name}" is not a key of [[{table}]] {choices("keys", keys, name)}'
             )
-    reader = _Reader(units, typed)
+    reader = _Reader(units, {**row, **typed})
     return {name: reader.entry(keys[name], entry) for name, entry in typed.items() if entry}
 
 
@@ -83,7 +89,13 @@ def _field(key: Key) -> PaletteField:
 
 #: All kinds of parts, in the order of the tables of a file.
 PALETTE: tuple[PalettePart, ...] = tuple(
-    PalettePart(table=table, title=kind.title, doc=kind.doc, fields=tuple(map(_field, kind.keys)))
+    PalettePart(
+        table=table,
+        title=kind.title,
+        doc=kind.doc,
+        fields=tuple(map(_field, kind.keys)),
+        picks=picks_of(table),
+    )
     for table, kind in PARTS.items()
 )
 
@@ -93,7 +105,7 @@ class _Reader:
     """Reads the fields of one completed form."""
 
     units: TypedUnits
-    typed: Mapping[str, Typed]
+    row: Mapping[str, object]
 
     def entry(self, key: Key, typed: Typed) -> object:
         """The kind of entry of a key."""
@@ -147,7 +159,7 @@ class _Reader:
     def _number(self, key: Key, kind: Number, word: str) -> float | int | str:
         """A number, or otherwise a formula."""
         plain = word.strip().replace("\u2212", "-")
-        given = self.units.number(plain, measured_by(kind, self.typed), key.name)
+        given = self.units.number(plain, measured_by(kind, self.row), key.name)
         try:
             value = float(given)
         except ValueError:

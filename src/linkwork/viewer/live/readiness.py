@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from linkwork.foundation.errors import Problem, key_text
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.part.wheel_pair import ArmPair
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.file_state import Lack, Remedy
 from linkwork.viewer.live.subject import Subject
@@ -23,7 +25,9 @@ def lacks_of(subject: Subject) -> tuple[Lack, ...]:
         return ()
     draft = subject.draft.drawable
     if not subject.readable:
-        return tuple(_of_problem(problem, draft) for problem in subject.problems[:_MOST])
+        return tuple(
+            _of_problem(problem, draft, subject.draft) for problem in subject.problems[:_MOST]
+        )
     if not any(map(len, draft.links.values())):
         text = "Draw the first link: drag from one of its ends to the other."
         return (Lack(message=text, key="", line=None, kind="", name="", remedies=()),)
@@ -33,7 +37,7 @@ def lacks_of(subject: Subject) -> tuple[Lack, ...]:
             continue  # ground is missing
         if problem.key == ("links", GROUND):
             continue
-        found.append(_of_problem(problem, draft))
+        found.append(_of_problem(problem, draft, subject.draft))
     return tuple(found[:_MOST])
 
 
@@ -66,6 +70,8 @@ def _free_ends(draft: Draft) -> tuple[str, ...]:
         # a link held at two points elsewhere needs no third
         if link != GROUND and len(points) - len(own) < 2:
             ends += own if len(points) <= 2 else own[:1]
+    for part in draft.parts:
+        ends += [point for point in part.body if len(carriers[point]) < 2 and point not in held]
     return tuple(dict.fromkeys(ends))
 
 
@@ -76,8 +82,8 @@ def _guided(part: object) -> Iterator[str]:
     yield from getattr(part, "points", None) or ()
 
 
-def _of_problem(problem: Problem, draft: Draft) -> Lack:
-    kind, name = _thing(problem, draft)
+def _of_problem(problem: Problem, draft: Draft, whole: Draft) -> Lack:
+    kind, name = _thing(problem, whole)
     key = key_text(problem.key) if kind == "" or problem.key[0] not in ("points", "links") else name
     return Lack(
         message=problem.message,
@@ -108,11 +114,17 @@ def _remedies(problem: Problem, draft: Draft, kind: str, name: str) -> Iterator[
         yield Remedy(label=f"Remove {name}", edits=(ask.RemovePoint(name=name),))
     if kind == "link" and name in draft.links and len(draft.links[name]) < 2:
         yield Remedy(label=f"Remove {name}", edits=(ask.RemoveLink(name=name),))
+    if kind == "part":
+        edit = ask.RemovePart(name=name, whole=True)
+        yield Remedy(label=f"Remove {name}", edits=(edit,))
     if problem.key[:1] == ("input",) and len(problem.key) <= 2:
         yield from _fixings(draft)
         for drive, one in _drives(draft):
-            edit = ask.SetInput(number=len(draft.inputs), drive=drive, name=one)
-            yield Remedy(label=f"Drive {one}", edits=(edit,))
+            driven = ask.SetInput(number=len(draft.inputs), drive=drive, name=one)
+            yield Remedy(label=f"Drive {one}", edits=(driven,))
+        for wheel in _planetary_wheels(draft):
+            weld = ask.AddPart(table="welds", typed={"links": (GROUND, wheel)})
+            yield Remedy(label=f"Hold {wheel}", edits=(weld,))
 
 
 def _drives(draft: Draft) -> list[tuple[str, str]]:
@@ -123,7 +135,9 @@ def _drives(draft: Draft) -> list[tuple[str, str]]:
     cranks = [
         ("link", link)
         for link, points in draft.links.items()
-        if link != GROUND and len(ground & set(points)) == 1 and len(points) > 1
+        if link != GROUND
+        and len(ground & set(points)) == 1
+        and (len(points) > 1 or link in draft.turning_on_one_point)
     ]
     sliding = [(p.drive, p.label) for p in draft.parts if p.drive and p.label]
     # a crank is short, and moves other links
@@ -132,8 +146,24 @@ def _drives(draft: Draft) -> list[tuple[str, str]]:
     return [pair for pair in (*cranks, *sliding) if pair not in driven][:_MOST_DRIVES]
 
 
+def _planetary_wheels(draft: Draft) -> Iterator[str]:
+    """Wheels about a fixed point in pairs with a moving arm: one of them is usually held."""
+    held = {link for weld in draft.welds for link in weld.links}
+    driven = {which.link for which in draft.inputs}
+    found = {
+        wheel: None
+        for pair in draft.of(ArmPair)
+        if pair.arm != GROUND
+        for wheel, center in zip(pair.wheels, pair.centers, strict=True)
+        if center in draft.links[GROUND] and wheel != GROUND
+    }
+    yield from (wheel for wheel in found if wheel not in held | driven)
+
+
 def _span(draft: Draft, link: str) -> float:
-    """The distance of a link's first two points: cranks are short."""
+    """The distance of a link's first two points: cranks are short; wheels come last."""
+    if len(draft.links[link]) < 2:
+        return math.inf
     first, second = draft.links[link][:2]
     return abs(draft.sketched(second) - draft.sketched(first))
 

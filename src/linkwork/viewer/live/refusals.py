@@ -13,8 +13,8 @@ Refusing = Callable[[Problem], bool]
 
 #: Edits that change numbers or choices, not what there is.
 _OF_NUMBERS = (
-    ask.SetNumber, ask.MovePoint, ask.MovePoints, ask.SetInput, ask.ChooseConfiguration,
-    ask.TracePoint, ask.ChangeUnits,
+    ask.SetNumber, ask.SetPart, ask.MovePoint, ask.MovePoints, ask.SetInput,
+    ask.ChooseConfiguration, ask.TracePoint, ask.ChangeUnits, ask.AddOutput,
 )  # fmt: skip
 
 
@@ -26,6 +26,6 @@ def refusing(edit: ask.Edit) -> Refusing:
     """
     if isinstance(edit, _OF_NUMBERS):
         return lambda problem: True
-    if isinstance(edit, ask.AddPart):
+    if isinstance(edit, ask.AddPart | ask.DrawPart):
         return lambda problem: problem.key[:1] == (edit.table,)
     return lambda problem: False

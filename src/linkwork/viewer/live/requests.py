@@ -1,26 +1,28 @@
 """Requests of the page: one frozen dataclass per request.
 
-The name of a class in snake case is the ``kind`` of its message. ``live`` marks
-intermediate changes of a drag: they are displayed, and become one step of the history with the last
-change, which is not ``live``.
+The name of a class in snake case is the ``kind`` of its message. ``live`` marks intermediate
+changes of a drag: they are displayed, and become one step of the history with the last change.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwork.viewer.live.whole_edits import ChangeUnits, Duplicate, Mirror, Rename
+from linkwork.viewer.live.part_requests import AddPart, DrawPart, Picked, RemovePart, SetPart
+from linkwork.viewer.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
     "EDITS",
     "REQUESTS",
     "AddJoint",
     "AddLink",
+    "AddOutput",
     "AddPart",
     "AddPoint",
     "AssembleAt",
     "ChangeUnits",
     "ChooseConfiguration",
+    "DrawPart",
     "Duplicate",
     "Edit",
     "Export",
@@ -33,6 +35,7 @@ __all__ = [
     "MovePoints",
     "NewtonSteps",
     "OpenExample",
+    "Picked",
     "Question",
     "Redo",
     "Reload",
@@ -47,6 +50,7 @@ __all__ = [
     "SetGround",
     "SetInput",
     "SetNumber",
+    "SetPart",
     "SetSheet",
     "SetText",
     "ShowQuantities",
@@ -61,9 +65,8 @@ __all__ = [
 class SetNumber:
     """Set a number of the mechanism to a value or formula.
 
-    ``name``: as in a family: ``a2``, ``O2 A``, ``B A P``, ``s16.offset``, ``O4.x``; a measured
-    length becomes a given one. A value may have a unit: "3 in". A number replaces a formula only
-    with ``any_formula``.
+    ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a given
+    one. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
     """
 
     name: str
@@ -181,27 +184,6 @@ class RemoveJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AddPart:
-    """Add an entry to a table of parts: sliders, gears, cams, …
-
-    ``typed``: user input by key: text, a number, a formula, true or false; a list of names; a list
-    of lines, each with the numbers or words of one row.
-    """
-
-    table: str
-    typed: dict[str, str | tuple[str, ...]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class RemovePart:
-    """Remove a slider, slot, cylinder, gear, belt, rack, rolling wheel, cam or curve; a weld by the
-    names of its two links.
-    """
-
-    name: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class TracePoint:
     """Show or hide the path of a point."""
 
@@ -231,9 +213,12 @@ Edit = (
     | AddJoint
     | RemoveJoint
     | AddPart
+    | DrawPart
+    | SetPart
     | RemovePart
     | TracePoint
     | ChooseConfiguration
+    | AddOutput
     | ChangeUnits
     | Rename
     | Duplicate

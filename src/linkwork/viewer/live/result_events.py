@@ -24,6 +24,7 @@ from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.exported_file import ExportedFile
 from linkwork.viewer.live.history import History
+from linkwork.viewer.live.part_entries import parts_shown
 from linkwork.viewer.live.readiness import lacks_of
 from linkwork.viewer.live.subject import Subject
 from linkwork.viewer.page_data import PageData
@@ -273,13 +274,6 @@ def _links_of(description: Description) -> tuple[tell.Link, ...]:
     return tuple(tell.Link(name=name, points=tuple(points)) for name, points in links.items())
 
 
-def _parts_of(description: Description) -> tuple[str, ...]:
-    """The names of the parts of a linkage other than points and links."""
-    if not isinstance(description, Draft):
-        return ()
-    return tuple(part.label for part in description.parts)
-
-
 def _drives_of(sheet: EquationSheet | None, description: Description) -> tuple[tell.Drive, ...]:
     """Possible inputs: links, displacements and lengths of a linkage, otherwise any variable."""
     if isinstance(description, Draft):
@@ -330,6 +324,7 @@ def file_state(
     description = subject.description
     sheet = None if subject.solvable is None else subject.solvable.equations()
     kinds = {} if sheet is None else {v.name: v.kind for v in sheet.equations.variables}
+    parts = tuple(parts_shown(description)) if isinstance(description, Draft) else ()
     return tell.FileState(
         file=file,
         title=description.name,
@@ -346,10 +341,12 @@ def file_state(
         inputs=() if sheet is None else _driven_inputs(sheet, description),
         points=_sketched_points(description),
         links=_links_of(description),
-        parts=_parts_of(description),
+        parts=tuple(part.name for part in parts),
+        part_entries=parts,
         drives=_drives_of(sheet, description),
         traceable=tuple(getattr(description, "points", ())),
         traced=description.trace,
+        outputs=tuple(description.outputs),
         equations=() if sheet is None else _loop_texts(sheet),
         lacks=lacks_of(subject),
         readable=subject.readable,

@@ -32,7 +32,9 @@ class Solvable(Protocol):
     def equations(self) -> EquationSheet:
         """The closure equations."""
 
-    def solve(self, at: At = None, *, configuration: str | None = None) -> Position:
+    def solve(
+        self, at: At = None, *, configuration: str | None = None, certify: bool = True
+    ) -> Position:
         """One position."""
 
     def sweep(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.drawing.label_placement import Kept
 from linkwork.foundation.errors import InputError, MechanismError, Problem
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
@@ -57,28 +58,33 @@ class Subject:
         position = None if self.solvable is None else self.solvable.solve()
         return dict(position.points) if position is not None and position.status.ok else {}
 
-    def page(self, size: float) -> PageData | None:
+    def page(
+        self, size: float, kept: Kept | None = None, *, certify: bool = True
+    ) -> PageData | None:
         """The drawing at the start, or as sketched if it cannot be assembled; ``None`` without a
         sketch.
 
-        ``size``: the least length by which symbols are sized.
+        ``size``: the least length by which symbols are sized. ``kept``: places of names and arrows.
+        ``certify``: prove the position.
         """
         if self.solvable is not None:
-            position = self.solvable.solve()
+            position = self.solvable.solve(certify=certify)
             if position.status.ok and position.points:
                 title, units = position.mechanism, position.units
                 found = position.skeleton, position.points
-                return still_page(*found, units=units, title=title, size=size)
+                return still_page(*found, units=units, title=title, size=size, kept=kept)
         if not isinstance(self.description, Draft):
             return None
         draft = self.description.drawable
         places = {name: draft.sketched(name) for name in draft.points}
+        outlines = dict(pair for part in draft.parts for pair in part.sketched_outlines(draft))
         return still_page(
-            Skeleton.of_linkage(draft, {}),
+            Skeleton.of_linkage(draft, outlines),
             {name: (place.real, place.imag) for name, place in places.items()},
             units=Units(angle=draft.angle, length=draft.length),
             title=draft.name,
             size=size,
+            kept=kept,
         )
 
 

@@ -35,7 +35,9 @@ def typescript_types() -> str:
     for message in EVENTS:
         own = [f'kind: "{kind_of(message)}"', "answers: number | null"]
         parts.append(_interface(message, own, asked=False))
-    parts += [_interface(part, [], asked=False) for part in _parts_of_events()]
+    asked = dict.fromkeys(_parts_of(REQUESTS))
+    parts += [_interface(part, [], asked=True) for part in asked]
+    parts += [_interface(part, [], asked=False) for part in _parts_of(EVENTS) if part not in asked]
     unions = (("Edit", EDITS), ("Request", REQUESTS), ("Event", EVENTS))
     # spelled differently from the browser's own Event and Request
     parts += [f"export type Live{name} =\n{_one_of(messages)};\n" for name, messages in unions]
@@ -76,23 +78,23 @@ def _type(kind: Any) -> str:
     raise TypeError(f"{kind} has no type in TypeScript")
 
 
-def _parts_of_events() -> Iterator[type]:
-    """The dataclasses used in events, without duplicates."""
+def _parts_of(messages: tuple[type, ...]) -> Iterator[type]:
+    """The dataclasses used in messages, without duplicates."""
     found: dict[type, None] = {}
 
     def look(kind: Any) -> None:
         if kind is PageData:  # defined in its own module
             return
         if dataclasses.is_dataclass(kind) and isinstance(kind, type):
-            if kind in REQUESTS:
+            if kind in REQUESTS and kind not in messages:
                 return
-            if kind not in EVENTS:
+            if kind not in messages:
                 found[kind] = None
             for inner in typing.get_type_hints(kind).values():
                 look(inner)
         for part in typing.get_args(kind):
             look(part)
 
-    for event in EVENTS:
-        look(event)
+    for message in messages:
+        look(message)
     yield from found

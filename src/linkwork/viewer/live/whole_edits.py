@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ChangeUnits", "Duplicate", "Mirror", "Rename"]
+__all__ = ["AddOutput", "ChangeUnits", "Duplicate", "Mirror", "Rename"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +33,8 @@ class Rename:
 class Duplicate:
     """Copy points and links, with what is between them.
 
-    ``names``: of the copies, by those of points and links; a point that is its own copy is shared.
-    ``places``: of the new points [length]; ``mirrored``: the copy is a mirror image.
+    By the names of points and links: ``names`` of the copies, the same for a point that is shared,
+    and ``places`` of new points [length]. ``mirrored``: the copy is a mirror image.
     """
 
     names: dict[str, str]
@@ -47,3 +47,11 @@ class Mirror:
     """Move points to mirrored places [length]; the dimensions between them stay."""
 
     places: dict[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddOutput:
+    """Add a named formula of results to the file."""
+
+    name: str
+    formula: str

@@ -28,7 +28,7 @@ Events = list[tell.Event]
 
 
 #: Requests that add text: their problems are at lines that the file does not have.
-_ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.Together)
+_ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.DrawPart, ask.Together)
 
 
 class Workbench:
@@ -243,7 +243,8 @@ class Workbench:
         subject = read_subject(text, self._file.name, self._read)
         wrong = [problem for problem in subject.problems if refused(problem)]
         before = self.cycle.subject
-        if wrong and (before.solvable is not None or not set(wrong) <= set(before.problems)):
+        known = {problem.key for problem in before.problems}
+        if wrong and (before.solvable is not None or not {w.key for w in wrong} <= known):
             raise MechanismError(wrong, self._file.name)
         self.cycle.take(subject)
         if live:

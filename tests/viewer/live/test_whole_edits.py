@@ -1,11 +1,14 @@
-"""Numbers typed with units, and other units of the file, on the live page."""
+"""Numbers typed with units, other units and names, copies and outputs on the live page."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import pytest
 
 import linkwork as lw
 from linkwork.viewer.live import events as tell, requests as ask
+from linkwork.viewer.live.palette import part_of
 from linkwork.viewer.live.typed_units import TypedUnits
 from linkwork.viewer.live.workbench import Workbench
 from tests.viewer.live.test_workbench import number, only
@@ -68,6 +71,39 @@ def test_fields_take_units(bench: Workbench) -> None:
     assert "add up to 55.4" in only(told, tell.ProblemsFound).problems[0].message
 
 
+def test_an_output_is_added_or_refused_with_its_problem(bench: Workbench) -> None:
+    told = bench.handle(ask.AddOutput(name="reach", formula="hypot(P.x - A.x, P.y - A.y)"))
+    state = only(told, tell.FileState)
+    assert (state.outputs, state.undo) == (("reach",), "add output reach")
+    told = bench.handle(ask.AddOutput(name="other", formula="hypot(Z.x, 0)"))
+    assert '"Z.x" is not defined' in only(told, tell.ProblemsFound).problems[0].message
+    assert bench.text == state.text
+
+
+def test_selections_are_copied_mirrored_and_renamed_in_one_step(bench: Workbench) -> None:
+    before = bench.text
+    copy = ask.Duplicate(
+        names={"O4": "O4", "B": "C", "rocker": "rocker2"}, places={"B": (160.0, -60.0)}
+    )
+    state = only(bench.handle(copy), tell.FileState)
+    assert state.undo == "duplicate O4, B, rocker"
+    assert 'rocker2 = ["O4", "C"]' in state.text
+    assert '"O4 C" = 80' in state.text
+    told = bench.handle(ask.Duplicate(names={"B": "crank"}, places={"B": (0.0, 0.0)}))
+    assert '"crank" is already in the file' in only(told, tell.Refused).message
+    state = only(bench.handle(ask.Undo()), tell.FileState)
+    assert state.text == before
+    state = only(bench.handle(ask.Rename(of="link", name="rocker", new="lever")), tell.FileState)
+    assert (state.undo, "lever" in [link.name for link in state.links]) == (
+        "rename rocker as lever",
+        True,
+    )
+    places = {name: (-x, y) for name, (x, y) in bench.cycle.subject.places().items()}
+    told = bench.handle(ask.Mirror(places=places))
+    assert only(told, tell.FileState).undo.startswith("mirror ")
+    assert only(told, tell.MotionFound).certified == 361
+
+
 def test_another_unit_is_one_step(bench: Workbench) -> None:
     before = bench.text
     state = only(bench.handle(ask.ChangeUnits(length="in", convert=True)), tell.FileState)
@@ -77,3 +113,14 @@ def test_another_unit_is_one_step(bench: Workbench) -> None:
     assert state.text == before
     state = only(bench.handle(ask.ChangeUnits(angle="rad", convert=False)), tell.FileState)
     assert (state.angle_unit, state.undo) == ("rad", "relabel as rad")
+
+
+def test_the_lift_of_a_swinging_follower_is_an_angle() -> None:
+    row = {"link": "arm"}
+    typed: dict[str, str | tuple[str, ...]] = {
+        "segments": ("dwell, 0.25 turn", "3-4-5, 1, 0.5 rad")
+    }
+    found: Any = part_of("cams", typed, MM, row)["segments"]
+    assert [segment.get("lift") for segment in found] == [None, pytest.approx(28.64788975654116)]
+    with pytest.raises(lw.InputError, match=r'lift is a length, but "0\.5 rad" is an angle'):
+        part_of("cams", typed, MM)
