@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,7 +18,12 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
-from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
+from linkwork.results.quantities.definition import (
+    UNKNOWN,
+    MechanismNames,
+    RowQuantity,
+    Solved,
+)
 from linkwork.results.quantity import Kind
 
 __all__ = ["force_quantities"]
@@ -49,24 +55,51 @@ def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
     )
 
 
+class SolvedDesign(Solved, Protocol):
+    """Solved positions of one design of a family, (R,)."""
+
+    @property
+    def model(self) -> Model:
+        """A model with the numbers of the design."""
+
+
+@runtime_checkable
+class SolvedDesigns(Solved, Protocol):
+    """Solved positions of D designs, (R, D)."""
+
+    def apart(self) -> Iterator[SolvedDesign | None]:
+        """Every design by itself; ``None`` for one without positions."""
+
+
 class _Solver:
     """Solves the forces of a motion once for all its quantities."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.known: WeakKeyDictionary[Solved, ForceRows] = WeakKeyDictionary()
+        self.families: WeakKeyDictionary[SolvedDesigns, list[ForceRows | None]] = (
+            WeakKeyDictionary()
+        )
 
     def __getstate__(self) -> Model:
         return self.model
 
     def __setstate__(self, model: Model) -> None:
-        self.model, self.known = model, WeakKeyDictionary()
+        self.__init__(model)  # type: ignore[misc]  # caches are not kept
 
     def forces(self, solved: Solved) -> ForceRows:
         """The forces of solved positions."""
         if solved not in self.known:
             self.known[solved] = solve_forces(self.model, solved)
         return self.known[solved]
+
+    def designs(self, solved: SolvedDesigns) -> list[ForceRows | None]:
+        """The forces of every design of a family."""
+        if solved not in self.families:
+            self.families[solved] = [
+                None if own is None else solve_forces(own.model, own) for own in solved.apart()
+            ]
+        return self.families[solved]
 
 
 @dataclass(frozen=True)
@@ -87,10 +120,18 @@ class _Evaluation:
     name: str
 
     def __call__(self, names: MechanismNames, solved: Solved, part: str) -> Jet:
-        points = names.points
-        shape = np.shape(solved.place(next(iter(points))).v)
-        value = self.solver.forces(solved).values[self.name].value
-        return Jet(value.reshape(shape), UNKNOWN, UNKNOWN)
+        places = solved.place(names.points[0]).v
+        if not isinstance(places, np.ndarray | np.generic):
+            raise TypeError("forces are computed from arrays, and cannot be recorded")
+        shape = places.shape
+        if isinstance(solved, SolvedDesigns):
+            value = np.full(shape, np.nan)
+            for k, rows in enumerate(self.solver.designs(solved)):
+                if rows is not None:
+                    value[:, k] = rows.values[self.name].value
+        else:
+            value = self.solver.forces(solved).values[self.name].value.reshape(shape)
+        return Jet(value, UNKNOWN, UNKNOWN)
 
 
 def _check_formulas(model: Model) -> None:
