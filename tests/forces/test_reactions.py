@@ -263,3 +263,37 @@ def test_wrong_loads_are_refused_with_their_key(changes: dict[str, object], mess
     with pytest.raises(MechanismError) as refused:
         lw.linkage(**SLIDER_CRANK, inputs=lw.Input(link="crank"), **changes)
     assert message in str(refused.value)
+
+
+def test_loops_that_read_as_a_linkage_have_its_reactions() -> None:
+    masses = {
+        "crank": lw.Mass(mass=1, center=(3, 1), inertia=5),
+        "rod": lw.Mass(mass=2, center=(30, 4), inertia=50),
+    }
+    given = {
+        "masses": masses,
+        "gravity": lw.Gravity(),
+        "loads": [lw.Load(point="E", force=(-20, 5))],
+    }
+    loops = lw.example("rapier-drive").changed(**given).forces(at=50)
+    links = lw.example("rapier-drive-links").changed(**given).forces(at=50)
+    assert loops["θ12.effort"] == pytest.approx(links["crank.effort"], rel=1e-10)
+    assert loops["disagreement"] < 1e-10
+    for pin in ("A0", "A", "B", "C", "C0", "D"):
+        for axis in "xy":
+            name = f"{pin}.force.{axis}"
+            assert loops[name] == pytest.approx(links[name], abs=1e-10)
+
+
+def test_a_family_has_the_forces_of_its_designs() -> None:
+    press = lw.example("crank-press")
+    efforts = press.family({"O A": [55.0, 60.0]}).sweep()["crank.effort"]
+    for k, length in enumerate((55.0, 60.0)):
+        own = np.asarray(press.with_dimensions({"O A": length}).forces()["crank.effort"])
+        assert efforts[k] == pytest.approx(own, rel=1e-9, abs=1e-6)
+
+
+def test_an_inversion_has_no_loads() -> None:
+    inverted = lw.example("crank-press").inversion("rod")
+    assert not inverted.description.masses
+    assert not inverted.description.loads

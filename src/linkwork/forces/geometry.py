@@ -103,7 +103,7 @@ class Geometry:
         return self.place(self.links[link][0]) + _times(self.direction(link), place)
 
     @cached_property
-    def _variables(self) -> Array:
+    def variables(self) -> Array:
         """All variables, internal units, (B, N)."""
         named = (self.own(variable.name).v for variable in self.model.equations.variables)
         return np.stack(list(named), axis=1)
@@ -111,7 +111,7 @@ class Geometry:
     @cached_property
     def _partials(self) -> tuple[ComplexArray, Array]:
         """Derivatives with respect to each input: points (p, B, P), variables (p, B, N)."""
-        compiled, v = self.model.compiled, self._variables
+        compiled, v = self.model.compiled, self.variables
         units = np.eye(len(self.model.equations.inputs))
         rates = np.stack([compiled.solver.rates(v, unit).first for unit in units])
         places = [compiled.points.jet(v, rate, np.zeros_like(v))[1] for rate in rates]

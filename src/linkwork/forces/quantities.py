@@ -38,9 +38,9 @@ def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
         For loads that use unknown quantities.
     """
     _check_formulas(model)
-    v = model.equations.start[None, :]
-    still = np.zeros_like(v)
     # the names only: at the guess, which need not be a position
+    v = model.compiled.solver.solve(model.equations.start[None, :]).v
+    still = np.zeros_like(v)
     guess = RowValues(model, v, still, still, np.ones(1, dtype=bool))
     solved = _Solver(model)
     return tuple(

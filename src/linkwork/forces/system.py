@@ -4,7 +4,7 @@ other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,6 +17,7 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_parts
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import join_pins, read_first_links
+from linkwork.forces.read_bodies import read_geometry
 from linkwork.forces.virtual_work import efforts, energies
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
 from linkwork.mechanism.linkage import Linkage
@@ -88,19 +89,21 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     assert isinstance(description, LoadedBodies)
     geometry = Geometry(model, solved)
     applied = AppliedLoads(geometry, model.speed or 0.0)
-    applied.weigh(description)
     bodies = None
     with np.errstate(all="ignore"):
+        applied.weigh(description)
         if isinstance(description, Linkage):
             bodies = _free_bodies(description, geometry, applied)
         elif isinstance(description, Loops):
             for load in description.loads:
                 apply_load(load, applied)
+            bodies = _read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
         if bodies is not None:
             _add_reactions(found, bodies)
-        _add_efforts(found, by_work, largest)
+        drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
+        _add_efforts(found, by_work, largest, drives)
         _add_totals(found)
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
@@ -136,11 +139,30 @@ def _free_bodies(linkage: Linkage, geometry: Geometry, applied: AppliedLoads) ->
     return bodies
 
 
+def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
+    """The free bodies of loops that read as a linkage with everything that is loaded."""
+    links = {body.link for body in applied.masses} | {link for link, _ in applied.torques}
+    links |= {link for _, _, link in applied.forces if link is not None}
+    own = read_geometry(geometry, links)
+    if own is None:
+        return None
+    linkage = own.model.description
+    assert isinstance(linkage, Linkage)
+    for k, (point, force, link) in enumerate(applied.forces):
+        if link is None and point not in linkage.points:
+            # only pins are points of what was read: the link of the file that carries it
+            carrier = next((name for name, on in geometry.links.items() if point in on), "")
+            if carrier not in linkage.links:
+                return None
+            applied.forces[k] = (point, force, carrier)
+    return _free_bodies(linkage, own, applied)
+
+
 def _known_acts(bodies: FreeBodies) -> list[Act]:
     """Everything that acts on the bodies and is known."""
     geometry, applied = bodies.geometry, bodies.applied
     acts = [
-        Act(bodies.link(link) if link else bodies.at(point), geometry.place(point).v, force)
+        Act(bodies.link(link) if link else bodies.at(point), applied.geometry.place(point).v, force)
         for point, force, link in applied.forces
     ]
     none = np.zeros(geometry.rows, dtype=complex)
@@ -194,14 +216,17 @@ def _value(reading: Reading, r: Array) -> tuple[Array, Array]:
     return value, factors
 
 
-def _add_efforts(found: _Solution, by_work: Array, largest: Array) -> None:
+def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Sequence[str]) -> None:
     """Efforts by virtual work, and their largest difference from those of the free bodies."""
     geometry = found.geometry
     worst = np.zeros(geometry.rows)
-    power = np.zeros(geometry.rows)
+    power, checked = np.zeros(geometry.rows), False
     for k, variable in enumerate(geometry.model.equations.inputs):
         name = effort_name(variable.name)
-        if name in found.values:
+        if drives:  # of the linkage that loops read as, under the name of the loops' variable
+            found.values[name] = found.values.pop(drives[k])
+        checked = name in found.values
+        if checked:
             # the largest term may be one that several terms only approach
             size = np.where(largest[k] > 0.0, largest[k], 1.0)
             worst = np.fmax(worst, np.abs(found.values[name].value - by_work[k]) / size)
@@ -210,7 +235,8 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array) -> None:
         power += by_work[k] * geometry.input_rates[k] * found.applied.rate
     if not len(by_work):
         return
-    found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
+    if checked:
+        found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
     if found.applied.rate:
         found.add("power", Kind.POWER, "power of all inputs", power)
 
