@@ -25,7 +25,7 @@ export class Charts {
     names: readonly string[],
     private readonly goTo: (index: number) => void,
   ) {
-    this.element = html("div", { class: "lw-charts" }, parent);
+    this.element = html("div", { class: "lw-charts", hidden: "" }, parent);
     this.add = html("button", { type: "button", class: "lw-small lw-chart-add" }, this.element, "+ chart");
     this.add.addEventListener("click", () => {
       const [first] = this.list;
@@ -38,6 +38,7 @@ export class Charts {
   show(view: MotionView, past: MotionView | null, steady = false): void {
     this.view = view;
     this.past = past;
+    this.element.hidden = false;
     for (const chart of this.list) chart.show(view, past, steady);
     if (!steady) this.changed();
   }

@@ -371,6 +371,10 @@ class Page implements Mounted {
     themeButton(corner, this.root);
     this.presentation = new Presentation(this.root, corner, this.gone.signal);
     declareKeys("Motion", this.commands);
+    if (this.hooks.embedded) {
+      this.presentation.button.remove(); // a cell of a notebook is not the page
+      return head;
+    }
     const keys = html("button", { type: "button", class: "lw-keys-button", "aria-label": "Keys", title: "All keys (?)" }, corner, "?");
     keys.addEventListener("click", () => showKeys(this.root));
     return head;
@@ -443,7 +447,7 @@ class Page implements Mounted {
     if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY")) return;
     if (target.closest("dialog")) return;
     if (this.presentation.on && press(this.presentation.commands, event)) return;
-    press([...this.commands, ...this.presentation.commands], event);
+    press([...this.commands, ...(this.hooks.embedded ? [] : this.presentation.commands)], event);
   }
 
   private readonly commands: readonly Command[] = [
@@ -454,7 +458,7 @@ class Page implements Mounted {
     { keys: ["End"], does: "The last position", act: () => this.hold(this.view.order.length - 1) },
     { keys: ["PageDown", "PageUp"], does: "The next circuit, or the one before", act: (event) => this.neighbour(event.key === "PageDown" ? 1 : -1) },
     { keys: ["."], does: "Say the position (screen readers)", act: () => this.sayAgain() },
-    { keys: ["?"], does: "All keys", act: () => showKeys(this.root) },
+    { keys: ["?"], does: "All keys", when: () => !this.hooks.embedded, act: () => showKeys(this.root) },
   ];
 
   private neighbour(by: number): void {

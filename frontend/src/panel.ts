@@ -73,7 +73,7 @@ function missing(view: MotionView, name: string): Plottable {
 }
 
 function abscissaOf(view: MotionView, over: string): Plottable {
-  return quantityOf(view, over || view.input.name) ?? quantityOf(view, view.input.name)!;
+  return quantityOf(view, over || view.input.name) ?? quantityOf(view, view.input.name) ?? missing(view, over);
 }
 
 /** The extents of all values of a group, of this design and the one before. */

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { lineOf } from "../src/live/draw/dimension_lines";
 import { angleAt, outputOf, told } from "../src/live/draw/measuring";
-import { scaled } from "../src/live/draw/photograph";
+import { growth, scaled } from "../src/live/draw/photograph";
 
 const [A, B, C] = [{ at: [0, 0], point: "A" }, { at: [30, 40], point: "B" }, { at: [30, 90], point: "C" }] as const;
 
@@ -34,6 +34,8 @@ describe("a dimension line", () => {
 describe("a photograph", () => {
   it("is scaled by one known length, whose first end stays", () => {
     const picture = { data: "", x: 0, y: 10, width: 100, height: 50, opacity: 1 };
+    expect(growth({ A: [0, 0], B: [30, 40] }, { A: [0, 0], B: [3, 4] })).toBeCloseTo(0.1, 15);
+    expect(growth({}, {})).toBe(1);
     expect(scaled(picture, [10, 10], [20, 10], 5)).toEqual({ ...picture, x: 5, y: 10, width: 50, height: 25 });
   });
 });

@@ -47,6 +47,14 @@ const wanted = (view: MotionView, names: readonly string[], over = ""): Wanted =
   view, past: null, names, over, width: 400, height: 200, before: null,
 });
 
+describe("a design before that did not move", () => {
+  it("is no curve of a chart", () => {
+    const panel = panelOf({ ...wanted(motion(), ["rocker"]), past: motion({ columns: [] }) });
+    expect(panel.lines[0]).toMatch(/^M/);
+    expect(panel.past).toEqual([""]);
+  });
+});
+
 describe("quantities of a page", () => {
   const view = motion();
 

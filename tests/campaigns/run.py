@@ -23,6 +23,7 @@ from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.links import link_campaign
+from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.steps import judge_steps
@@ -121,6 +122,7 @@ WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = 
     "study": (study_campaign, 1_000_000),
     "workbooks": (workbook_campaign, 100),
     "fuzz": (fuzz_campaign, 100_000),
+    "monkey": (monkey_campaign, 10_000),
 }
 
 

@@ -191,3 +191,13 @@ def test_a_file_names_the_branch_to_start_from() -> None:
     with pytest.raises(lw.MechanismFileError) as caught:
         lw.loads(f'configuration = "circuit 9"\n{text}', "loom.toml")
     assert "line 1  configuration  there is no" in str(caught.value)
+
+
+def test_a_crank_alone_has_one_circuit() -> None:
+    crank = lw.loads(
+        'format = 1\n[points]\nO = [0, 0]\nA = [3, 4]\n[links]\nground = ["O"]\n'
+        'crank = ["O", "A"]\n[input]\nlink = "crank"\n'
+    )
+    [circuit] = crank.circuits()
+    assert circuit.certified
+    assert circuit.smallest_singular_value == np.inf

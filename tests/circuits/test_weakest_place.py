@@ -14,6 +14,7 @@ from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.motion.leading_input import leading_input
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from tests.oracles.four_bar import FourBar, random_crank_rockers
+from tests.thinned import thinned
 
 Array = npt.NDArray[np.float64]
 LOOP = {"1": "b*e^(i*t) + c*e^(i*p) = a + d*e^(i*q)"}
@@ -88,7 +89,7 @@ def test_near_a_change_point_the_smallest_value_is_the_root_of_what_is_missing(
         assert abs(math.remainder(circuit.weakest - math.pi, 2 * math.pi)) < 1e-12
 
 
-@pytest.mark.parametrize("name", ["rapier-drive", "stephenson-far-crank", "jansen-leg"])
+@pytest.mark.parametrize("name", thinned(["rapier-drive", "stephenson-far-crank", "jansen-leg"], 3))
 def test_no_sample_of_a_fine_table_is_weaker(name: str) -> None:
     mechanism = lw.example(name)
     motion = mechanism.sweep(start=0, stop=360, step=0.02, certify=False)

@@ -202,7 +202,7 @@ COSTLY = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", thinned(examples(), 12))
+@pytest.mark.parametrize("name", thinned(examples(), 24))
 def test_every_page_of_the_library_fits_eighty_columns(run: Run, folder: Path, name: str) -> None:
     assert run("examples", name, "-o", "mechanism.toml").exit_code == 0
     for command, *options in PAGES:

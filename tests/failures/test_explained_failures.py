@@ -140,6 +140,7 @@ def just_closes(mechanism: lw.Mechanism, at: float, name: str, needed: float, op
         assert ok is exists
 
 
+@pytest.mark.extended
 def test_lengths_that_close_coupled_loops_were_solved_again() -> None:
     mechanism = lw.example("rapier-drive-limited")
     position = mechanism.solve(at=170, from_guess=True)

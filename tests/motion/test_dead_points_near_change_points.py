@@ -10,7 +10,6 @@ import pytest
 
 import linkwork as lw
 from tests.campaigns.dead_points import NearChangePoint, dead_point_campaign
-from tests.thinned import thinned
 
 #: A change-point margin of 4e-8: the branch turns back within a thousandth of a radian.
 BAR = NearChangePoint(
@@ -58,7 +57,7 @@ NEAREST = {
 
 
 @pytest.mark.parametrize(("bar", "low", "high"), NEAREST.values(), ids=NEAREST)
-@pytest.mark.parametrize("certify", [True, False])
+@pytest.mark.parametrize("certify", [True, pytest.param(False, marks=pytest.mark.extended)])
 def test_branches_that_nearly_cross_are_told_apart(
     bar: NearChangePoint, low: float, high: float, certify: bool
 ) -> None:
@@ -88,7 +87,8 @@ def test_a_circuit_that_begins_next_to_its_dead_point_closes(gap: float) -> None
     assert found == pytest.approx([low, high], abs=1e-15, rel=0)
 
 
-@pytest.mark.parametrize("part", thinned(range(2)))
+@pytest.mark.extended
+@pytest.mark.parametrize("part", range(2))
 def test_dead_points_of_random_four_bars_are_exact(part: int) -> None:
     counts, false = dead_point_campaign(part, 3)
     assert not false

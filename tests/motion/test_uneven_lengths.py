@@ -84,6 +84,7 @@ def test_dead_points_between_long_links_are_located_and_proved(ratio: float, sha
     )
 
 
+@pytest.mark.extended
 def test_a_proof_that_would_take_too_long_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     # the long links turn together: each step of the proof is as short as their ratio
     monkeypatch.setattr(path_proof, "_MOST", 3000)  # a tenth of what proofs are allowed

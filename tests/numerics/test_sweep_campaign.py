@@ -21,6 +21,7 @@ def test_random_mechanisms_keep_their_branch_at_steps_of_1_10_and_60_degrees(par
     assert tally.counts["row NO_POSITION"] == tally.counts["rows"] - tally.counts["rows found"]
 
 
+@pytest.mark.extended
 def test_plain_newton_changes_branch_where_certified_sweeps_do_not() -> None:
     # 60° steps: the campaign's numbers 12 to 17 modulo 18
     numbers = [k for k in range(270) if k % 18 in (12, 13, 15, 16)]

@@ -26,6 +26,7 @@ def page(open_page: Open, motion: lw.Motion) -> Any:
     return open_page({"motion": motion}, equations=lw.example("four-bar").equations().mathml())
 
 
+@pytest.mark.extended
 def test_the_drawing_has_words_that_follow_it(page: Any) -> None:
     page.get_by_text("In words").click()
     words = page.locator(".lw-words")
@@ -37,6 +38,7 @@ def test_the_drawing_has_words_that_follow_it(page: Any) -> None:
     assert "coupler at 18.3" not in words.text_content()
 
 
+@pytest.mark.extended
 def test_a_key_says_the_position_again(page: Any) -> None:
     status = page.locator(".lw-unseen")
     page.keyboard.press(".")
@@ -46,6 +48,7 @@ def test_a_key_says_the_position_again(page: Any) -> None:
     status.filter(has_text="crank").wait_for(state="attached")
 
 
+@pytest.mark.extended
 def test_all_keys_are_listed_and_the_focus_returns(page: Any) -> None:
     button = page.get_by_role("button", name="Keys")
     button.focus()
@@ -64,6 +67,7 @@ def test_all_keys_are_listed_and_the_focus_returns(page: Any) -> None:
     assert button.evaluate("element => element === document.activeElement")
 
 
+@pytest.mark.extended
 def test_a_presentation_is_large_and_ends_with_escape(page: Any) -> None:
     drawing = page.locator(".lw-drawing")
     before = drawing.bounding_box()
@@ -79,6 +83,7 @@ def test_a_presentation_is_large_and_ends_with_escape(page: Any) -> None:
     assert page.locator(".lw-charts").is_visible()
 
 
+@pytest.mark.extended
 def test_print_has_charts_with_their_titles_and_no_controls(page: Any) -> None:
     page.emulate_media(media="print", color_scheme="dark")
     page.locator(".lw").evaluate("element => (element.dataset.theme = 'dark')")

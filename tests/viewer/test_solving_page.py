@@ -18,8 +18,9 @@ import linkwork as lw
 from linkwork.batch import record_design
 from linkwork.batch.printed_solver import print_solver
 from linkwork.cli.main import linkwork
+from linkwork.foundation.errors import InputError
 from linkwork.kernels.program.languages import PYTHON, C
-from linkwork.mechanism.varied_number import with_numbers
+from linkwork.mechanism.varied_number import varied_numbers, with_numbers
 from tests.viewer.printed_march import PlainMarch, imported
 
 CASES = {
@@ -31,6 +32,10 @@ CASES = {
     "whitworth": (["r", "d"], [[110.0, 62.0]]),
     "ackermann-steering": (["arm"], []),
     "scissor-lift": (["l"], []),
+    "five-bar-robot": (["O1 E1", "O2 E2"], []),
+    "excavator": (["O B", "O N"], []),
+    "kempe-translator": (["A C", "B D"], []),
+    "three-rpr": (["B1 B2", "B2 B3"], []),
 }
 
 
@@ -78,7 +83,7 @@ def some(names: Iterable[str], *first: str) -> list[Any]:
     return [name if name in first else pytest.param(name, marks=extended) for name in names]
 
 
-@pytest.mark.parametrize("name", some(CASES, "four-bar", "slider-crank"))
+@pytest.mark.parametrize("name", some(CASES, "four-bar", "slider-crank", "five-bar-robot"))
 def test_the_page_solves_designs_as_python_does(name: str, open_solving: Any) -> None:
     names, given = CASES[name]
     mechanism = lw.example(name)
@@ -309,3 +314,17 @@ def test_the_command_writes_a_page_with_sliders(tmp_path: Path) -> None:
         done = CliRunner().invoke(linkwork, [*command, *more], prog_name="linkwork")
         assert done.exit_code != 0
         assert words in done.output
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("cam-roller-follower", "has cams, curves or formulas among its equations"),
+        ("scissor-three-bars", "has redundant links"),
+    ],
+)
+def test_a_page_that_cannot_solve_says_why(name: str, reason: str) -> None:
+    mechanism = lw.example(name)
+    own = next(iter(varied_numbers(mechanism.description))).name
+    with pytest.raises(InputError, match=reason):
+        record_design(mechanism.model, [own])

@@ -380,9 +380,11 @@ export class LivePage {
   }
 
   private open(event: CannotClose): void {
-    this.still(event.page, event.page === null ? event.message : "");
+    // while the sketch is edited it stays: the points are dragged where they are in the file
+    const drawn = this.editor.edited && this.sketched !== null;
+    if (!drawn) this.still(event.page, event.page === null ? event.message : "");
     if (event.page === null) return;
-    this.gaps(event);
+    if (!drawn) this.gaps(event);
     const { text, remedies } = closing(event, this.file!);
     const choices = remedies.map(({ label, title, request }) => [label, title, () => this.send(request)] as const);
     this.notices.open(text, choices);

@@ -85,10 +85,7 @@ def record_design(model: Model, names: Sequence[str]) -> RecordedDesign:
             raise InputError(f'"{names[k]}" is named twice: give each number once')
     path = TablePath.of(model)
     if path is None:
-        raise InputError(
-            f"{description.name} has cams, curves, redundant links, formulas as equations or no "
-            "input: a page can solve mechanisms of loops with inputs only"
-        )
+        raise InputError(f"{description.name} {_why_unserved(model)}: a page cannot solve it")
     base, together = family_base(model, quantities)
     if not together:
         raise InputError(
@@ -103,15 +100,26 @@ def record_design(model: Model, names: Sequence[str]) -> RecordedDesign:
     start = [parts_of(x)[0] for x in found.start]
     if description.configuration:
         start = [float(x) for x in model.equations.start]
+    if not _on_path(path, start[n:]):
+        start = _first_row(base, path)
     parts |= {f"guess{k}": start[k] for k in range(n)}
     parts["start"] = start[n + path.lead]
     parts |= _inputs(path, rec, parts["start"])
-    _check_start(path, start[n:])
     rec.write("fits", rec.all_of(recording.conditions) if recording.conditions else 1.0)
     for name, part in parts.items():
         if isinstance(part, Value):
             rec.write(name, part)
     return RecordedDesign(base=base, path=path, quantities=quantities, recorder=rec, parts=parts)
+
+
+def _why_unserved(model: Model) -> str:
+    """The reason why a mechanism has no line of inputs that kernels follow."""
+    if not model.equations.inputs:
+        return "has no input, so nothing moves"
+    if model.equations.redundant:
+        names = ", ".join(dict.fromkeys(part.link for part in model.equations.redundant))
+        return f"has redundant links ({names}), which fit no other lengths than their own"
+    return "has cams, curves or formulas among its equations, and the printed solver has loops only"
 
 
 def _changed(model: Model, quantity: VariedNumber) -> Motion | None:
@@ -201,17 +209,31 @@ def _inputs(path: TablePath, rec: Recorder, start: Part) -> dict[str, Part]:
     return parts
 
 
-def _check_start(path: TablePath, inputs: Sequence[Part]) -> None:
-    """The march begins on the line of the table's inputs."""
+def _on_path(path: TablePath, inputs: Sequence[Part]) -> bool:
+    """Whether inputs are on the line of the table's, where the march begins."""
     if len(inputs) == 1:
-        return
-    plain = [x for x in inputs if not isinstance(x, Value)]
-    away = np.inf
-    if len(plain) == len(inputs):
-        own = np.array(plain)
-        away = float(np.abs(own - (path.origin + path.rate * own[path.lead])).max())
-    if not away <= _ON_PATH * max(1.0, float(np.abs(path.origin).max())):
+        return True
+    own = np.array([x for x in inputs if not isinstance(x, Value)])
+    if len(own) < len(inputs):
+        return False
+    away = float(np.abs(own - (path.origin + path.rate * own[path.lead])).max())
+    return away <= _ON_PATH * max(1.0, float(np.abs(path.origin).max()))
+
+
+def _first_row(model: Model, path: TablePath) -> list[Part]:
+    """Unknowns and inputs in the first row of the table that has a position.
+
+    Raises
+    ------
+    InputError
+        If no row has one.
+    """
+    motion = sweep(model)
+    if not motion.found.any():
         raise InputError(
-            f"the sketch of {path.model.description.name} is not at inputs of its table: a page "
-            "that solves starts from there"
+            f"no row of the table of {model.description.name} has a position: a page that solves "
+            "starts from one"
         )
+    row = int(np.flatnonzero(motion.found)[0])
+    lead = float(model.rows[row, path.lead])
+    return [*map(float, motion.q[row]), *map(float, path.origin + path.rate * lead)]

@@ -15,7 +15,7 @@ from linkwork.viewer.page_data import AnswerData, QuestionData
 
 __all__ = ["answers_of", "questions_of"]
 
-_SAME = 1e-9  # of the larger number: input values that are one row
+_ONE_ROW = 1e-9  # of the larger number: input values that are one row
 
 
 def questions_of(motion: Motion) -> Iterator[QuestionData]:
@@ -71,7 +71,7 @@ def _values(motion: Motion, question: Question) -> tuple[float, ...]:
         lead = motion.inputs[next(iter(motion.inputs))]
         off = np.where(motion.found, np.abs(lead - question.at), np.inf)
         row = int(off.argmin())
-        there = off[row] <= _SAME * max(1.0, abs(question.at))
+        there = off[row] <= _ONE_ROW * max(1.0, abs(question.at))
         return (float(motion[answer][row]),) if there else ()
     except InputError:
         return ()

@@ -7,7 +7,6 @@ import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
 import { clean } from "../ranges";
-import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
 import { KeyPointer } from "./key_pointer";
@@ -17,6 +16,8 @@ import { Picking } from "./picking";
 import { symbolsAt, type Under } from "./symbols";
 import type { Expected, Held } from "./selected";
 import { ToolBar, TOOLS } from "./tool_bar";
+import { removed, shifted, toolEdits } from "./tool_edits";
+import { Touches, wheeled } from "./touches";
 
 /** Attraction of points and links [px]: of a mouse, of a finger. */
 const REACH = { mouse: 12, touch: 24 };
@@ -64,8 +65,7 @@ export class Editor {
   private expected: Expected | null = null;
   /** Called after the drawing has been drawn again. */
   redrawn: () => void = () => {};
-  private panned = false;
-  private readonly touches = new Map<number, Place>();
+  private readonly touches = new Touches();
   private gone = new AbortController();
 
   constructor(
@@ -118,7 +118,7 @@ export class Editor {
       ["pointercancel", (event) => this.cancel(event)],
     ];
     for (const [kind, act] of canvasEvents) drawing.element.addEventListener(kind, (event) => act(event as PointerEvent), options);
-    drawing.element.addEventListener("wheel", (event) => this.wheel(event), { ...options, passive: false });
+    drawing.element.addEventListener("wheel", (event) => wheeled(event, drawing), { ...options, passive: false });
     document.addEventListener("keydown", (event) => this.key(event), options);
     drawing.viewed = () => {
       if (this.gesture === null) this.overlay.clear();
@@ -235,21 +235,21 @@ export class Editor {
   }
 
   private down(event: PointerEvent): void {
-    this.touches.set(event.pointerId, [event.clientX, event.clientY]);
-    if (this.touches.size === 2) {
+    this.touches.begin(event);
+    if (this.touches.count === 2) {
       this.gesture = null;
       this.overlay.clear();
     }
     const panned = event.button === 1 || (this.tool === "move" && this.isFree(event));
-    if (!this.edited && !panned && this.touches.size < 2) return;
+    if (!this.edited && !panned && this.touches.count < 2) return;
     event.stopImmediatePropagation();
     event.preventDefault();
     if (event.isTrusted) {
       (document.activeElement as HTMLElement | null)?.blur?.();
       this.page!.places.drawing.element.setPointerCapture(event.pointerId);
     }
-    this.panned = panned;
-    if (panned || this.touches.size > 1 || event.button !== 0) return;
+    this.touches.panned = panned;
+    if (panned || this.touches.count > 1 || event.button !== 0) return;
     const [at, reach] = [this.place(event), this.reach(event)];
     const start = this.anchor(at, reach);
     let drag: Places | null = null;
@@ -270,9 +270,7 @@ export class Editor {
   }
 
   private move(event: PointerEvent): void {
-    const before = this.touches.get(event.pointerId);
-    if (before && this.touched(event, before)) return;
-    if (!this.edited || this.page === null) return;
+    if (this.page === null || this.touches.moved(event, this.page.places.drawing) || !this.edited) return;
     event.stopImmediatePropagation();
     const { pixel } = this.page.places.drawing;
     const at = this.place(event);
@@ -285,23 +283,6 @@ export class Editor {
     if (!gesture.moved) return;
     if (this.tool === "select") this.drag(gesture, at, true);
     else if (this.picking || ["link", "slider", "point"].includes(this.tool)) this.draft(gesture, at, pixel);
-  }
-
-  /** Pan with one pointer that holds nothing, zoom with two; whether that was done. */
-  private touched(event: PointerEvent, before: Place): boolean {
-    const now: Place = [event.clientX, event.clientY];
-    const { drawing } = this.page!.places;
-    if (this.touches.size === 2) {
-      const other = [...this.touches].find(([id]) => id !== event.pointerId)![1];
-      const centre = drawing.placeAt({ clientX: (now[0] + other[0]) / 2, clientY: (now[1] + other[1]) / 2 });
-      drawing.zoom(distance(now, other) / Math.max(1, distance(before, other)), centre);
-      drawing.pan((-(now[0] - before[0]) / 2) * drawing.pixel, ((now[1] - before[1]) / 2) * drawing.pixel);
-    } else if (this.panned) {
-      drawing.pan(-(now[0] - before[0]) * drawing.pixel, (now[1] - before[1]) * drawing.pixel);
-    } else return false;
-    this.touches.set(event.pointerId, now);
-    event.stopImmediatePropagation();
-    return true;
   }
 
   private hover(at: Place, reach: number, pixel: number): void {
@@ -360,8 +341,7 @@ export class Editor {
   }
 
   private up(event: PointerEvent): void {
-    this.touches.delete(event.pointerId);
-    this.panned = false;
+    this.touches.end(event);
     const gesture = this.gesture;
     this.gesture = null;
     this.overlay.clear();
@@ -382,9 +362,7 @@ export class Editor {
   /** The edit made by a click or a drag with a tool. */
   private made(gesture: Gesture, at: Place): void {
     const { start, reach, moved } = gesture;
-    const file = this.file!;
     const end = this.end(gesture, at, reach);
-    const known = { points: file.points, links: file.links, parts: file.parts };
     if (this.picking) {
       this.select(null);
       const possible = this.picking.pick(start, moved ? end : null);
@@ -392,36 +370,9 @@ export class Editor {
       this.redraw();
       return;
     }
-    const send = (edits: readonly LiveEdit[] | null): void => {
-      if (edits?.length) this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
-    };
-    switch (this.tool) {
-      case "link":
-        if (moved) send(linkBetween(known, start, end));
-        else this.hooks.hint("Drag: press at one end of the link, release at the other.");
-        return;
-      case "point": {
-        const on = start.link ?? file.links.find(({ name, points }) => name !== "ground" && points.includes(start.point ?? ""))?.name;
-        if (on) send(pointOn(known, on, moved ? end.at : start.at));
-        else this.hooks.hint("Begin on the link that the point belongs to.");
-        return;
-      }
-      case "slider":
-        if (start.point) send(sliderAt(known, start.point, start.at, moved ? end.at : start.at, 4 * this.grid));
-        else this.hooks.hint("Begin at the pin that slides.");
-        return;
-      case "ground":
-        if (start.point) send([{ kind: "set_ground", points: [start.point], on: !this.isFixed(start.point) }]);
-        else this.hooks.hint("Click a pin.");
-        return;
-      case "drive":
-        send(this.driven(start));
-        return;
-      case "trace":
-        if (start.point) send([{ kind: "trace_point", point: start.point, on: !file.traced.includes(start.point) }]);
-        else if (start.link) send(pointOn(known, start.link, start.at, true));
-        else this.hooks.hint("Click a pin or a link.");
-    }
+    const edits = toolEdits(this.tool, this.file!, { start, end, moved, part: this.under.part, span: 4 * this.grid });
+    if (typeof edits === "string") this.hooks.hint(edits);
+    else this.send(edits);
   }
 
   /** Select the symbol or link under the pointer. */
@@ -444,28 +395,14 @@ export class Editor {
     this.desk.ask({ kind: "draw_part", table, picks, span: 4 * this.grid });
   }
 
-  private isFixed(point: string): boolean {
-    return this.file!.links.some(({ name, points }) => name === "ground" && points.includes(point));
-  }
-
-  private driven({ link, point }: Anchor): LiveEdit[] {
-    const symbol = point ? undefined : this.file!.drives.find(({ kind, name }) => kind !== "link" && name === this.under.part);
-    if (symbol) return [{ kind: "set_input", drive: symbol.kind, name: symbol.name }];
-    const own = this.file!.links.filter(({ name, points }) => name !== "ground" && points.includes(point ?? ""));
-    const name = link ?? own[0]?.name;
-    return name ? [{ kind: "set_input", drive: "link", name }] : [];
+  private send(edits: readonly LiveEdit[]): void {
+    if (edits.length) this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
   }
 
   private cancel(event: PointerEvent): void {
-    this.touches.delete(event.pointerId);
+    this.touches.end(event);
     this.gesture = null;
     this.overlay.clear();
-  }
-
-  private wheel(event: WheelEvent): void {
-    event.preventDefault();
-    const { drawing } = this.page!.places;
-    drawing.zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode === 1 ? 30 : 1)), drawing.placeAt(event));
   }
 
   private key(event: KeyboardEvent): void {
@@ -495,12 +432,7 @@ export class Editor {
   /** Move the selected points by a step of the grid. */
   private shift([dx, dy]: Place, far: boolean): void {
     const step = (this.grid / 10) * (far ? 10 : 1);
-    const places = Object.fromEntries(
-      [...this.selected].flatMap((name) => {
-        const at = this.points[name];
-        return at ? [[name, [clean(at[0] + dx * step), clean(at[1] + dy * step)] as [number, number]] as const] : [];
-      }),
-    );
+    const places = shifted(this.points, this.selected, [dx * step, dy * step]);
     this.desk.ask({ kind: "move_points", places, keep: this.inspector.locked });
   }
 
@@ -515,13 +447,7 @@ export class Editor {
 
   /** Remove the selected link or points. */
   private remove(): void {
-    const edits: LiveEdit[] =
-      this.chosen?.kind === "part"
-        ? [{ kind: "remove_part", name: this.chosen.name, whole: true }]
-        : this.chosen?.kind === "link"
-        ? [{ kind: "remove_link", name: this.chosen.name }]
-        : [...this.selected].map((name) => ({ kind: "remove_point", name }));
-    this.desk.ask(edits.length === 1 ? edits[0]! : { kind: "together", edits });
+    this.send(removed(this.chosen, this.selected));
     this.select(null);
   }
 }

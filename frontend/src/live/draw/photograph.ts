@@ -1,5 +1,6 @@
 // A photograph behind the drawing, scaled by one known length; it stays in the browser.
 
+import type { FileState } from "../../messages";
 import type { Mounted } from "../../mount";
 import { html, pathOf, put, svg } from "../../svg";
 import type { Desk } from "../asking";
@@ -33,6 +34,7 @@ export function scaled(picture: Picture, from: Place, to: Place, length: number)
   };
 }
 
+type Points = Readonly<Record<string, readonly [number, number]>>;
 type Dragged = "" | "move" | "scale";
 
 export class Photograph {
@@ -47,7 +49,7 @@ export class Photograph {
   private readonly with: readonly HTMLElement[];
   private page: Mounted | null = null;
   private picture: Picture | null = null;
-  private name = "";
+  private state: FileState | null = null;
   private dragging: Dragged = "";
   private ends: readonly [Place, Place] | null = null;
 
@@ -82,13 +84,21 @@ export class Photograph {
     canvas.addEventListener("drop", (event) => this.dropped(event, event.dataTransfer), { signal });
     document.addEventListener("paste", (event) => this.dropped(event, event.clipboardData), { signal });
     this.renew();
+    this.draw();
   }
 
   /** Another file has another picture. */
   renew(): void {
-    const { file } = this.desk.file();
-    if (file !== this.name) this.picture = kept(file);
-    this.name = file;
+    const state = this.desk.file();
+    const before = this.state;
+    if (state === before) return;
+    this.state = state;
+    if (state.file !== before?.file) this.picture = kept(state.file);
+    else if (this.picture && state.length_unit !== before.length_unit) {
+      const factor = growth(before.points, state.points);
+      const { x, y, width, height } = this.picture;
+      this.set({ ...this.picture, x: factor * x, y: factor * y, width: factor * width, height: factor * height });
+    }
     this.draw();
   }
 
@@ -177,7 +187,7 @@ export class Photograph {
 
   private set(picture: Picture | null, last = true): void {
     this.picture = picture;
-    if (last && !keep(this.name, picture)) this.note.textContent = "The browser does not keep the picture: it is gone when the page closes.";
+    if (last && !keep(this.desk.file().file, picture)) this.note.textContent = "The browser does not keep the picture: it is gone when the page closes.";
     if (picture === null) this.drag("", "");
     this.draw();
   }
@@ -194,6 +204,15 @@ export class Photograph {
     put(this.image, { href: data, x, y: -y, width, height, opacity });
     this.opacity.value = String(opacity);
   }
+}
+
+/** By how much coordinates have grown, as when units are converted. */
+export function growth(before: Points, after: Points): number {
+  for (const [name, [x, y]] of Object.entries(before)) {
+    const far = Math.hypot(x, y);
+    if (far > 0 && after[name]) return Math.hypot(...after[name]!) / far;
+  }
+  return 1;
 }
 
 /** A picture small enough to be kept, as a data URL, with its height by its width. */

@@ -33,6 +33,8 @@ def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> 
     for branch in branches:
         v = _close_curve(leads, branch.v)
         values = smallest_singular_values(leads, v)
+        if np.isinf(values[0]):  # there are no equations
+            return np.inf, v[0]
         k = int(np.argmin(values))
         # the ends of an open branch may be weakest without being a valley
         found.append((float(values[k]), v[k]))
@@ -53,7 +55,8 @@ def weakest_place(leads: ParametrizedTable, branches: Sequence[CurveBranch]) -> 
 
 def smallest_singular_values(leads: ParametrizedTable, v: Array) -> Array:
     """Of the scaled Jacobian by all variables but the parameter, at positions (B, N): (B,)."""
-    return np.asarray(np.linalg.svd(leads.jacobian(v), compute_uv=False)[:, -1], dtype=float)
+    values = np.linalg.svd(leads.jacobian(v), compute_uv=False)
+    return np.asarray(values.min(axis=1, initial=np.inf), dtype=float)
 
 
 def _close_curve(leads: ParametrizedTable, v: Array) -> Array:

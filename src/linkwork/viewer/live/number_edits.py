@@ -41,8 +41,10 @@ def set_number(edit: ask.SetNumber, text: TextEdits, before: Before) -> None:
         text.put(("lengths", measured), value)
         _stretch(measured, value, text, before)
         return
-    kind = _KINDS.get(quantity.table) or kind_of_name(quantity.key, text)
-    value = units.number(edit.value, kind, f'"{quantity.name}"')
+    value = edit.value
+    if isinstance(value, str):
+        kind = _KINDS.get(quantity.table) or kind_of_name(quantity.key, text)
+        value = units.number(value, kind, f'"{quantity.name}"')
     written = quantity.written(description)
     # a number in place of a formula would silently remove the dependence on dimensions
     if isinstance(written, str) and not isinstance(value, str) and not edit.any_formula:
@@ -98,12 +100,16 @@ def _move_pivot(
     """Set a distance on ground by moving its second point along the line between the two."""
     assert isinstance(description, Draft)
     first, second = quantity.key.split()
-    pair = (*description.points[first], *description.points[second])
-    on_ground = {first, second} <= set(description.links[GROUND])
-    if not on_ground or isinstance(length, str) or any(isinstance(c, str) for c in pair):
+    # a draft may lack the ground, or a point
+    fixed = set(description.links.get(GROUND, ())) & description.points.keys()
+    if not {first, second} <= fixed or isinstance(length, str):
+        return False
+    if any(isinstance(c, str) for c in (*description.points[first], *description.points[second])):
         return False
     base = description.sketched(first)
     span = description.sketched(second) - base
+    if not span:
+        return False
     # lengths on ground follow from coordinates: both change together
     put_place(text, second, base + span / abs(span) * length)
     text.put(("lengths", quantity.key), length)
