@@ -40,11 +40,13 @@ if TYPE_CHECKING:
     from linkwork.foundation.newton_trouble import NewtonTrouble as NewtonTrouble
     from linkwork.foundation.status import Status as Status
     from linkwork.mechanism.driven_input import Input as Input
+    from linkwork.mechanism.mass import Gravity as Gravity, Mass as Mass
     from linkwork.mechanism.part.belt import Belt as Belt
     from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment
     from linkwork.mechanism.part.curve import Curve as Curve
     from linkwork.mechanism.part.cylinder import Cylinder as Cylinder
     from linkwork.mechanism.part.gear import Gear as Gear
+    from linkwork.mechanism.part.load import Load as Load
     from linkwork.mechanism.part.noncircular_gear import NoncircularGear as NoncircularGear
     from linkwork.mechanism.part.rack import Rack as Rack
     from linkwork.mechanism.part.rolling import Rolling as Rolling
@@ -85,6 +87,7 @@ if TYPE_CHECKING:
         Certificate as Certificate,
         Position as Position,
     )
+    from linkwork.results.reactions import ForceStatus as ForceStatus, Reactions as Reactions
     from linkwork.results.series import Series as Series
     from linkwork.results.table import Table as Table
 else:

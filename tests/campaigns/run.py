@@ -18,6 +18,7 @@ from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
 from tests.campaigns.families import family_campaign
+from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
@@ -92,6 +93,10 @@ def _kinds(part: int) -> tuple[Counter[str], list[str]]:
     return kind_campaign(part, _PART)
 
 
+def _forces(part: int) -> tuple[Counter[str], list[str]]:
+    return force_campaign(part, _PART)
+
+
 def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
@@ -109,6 +114,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "parallel-trains": (_parallel_trains, 40),
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
+    "forces": (_forces, 2_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -256,6 +256,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "sweep",
         "configurations",
         "circuits",
+        "forces",
         "draw",
         "plot",
         "animate",

@@ -329,3 +329,27 @@ def test_ackermann_trapezoid_errs_less_than_a_degree_to_30_degrees() -> None:
     ideal = np.arctan(1 / (1 / np.tan(left[turning]) + 4.5 / 10))
     error = np.degrees(right[turning] - ideal)
     assert 0.5 < np.max(np.abs(error)) < 0.9
+
+
+@law("crank-press")
+def test_crank_press_moves_by_its_closed_form_and_works_against_its_load() -> None:
+    """height = 600 + r sin θ - √(l² - r² cos² θ); in a turn the crank does the work of 20 mm."""
+    motion = motion_of("crank-press")
+    crank = degrees(motion, "crank")
+    rod = np.sqrt(400**2 - (60 * np.cos(crank)) ** 2)
+    same(motion["height"], 600 + 60 * np.sin(crank) - rod, 600)
+    work = np.sum(motion["power"][1:-1]) * np.radians(1.0) / (4 * math.pi)
+    assert work == pytest.approx(20000 * 20, rel=0.02)
+
+
+@law("balanced-lamp")
+def test_balanced_lamp_stands_at_every_height() -> None:
+    """The spring's torque is k h a cos θ for every angle, the weight's W l cos θ."""
+    motion = motion_of("balanced-lamp")
+    assert np.abs(motion["arm.effort"]).max() < 1e-12 * 20 * 300
+    height = 100 - 60 * np.sin(degrees(motion, "arm"))
+    same(
+        motion["balance.tension"] ** 2,
+        height**2 + (60 * np.cos(degrees(motion, "arm"))) ** 2,
+        160**2,
+    )

@@ -27,6 +27,9 @@ TEXTBOOK = {
     "scotch-yoke": (1, 1, "double-slider chain (RRPP)", "Scotch yoke", 2),
     "elliptic-trammel": (1, 1, "double-slider chain (RRPP)", "elliptic trammel", None),
     "oldham-coupling": (1, 1, "double-slider chain (RRPP)", "Oldham coupling", 2),
+    "crank-press": (
+        1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns fully", 2,
+    ),
     "crank-shaper": (1, 1, "Watt chain, 2 prismatic joints", "Watt II; its loop", 2),
     "whitworth": (1, 1, "Watt chain, 2 prismatic joints", "Watt II; its loop", 2),
     "drag-link": (1, 1, "Watt chain, 1 prismatic joint", "Watt II; its loop", 2),
@@ -63,6 +66,7 @@ TEXTBOOK = {
         1, 1, "eight-link chain, 2 multiple pins",
         "its loop ground, K1, K2, K3: crank-rocker (GCRR): Grashof", 2,
     ),
+    "balanced-lamp": (1, 1, "open two-link chain", "", 1),
     "beam-engine": (
         1, 1, "eight-link chain, 1 multiple pin",
         "its loop ground, crank, connecting_rod, beam: crank-rocker (GCRR): Grashof", 2,

@@ -15,7 +15,7 @@ from linkwork.textfile import json_schema
 PAGE = (Path(__file__).parents[2] / "docs" / "file-format.md").read_text(encoding="utf-8")
 TABLES = (
     "slots", "sliders", "cylinders", "welds", "gears", "noncircular_gears", "belts", "racks",
-    "rolling", "cams", "curves", "springs", "questions",
+    "rolling", "cams", "curves", "springs", "loads", "questions",
 )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ import pytest
 import linkwork as lw
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.linkage import Linkage
 from linkwork.textfile.copying import copy_selection, mirror_numbers
 from linkwork.textfile.library import example_text
 from linkwork.textfile.renaming import rename
@@ -114,3 +115,14 @@ def test_a_cam_is_not_mirrored_wrongly() -> None:
     edits = TextEdits(example_text("cam-roller-follower"))
     with pytest.raises(InputError, match=r"\(cam\) cannot be mirrored"):
         mirror_numbers(edits, {canonical(point) for point in edits.keys(("points",))})
+
+
+def test_masses_and_formulas_of_loads_follow_a_name() -> None:
+    edits = TextEdits(example_text("crank-press"))
+    rename(edits, "link", "ram", "plunger")
+    rename(edits, "part", "height", "h")
+    press = lw.loads(edits.text).description
+    assert isinstance(press, Linkage)
+    assert list(press.masses) == ["crank", "rod", "plunger"]
+    assert press.loads[0].link == "plunger"
+    assert press.loads[0].force == (0, "20000*(h < 160)*(h.velocity < 0)")

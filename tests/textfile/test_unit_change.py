@@ -151,3 +151,13 @@ def test_a_file_in_inches_and_back_is_the_same() -> None:
     text = example_text("four-bar")
     back = changed(changed(text, length="in", angle="rad"), length="mm", angle="deg")
     assert lw.loads(back).description == lw.loads(text).description
+
+
+def test_masses_and_loads_are_converted_with_the_lengths() -> None:
+    lamp = example_text("balanced-lamp") + "[masses]\narm = { mass = 2, center = [100, 5] }\n"
+    before, after = (lw.loads(t).forces(at=20) for t in (lamp, changed(lamp, length="in")))
+    assert after["O.force.x"] == pytest.approx(before["O.force.x"], rel=1e-12)
+    moment = "shaking.moment"
+    assert after[moment] * 25.4 == pytest.approx(before[moment], rel=1e-12)
+    with pytest.raises(InputError, match="formula of a load"):
+        changed(example_text("crank-press"), length="in")

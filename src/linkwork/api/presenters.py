@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from linkwork import drawing, viewer
+from linkwork import drawing, forces, viewer
 from linkwork.foundation.presenting import register_presenter
+from linkwork.motion.model import Model
 from linkwork.results.circuits import Circuits
 from linkwork.results.configurations import Configurations
 from linkwork.results.motion import Motion
@@ -16,6 +17,7 @@ __all__ = ["register_presenters"]
 
 def register_presenters() -> None:
     """Register the function behind every display method; it is loaded at its first call."""
+    register_presenter(Model.force_quantities, lambda: forces.force_quantities)
     register_presenter(Motion.__repr__, lambda: motion_text)
     register_presenter(Motion.table, lambda: table_of)
     register_presenter(Motion.plot, lambda: drawing.plot_motion)

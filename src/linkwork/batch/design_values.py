@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +14,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, TurnArray
 from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues
 
 __all__ = ["DesignValues"]
@@ -83,6 +86,18 @@ class DesignValues(QuantityValues):
         )
         return Jet(value, first, second)
 
+    def apart(self) -> Iterator[DesignColumn | None]:
+        """Every design by itself, (R,), with a model of its own numbers; ``None`` without rows."""
+        for k in range(len(self.designs)):
+            if self.lost[:, k].all():
+                yield None
+                continue
+            if len(self.equations.inputs) > 1:  # partial derivatives need its own equations
+                yield DesignColumn(self, self.designs.design(k), k)
+            else:
+                description = self.designs.description(k)
+                yield DesignColumn(self, replace(self.model, description=description), k)
+
     def place(self, point: str) -> Jet:
         """A point by its exact name: its parent's position plus its own terms."""
         table = self.model.compiled.points
@@ -118,6 +133,28 @@ class DesignValues(QuantityValues):
         # eq. (3) with a = b
         second = s.d2 - s.v * turn.d1**2 + 1j * (2.0 * s.d1 * turn.d1 + s.v * turn.d2)
         return Jet(value * s.v, first, value * second)
+
+
+@dataclass(frozen=True, eq=False)
+class DesignColumn:
+    """The values of one design, (R,)."""
+
+    values: DesignValues
+    model: Model
+    number: int
+
+    def own(self, name: str) -> Jet:
+        """A variable or output by its exact name."""
+        return self._column(self.values.own(name))
+
+    def place(self, point: str) -> Jet:
+        """A point by its exact name."""
+        return self._column(self.values.place(point))
+
+    def _column(self, jet: Jet) -> Jet:
+        shape = self.values.lost.shape
+        parts = (np.broadcast_to(part, shape)[:, self.number] for part in (jet.v, jet.d1, jet.d2))
+        return Jet(*parts)
 
 
 def _as_complex(blank: Array) -> ComplexArray:

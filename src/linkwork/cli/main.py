@@ -23,6 +23,7 @@ _COMMANDS = (
     "sweep",
     "configurations",
     "circuits",
+    "forces",
     "draw",
     "plot",
     "animate",

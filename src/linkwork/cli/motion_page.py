@@ -18,7 +18,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked
 from linkwork.results.quantity import Kind
 
-__all__ = ["failure_line", "motion_lines"]
+__all__ = ["failure_line", "motion_lines", "range_lines"]
 
 _MOST_RUNS = 4  # ranges of failed rows that are listed
 
@@ -39,6 +39,11 @@ def motion_lines(
     lines += fields(pairs, {_label(s): bad for s in motion.counts if not s.ok})
     ranges = _ranges(motion, columns) if motion.found.any() else []
     return [*lines, "", *ranges] if ranges else lines
+
+
+def range_lines(motion: Motion, columns: Sequence[str]) -> list[str]:
+    """The smallest and largest values of columns, as in :func:`motion_lines`."""
+    return _ranges(motion, columns) if motion.found.any() else []
 
 
 def answers(motion: Motion, *, through: bool) -> bool:

@@ -59,7 +59,7 @@ def position_lines(mechanism: Mechanism, position: Position) -> list[str]:
 
 
 def value_cells(rows: Sequence[Row]) -> list[str]:
-    """Values as text: angles with six decimals, lengths to six digits, numbers to ten."""
+    """Values as text: angles with six decimals, lengths and forces six digits, numbers ten."""
     sizes = iter(lengths(row.value for row in rows if row.kind is Kind.LENGTH))
     texts = []
     for row in rows:
@@ -70,6 +70,8 @@ def value_cells(rows: Sequence[Row]) -> list[str]:
                 texts.append(fixed(row.value))
             case Kind.NUMBER:
                 texts.append(significant(row.value, _NUMBER_DIGITS))
+            case _:
+                texts.append(significant(row.value))
     return texts
 
 

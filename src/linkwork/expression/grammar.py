@@ -9,6 +9,9 @@
     power    = atom [ "^" unary ]
     atom     = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
 
+In formulas that may compare, ``sum`` in parentheses and the whole formula are ``sum [ ("<" | "<=" |
+">" | ">=") sum ]``, 1 where it holds and else 0.
+
 Accepted in addition to ASCII: ``· × − √ ² ³ …``, Greek letters and subscripts in names, and
 ``iθ12`` for ``i*θ12``. ``**`` is ``^``. Multiplication signs are required.
 """
@@ -92,7 +95,10 @@ def _name_tokens(word: str, column: int) -> list[_Token]:
     return [_Token("name", word, column)]
 
 
-def _tokens(text: str) -> list[_Token]:
+_COMPARISONS = {"<=": "<=", ">=": ">=", "≤": "<=", "≥": ">=", "<": "<", ">": ">"}
+
+
+def _tokens(text: str, comparing: bool) -> list[_Token]:
     found: list[_Token] = []
     k = 0
     while k < len(text):
@@ -127,6 +133,10 @@ def _tokens(text: str) -> list[_Token]:
         elif text.startswith("**", k):
             found.append(_Token("operator", "^", column))
             k += 2
+        elif comparing and c in "<>≤≥":
+            sign = text[k : k + 2] if text[k : k + 2] in _COMPARISONS else c
+            found.append(_Token("operator", _COMPARISONS[sign], column))
+            k += len(sign)
         elif c in _OPERATORS:
             found.append(_Token("operator", _OPERATORS[c], column))
             k += 1
@@ -139,7 +149,7 @@ def _tokens(text: str) -> list[_Token]:
 class _Reader:
     """Reads the tokens of one formula."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, comparing: bool = False) -> None:
         if len(text) > _LONGEST:
             raise ExpressionError(
                 f"the formula has {len(text)} characters, at most {_LONGEST} are allowed",
@@ -147,7 +157,7 @@ class _Reader:
                 1,
             )
         self.text = text
-        self.tokens = _tokens(text)
+        self.tokens = _tokens(text, comparing)
         if len(self.tokens) > _MOST_TOKENS:
             column = self.tokens[_MOST_TOKENS].column
             raise ExpressionError(
@@ -181,6 +191,12 @@ class _Reader:
         self.depth += 1
         if self.depth > _DEEPEST:
             raise self.error(f"nested deeper than {_DEEPEST} levels")
+
+    def whole(self) -> Node:
+        node = self.sum()
+        if token := self.take(*_COMPARISONS):
+            node = Binary(token.text, node, self.sum(), token.column)
+        return node
 
     def sum(self) -> Node:
         self.deeper()
@@ -225,7 +241,7 @@ class _Reader:
             self.at += 1
             return self.name(token)
         if self.take("("):
-            node = self.sum()
+            node = self.whole()
             self.close(token)
             return node
         raise self.error(f'expected a number, a name or "(", found {self.found()}')
@@ -301,16 +317,16 @@ class _Reader:
         raise self.error(f"an operator such as * is missing before {self.found()}")
 
 
-def parse(text: str) -> Node:
-    """Read one expression.
+def parse(text: str, *, comparing: bool = False) -> Node:
+    """Read one expression, which may compare numbers if ``comparing``.
 
     Raises
     ------
     ExpressionError
         With the column and the expected token.
     """
-    reader = _Reader(text)
-    node = reader.sum()
+    reader = _Reader(text, comparing)
+    node = reader.whole()
     reader.finish()
     return node
 

@@ -185,6 +185,18 @@ _TO_ANGLE: dict[str, Callable[..., Jet]] = {
 }  # fmt: skip
 
 
+_COMPARISONS: dict[str, Callable[..., Array]] = {
+    "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal,
+}  # fmt: skip
+
+
+def _compared(operator: str, left: Jet, right: Jet) -> Jet:
+    """1 where the comparison holds and else 0; NaN where it has no operands."""
+    holds = np.where(_COMPARISONS[operator](left.v, right.v), 1.0, 0.0)
+    zero = np.zeros(())
+    return Jet(np.where(np.isnan(left.v + right.v), np.nan, holds), zero, zero)
+
+
 def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
     """The jet of a formula; all its names must be in ``names`` (checked by the reader).
 
@@ -211,8 +223,10 @@ def evaluate(node: Node, names: Mapping[str, Jet], unit: AngleUnit) -> Jet:
                     return left * right
                 case "/":
                     return left / right
-                case _:
+                case "^":
                     return left**right
+                case _:
+                    return _compared(node.operator, left, right)
         case Call():
             arguments = [evaluate(a, names, unit) for a in node.arguments]
             if node.function in _OF_ANGLE:

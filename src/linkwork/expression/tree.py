@@ -35,7 +35,7 @@ class Negative:
 
 @dataclass(frozen=True)
 class Binary:
-    """``left operator right`` with one of ``+ - * / ^``."""
+    """``left operator right`` with one of ``+ - * / ^``, in some formulas ``< <= > >=``."""
 
     operator: str
     left: Node

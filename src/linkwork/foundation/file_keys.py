@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
-    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Named", "Number", "PlainNumber",
-    "Several", "Speed", "Table", "Tables", "Text", "Whole",
+    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number",
+    "PlainNumber", "Several", "Speed", "Table", "Tables", "Text", "Whole",
 ]  # fmt: skip
 
 
@@ -32,8 +32,9 @@ class Text:
 class Number:
     """A number, or a formula in the named dimensions.
 
-    ``of``: what it measures: number, length or angle; ``driven``: as the input, ``lift``: as the
-    follower of the cam, ``named``: as formulas use it.
+    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``lift``: as
+    the follower of the cam, ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring
+    between points or links.
     """
 
     of: str = "number"
@@ -62,6 +63,13 @@ class Formula:
 @dataclass(frozen=True)
 class Speed:
     """A number, or text with a unit: ``"300 rpm"``."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number, or text with a unit, such as the ``example``."""
+
+    example: str
 
 
 @dataclass(frozen=True)
@@ -119,6 +127,7 @@ Kind = (
     | Whole
     | Formula
     | Speed
+    | Measured
     | Flag
     | ListOf
     | Table
@@ -130,9 +139,18 @@ Kind = (
 
 @dataclass(frozen=True)
 class Key:
-    """One key: its name, its allowed values, and one line of description."""
+    """One key: its name, its allowed values, and one line of description.
+
+    ``field`` is the attribute with its value, if Python cannot have the key's name there.
+    """
 
     name: str
     kind: Kind
     doc: str
     required: bool = False
+    field: str = ""
+
+    @property
+    def attribute(self) -> str:
+        """The attribute of a description with its value."""
+        return self.field or self.name

@@ -1,4 +1,4 @@
-"""Registration of the functions that display results, by the layers above ``results``."""
+"""Registration of functions that display results, or compute further ones, by layers above."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units of lengths and angles, and conversion between them."""
+"""Units of lengths, angles, masses and forces, and conversion between them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from collections.abc import Iterable
 from fractions import Fraction
 from math import pi, ulp
 
-__all__ = ["ANGLES", "LENGTHS", "conversion", "converted", "split_unit"]
+__all__ = [
+    "ANGLES", "FORCES", "LENGTHS", "MASSES", "conversion", "converted", "force_of_inertia",
+    "split_unit",
+]  # fmt: skip
 
 #: Metres per unit.
 LENGTHS = {
@@ -21,6 +24,13 @@ ANGLES = {
     "deg": Fraction(1), "°": Fraction(1), "rad": Fraction(180.0) / Fraction(pi),
     "turn": Fraction(360),
 }  # fmt: skip
+#: Kilograms per unit.
+MASSES = {
+    "kg": Fraction(1), "g": Fraction(1, 1000), "t": Fraction(1000),
+    "lb": Fraction("0.45359237"), "slug": Fraction("4.4482216152605") / Fraction("0.3048"),
+}  # fmt: skip
+#: Newtons per unit.
+FORCES = {"N": Fraction(1), "kN": Fraction(1000), "lbf": Fraction("4.4482216152605")}
 
 _DIGITS = 14
 _ROUNDING = 2  # units in the last place, so that a conversion back gives the same number
@@ -36,6 +46,11 @@ def conversion(unit: str, other: str) -> Fraction | None:
         if unit in table and other in table:
             return table[unit] / table[other]
     return None
+
+
+def force_of_inertia(mass: str, length: str, force: str) -> float:
+    """The unit mass · length / s² in the unit of force: kg mm/s² is 0.001 N."""
+    return float(MASSES[mass] * LENGTHS[length.replace("\u03bc", "µ")] / FORCES[force])
 
 
 def converted(number: float, factor: Fraction | float) -> float:

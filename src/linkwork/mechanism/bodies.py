@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 from linkwork.foundation.elementwise import phase, vector
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
-from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.loaded import LoadedBodies
 
 __all__ = ["Bodies", "Measured", "Shapes"]
 
@@ -40,7 +40,7 @@ class Shapes:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bodies(Description):
+class Bodies(LoadedBodies):
     """The rigid links of a mechanism; parts join them.
 
     Fields as of :class:`~linkwork.mechanism.linkage.Linkage`.
@@ -53,6 +53,14 @@ class Bodies(Description):
     sketch: bool = False
     #: The exact shape of every link in local coordinates, and the measured dimensions.
     shapes: Shapes = field(init=False, repr=False, compare=False)
+
+    @property
+    def carried(self) -> Mapping[str, tuple[str, ...]]:
+        return self.links
+
+    @property
+    def placed(self) -> Iterable[str]:
+        return self.points
 
     @property
     def parts(self) -> tuple[object, ...]:

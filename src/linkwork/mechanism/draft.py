@@ -48,6 +48,7 @@ class Draft(JoinedBodies):
         set_(self, "points", FrozenDict({n: tuple(p) for n, p in self.points.items()}))
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
+        set_(self, "masses", self.spelled_masses())
         for which in ("lengths", "angles"):
             table = getattr(self, which)
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}

@@ -28,6 +28,9 @@ class Linkage(Draft):
         Exact angles in a link: ``"B A P"`` at A, from AB to AP, counter-clockwise.
     sketch : bool
         If true, dimensions are never measured from ``points``.
+    mass, force, gravity, masses
+        Units of masses and forces, gravity, and the masses of links; see
+        :class:`~linkwork.mechanism.loaded.LoadedBodies`.
     slots, sliders, … : tuples of parts
         One field for each table of parts, see :mod:`linkwork.mechanism.part.index`.
     """

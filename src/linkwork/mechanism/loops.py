@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from linkwork.foundation.errors import choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical
-from linkwork.mechanism.description import Description, Problems, declared
+from linkwork.mechanism.description import Description, Key, Problems, declared
 from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.field_types import check_entries
+from linkwork.mechanism.loaded import LoadedBodies, check_masses
+from linkwork.mechanism.part.load import Load
 
 __all__ = ["Loops", "PlainEquations"]
 
@@ -46,7 +50,7 @@ class _Equations(Description):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loops(_Equations):
+class Loops(_Equations, LoadedBodies):
     """Vector loop-closure equations in textbook notation.
 
     Parameters
@@ -60,11 +64,17 @@ class Loops(_Equations):
         Points as formulas of the same kind, for drawings.
     links : Mapping[str, sequence of str], optional
         Points drawn as one link; ``ground`` is fixed.
+    mass, force, gravity, masses
+        Units of masses and forces, gravity, and the masses of links; see
+        :class:`~linkwork.mechanism.loaded.LoadedBodies`.
+    loads : tuple of Load
+        Forces on points, torques on links.
     """
 
     loops: Mapping[str, str] = FrozenDict()
     points: Mapping[str, str] = FrozenDict()
     links: Mapping[str, tuple[str, ...]] = FrozenDict()
+    loads: tuple[Load, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -78,6 +88,14 @@ class Loops(_Equations):
 
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
+        set_(self, "masses", self.spelled_masses())
+        check_entries("loads", Load, self.loads)
+        named = spelled | {canonical(name): name for name in self.links}
+
+        def same_in_loads(name: str) -> str:
+            return named.get(canonical(name), name)
+
+        set_(self, "loads", tuple(load.find_spelling(same_in_loads) for load in self.loads))
         set_(self, "trace", tuple(map(same, self.trace)))
         problems = Problems()
         self.check_common(
@@ -100,7 +118,26 @@ class Loops(_Equations):
             if point not in self.points:
                 known = choices("points", self.points, point)
                 problems.add(("trace", "points", k), f'point "{point}" is not defined {known}')
+        check_masses(self, problems)
+        for k, load in enumerate(self.loads):
+            load.check_in(self, partial(_add, problems, ("loads", k)))
         problems.raise_any(f'mechanism "{self.name}"')
+
+    @property
+    def carried(self) -> Mapping[str, tuple[str, ...]]:
+        return self.links
+
+    @property
+    def placed(self) -> Iterable[str]:
+        return self.points
+
+    @property
+    def loaded(self) -> bool:
+        return bool(self.masses or self.loads)
+
+
+def _add(problems: Problems, key: Key, message: str, *field: str | int) -> None:
+    problems.add((*key, *field), message)
 
 
 @dataclass(frozen=True, kw_only=True)

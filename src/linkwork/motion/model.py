@@ -23,8 +23,10 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import as_told, finite_number
+from linkwork.foundation.presenting import presenter
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
 from linkwork.motion.guides_from_equations import rails_of
@@ -99,11 +101,25 @@ class Model:
     @property
     def units(self) -> Units:
         """The mechanism's units."""
-        return Units(self.description.angle, self.description.length)
+        description = self.description
+        force = description.force if isinstance(description, LoadedBodies) else Units.force
+        return Units(description.angle, description.length, force)
 
     @cached_property
     def quantities(self) -> Quantities:
-        """The quantities of its positions and motions."""
+        """The quantities of its positions and motions, with those of forces if it is loaded."""
+        names = self.motion_quantities.names
+        return Quantities(replace(names, further=self.force_quantities()))
+
+    def force_quantities(self) -> tuple[RowQuantity, ...]:
+        """The efforts of the inputs and the reactions of the joints; none without loads."""
+        if not getattr(self.description, "loaded", False):
+            return ()
+        return presenter(Model.force_quantities)(self)
+
+    @cached_property
+    def motion_quantities(self) -> Quantities:
+        """The quantities that need no forces."""
         equations = self.equations
         released = {part.variable for part in equations.redundant}
         inputs = {v.name: Kind(v.kind) for v in equations.inputs}
@@ -257,10 +273,11 @@ def model_of(description: Description) -> Model:
     skeleton = replace(skeleton, questions=description.questions)
     model = Model(description, equations, compiled, skeleton)
     _check_outputs(model, where)
+    # what cannot be read is an error of the file, found with the others
+    _ = model.speed
     unknown = question_problems(description.questions, model.quantities)
     if unknown:
         raise MechanismError(unknown, where)
-    _ = model.speed  # a speed that cannot be read is an error of the file, found with the others
     return model
 
 

@@ -53,7 +53,7 @@ class QuantityValues(ABC):
 
     def own(self, name: str) -> Jet:
         """A quantity by its exact name: file units, derivatives in radians and lengths."""
-        asked = self.model.quantities.own[name]
+        asked = self.model.motion_quantities.own[name]
         match asked.group:
             case Group.LINK:
                 jet = self._link(name)

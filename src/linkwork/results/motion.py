@@ -251,9 +251,15 @@ class Motion:
     def own(self, name: str) -> Jet:
         """A variable of the mechanism by its exact name; see :class:`Solved`."""
         if name in self.inputs and name not in self.links:
-            raise self.quantities.unknown(name)
+            return self._driven(name)
         series = self.series(name)
         return Jet(series.value, series.first, series.second)
+
+    def _driven(self, name: str) -> Jet:
+        """An input; only the rate of the leading one is known."""
+        leads = name == self.quantities.names.lead
+        value = self.inputs[name]
+        return Jet(value, np.full(len(self), 1.0 if leads else np.nan), np.zeros(len(self)))
 
     def place(self, point: str) -> Jet:
         """A point with both derivatives by its exact name."""

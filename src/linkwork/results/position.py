@@ -233,8 +233,10 @@ class Position:
                 value = table[name]
                 break
         else:
-            if point not in self.points:  # an input that is not a link
-                raise self.quantities.unknown(name)
+            if name in self.input:
+                leads = name == self.quantities.names.lead
+                one, zero = np.asarray(1.0 if leads else np.nan), np.zeros(())
+                return Jet(np.asarray(self.input[name]), one, zero)
             value = self.points[point][axis == "y"]
         rates = (self.first.get(name, np.nan), self.second.get(name, np.nan))
         return Jet(*(np.asarray(part) for part in (value, *rates)))

@@ -22,6 +22,13 @@ class Kind(Enum):
     LENGTH = "length"
     PER_LENGTH = "per length"
     NUMBER = "number"
+    FORCE = "force"
+    MOMENT = "moment"
+    ENERGY = "energy"
+    POWER = "power"
+
+
+_OF_FORCE = (Kind.FORCE, Kind.MOMENT, Kind.ENERGY, Kind.POWER)
 
 
 @dataclass(frozen=True)
@@ -30,9 +37,13 @@ class Units:
 
     angle: AngleUnit
     length: str
+    force: str = "N"
 
     def of(self, kind: Kind) -> str:
-        """Unit of a value: ``deg``, ``mm``, ``1/mm`` or nothing."""
+        """Unit of a value: ``deg``, ``mm``, ``1/mm``, ``N``, ``N·mm`` or nothing."""
+        if kind in _OF_FORCE:
+            work = f"{self.force}·{self.length}"
+            return {Kind.FORCE: self.force, Kind.POWER: f"{work}/s"}.get(kind, work)
         return self.angle.value if kind is Kind.ANGLE else self._of_length(kind)
 
     def of_rate(self, kind: Kind) -> str:

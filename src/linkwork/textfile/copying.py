@@ -9,6 +9,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.foundation.file_keys import ListOf
 from linkwork.foundation.names import GROUND, canonical, free_name
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.load import Load
 from linkwork.textfile.entries import entries
 from linkwork.textfile.renaming import names_in_file
 from linkwork.textfile.text_edits import TextEdits
@@ -49,6 +50,7 @@ def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool
             edits.put(("links", new[canonical(link)]), copied)
     for table in ("lengths", "angles"):
         _copy_dimensions(edits, table, new, mirrored)
+    _copy_masses(edits, new, mirrored)
     _copy_parts(edits, new, mirrored)
     if edits.has(("trace", "points")):
         traced = [str(point) for point in edits.get(("trace", "points"))]
@@ -96,6 +98,16 @@ def _copy_dimensions(edits: TextEdits, table: str, new: Mapping[str, str], mirro
             edits.put((table, " ".join(copied)), _opposite(number) if turned else number)
 
 
+def _copy_masses(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> None:
+    for link in edits.keys(("masses",)):
+        if new.get(canonical(link)) not in (None, link):
+            mass = dict(edits.get(("masses", link)))
+            if mirrored and "center" in mass:
+                along, across = mass["center"]
+                mass["center"] = [along, _opposite(across)]
+            edits.put(("masses", new[canonical(link)]), mass)
+
+
 def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> None:
     known = {**new, canonical(GROUND): GROUND}
     taken = set(names_in_file(edits))
@@ -133,10 +145,12 @@ def _references(table: str, row: Mapping[str, Any]) -> Iterator[tuple[str, str]]
 def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a part that change sign."""
     keys = PARTS[table].keys
-    if any(isinstance(key.kind, ListOf) and isinstance(key.kind.of, ListOf) for key in keys):
+    shaped = any(isinstance(key.kind, ListOf) and isinstance(key.kind.of, ListOf) for key in keys)
+    if shaped or PARTS[table] is Load:
         raise InputError(
-            f'"{row.get("name")}" ({PARTS[table].title.lower()}) cannot be mirrored: its shape '
-            "has a sense; duplicate without it, or move its points"
+            f'"{row.get("name", row.get("point", row.get("link")))}" '
+            f"({PARTS[table].title.lower()}) cannot be mirrored: its shape has a sense; duplicate "
+            "without it, or move its points"
         )
     return {key: _opposite(row[key]) for key in _TURNED if key in row}
 

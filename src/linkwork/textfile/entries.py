@@ -48,6 +48,10 @@ def measured_by(kind: Number, row: Mapping[str, Any]) -> str:
         case "driven":
             turns, slides = {"link", "joint"} & row.keys(), {"slider", "cylinder"} & row.keys()
             return "angle" if turns else "length" if slides else ""
+        case "stiffness":
+            return "length" if "links" in row else "per length"
+        case "free":
+            return "angle" if "links" in row else "length"
         case "named":
             return ""
         case of:

@@ -10,7 +10,7 @@ from typing import Any
 from linkwork.expression.degrees import ANGLE, LENGTH, PURE, Degree, Degrees, Literal
 from linkwork.expression.grammar import parse, parse_equation
 from linkwork.foundation.errors import InputError, key_text
-from linkwork.foundation.file_keys import Formula, Number, Speed
+from linkwork.foundation.file_keys import Formula, Measured, Number, Speed
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.part.curve import Curve
@@ -27,6 +27,7 @@ __all__ = ["FileDegrees", "Written"]
 
 _BY_WORD = {
     "length": LENGTH, "angle": ANGLE, "number": PURE, "per length": Degree(Fraction(-1)),
+    "area": Degree(Fraction(2)),
 }  # fmt: skip
 _SLIDING = (GuidePart, Cylinder, Curve)  # parts whose name is that of a length
 
@@ -59,6 +60,7 @@ class FileDegrees:
         self._degrees, self._form = Degrees(), form_of(data)
         self._length = str(data.get("length", Description.length))
         self.written: list[Written] = []
+        self._loads: list[str] = []  # formulas of loads, with names of all quantities
         listed = list(entries(data, self._form.keys))
         self._dimensions = {
             canonical(str(e.path[1])): str(e.path[1]) for e in listed if e.path[0] == "dimensions"
@@ -87,6 +89,10 @@ class FileDegrees:
             With the name of a number that may be a length or an angle, or of an output that is
             both.
         """
+        for where in self._loads:
+            raise InputError(
+                f"{where} is a formula of a load: it cannot be converted; write it for the new unit"
+            )
         unknown = [n for name, n in self._dimensions.items() if self._degrees.of(name) is None]
         for name in [*self._unclear, *unknown]:
             raise InputError(
@@ -146,8 +152,12 @@ class FileDegrees:
 
     def _read(self, entry: Entry) -> None:
         match entry.kind:
+            case Number() if entry.path[0] == "loads" and isinstance(entry.given, str):
+                self._loads.append(key_text(entry.path))
             case Number() as kind:
                 self._number(entry, entry.given, self._measured(kind, entry))
+            case Measured() if not isinstance(entry.given, str):
+                self._number(entry, entry.given, LENGTH)
             case Speed():
                 self._speed(entry)
             case Formula(equation) if isinstance(entry.given, str):

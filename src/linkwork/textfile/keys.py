@@ -23,7 +23,10 @@ from linkwork.foundation.file_keys import (
     Tables,
     Text,
 )
+from linkwork.foundation.units import FORCES, MASSES
+from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import HIDDEN
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
@@ -81,6 +84,14 @@ _TRACE = Key(
     "trace",
     Table((Key("points", _POINT_LIST, "Points whose paths are drawn", required=True),)),
     "Traces in pictures",
+)
+_FORCE_UNITS = (
+    Key("mass", Text(tuple(MASSES)), "Unit of every mass in this file; default kg"),
+    Key("force", Text(tuple(FORCES)), "Unit of every force in this file; default N"),
+)
+_MASSES = (
+    Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
+    Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
 )
 _QUESTIONS = Key(
     "questions",
@@ -153,6 +164,7 @@ LINKAGE = Form(
     "",
     (
         *_HEAD,
+        *_FORCE_UNITS,
         Key("sketch", Flag(), "If true, dimensions are never measured from [points]"),
         _DIMENSIONS,
         Key(
@@ -174,6 +186,7 @@ LINKAGE = Form(
             'Exact angles in one link: "B A P" = 30, at A from AB to AP, counter-clockwise',
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
+        *_MASSES,
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
@@ -186,6 +199,7 @@ LOOPS = Form(
     "loops",
     (
         *_HEAD,
+        *_FORCE_UNITS,
         _DIMENSIONS,
         Key(
             "loops",
@@ -209,6 +223,8 @@ LOOPS = Form(
             Named(ListOf(Text(), "point", 1)),
             'Points drawn as one link: crank = ["A0", "A"]; "ground" is fixed',
         ),
+        *_MASSES,
+        Key("loads", Tables(Load.keys), Load.doc),
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,

@@ -12,7 +12,9 @@ from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
+from linkwork.mechanism.mass import Gravity, Mass
 from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import Question
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
@@ -179,7 +181,8 @@ def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | Plain
     fields = _common_fields(content)
     if form is LOOPS:
         own = {key: content.get(key, {}) for key in ("loops", "guess", "points", "links")}
-        return Loops(**fields, **own)
+        loads = tuple(map(Load.of_table, content.get("loads", ())))
+        return Loops(**fields, **own, **_masses(content), loads=loads)
     if form is EQUATIONS:
         return PlainEquations(**fields, equations=content["equations"], guess=content["guess"])
     return Linkage(**fields, **_linkage_fields(content))
@@ -212,7 +215,16 @@ def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
     parts = {
         table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
     }
-    return {**tables, **parts, "sketch": content.get("sketch", False)}
+    return {**tables, **parts, **_masses(content), "sketch": content.get("sketch", False)}
+
+
+def _masses(content: dict[str, Any]) -> dict[str, Any]:
+    """Units of masses and forces, gravity, and the masses of links."""
+    found: dict[str, Any] = {key: content[key] for key in ("mass", "force") if key in content}
+    if "gravity" in content:
+        found["gravity"] = Gravity(**content["gravity"])
+    masses = content.get("masses", {}).items()
+    return {**found, "masses": {link: Mass(**table) for link, table in masses}}
 
 
 def _without(

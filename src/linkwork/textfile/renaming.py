@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from linkwork.expression.grammar import RESERVED, parse, parse_equation
 from linkwork.expression.tree import Name, names_in
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.file_keys import Formula
+from linkwork.foundation.file_keys import Formula, Number
 from linkwork.foundation.names import GROUND, canonical, is_name
 from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.index import PARTS
@@ -70,10 +70,11 @@ def rename(edits: TextEdits, of: str, name: str, new: str) -> None:
     form = form_of(data)
     pairs = _names_in_formulas(of, name, new)
     for entry in entries(data, form.keys):
-        # formulas of numbers contain named dimensions only
-        if isinstance(entry.kind, Formula) and isinstance(entry.given, str):
+        # formulas of other numbers contain named dimensions only
+        load = isinstance(entry.kind, Number) and entry.path[0] == "loads"
+        if (isinstance(entry.kind, Formula) or load) and isinstance(entry.given, str):
             whole = of != "point" or (form is LOOPS and entry.path[0] == "points")
-            text = _renamed(entry.given, pairs, whole=whole)
+            text = _renamed(entry.given, pairs, whole=whole, load=load)
             if text != entry.given:
                 edits.put(entry.path, text)
         elif _refers(entry, of) and canonical(str(entry.given)) == folded:
@@ -112,7 +113,7 @@ def _keys(
     edits: TextEdits, of: str, folded: str, new: str
 ) -> Iterator[tuple[tuple[str, str], str]]:
     """Keys that contain the name, with the new keys."""
-    tables = {"point": _OF_POINTS, "link": ("links",), "part": ()}[of]
+    tables = {"point": _OF_POINTS, "link": ("links", "masses"), "part": ()}[of]
     for table in tables:
         for key in edits.keys((table,)):
             words = key.split()
@@ -132,9 +133,10 @@ def _names_in_formulas(of: str, name: str, new: str) -> dict[str, str]:
     return pairs
 
 
-def _renamed(formula: str, pairs: dict[str, str], *, whole: bool) -> str:
+def _renamed(formula: str, pairs: dict[str, str], *, whole: bool, load: bool) -> str:
     """A formula with other names; ``whole``: also without a coordinate behind them."""
-    trees = parse_equation(formula) if "=" in formula else (parse(formula),)
+    equation = "=" in formula and not load
+    trees = parse_equation(formula) if equation else (parse(formula, comparing=load),)
     found: list[Name] = [node for tree in trees for node in names_in(tree)]
     text = formula
     for node in sorted(found, key=lambda node: -node.column):

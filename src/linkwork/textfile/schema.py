@@ -13,6 +13,7 @@ from linkwork.foundation.file_keys import (
     Key,
     Kind,
     ListOf,
+    Measured,
     Named,
     Number,
     PlainNumber,
@@ -107,6 +108,8 @@ def _schema(kind: Kind) -> dict[str, Any]:
             return {"$ref": "#/$defs/equation" if equation else "#/$defs/formula"}
         case Speed():
             return {"$ref": "#/$defs/speed"}
+        case Measured(example):
+            return {"type": ["number", "string"], "examples": [example]}
         case Flag():
             return {"type": "boolean"}
         case Table(keys):

@@ -15,6 +15,7 @@ from linkwork.foundation.file_keys import (
     Key,
     Kind,
     ListOf,
+    Measured,
     Named,
     Number,
     PlainNumber,
@@ -110,6 +111,8 @@ class Structure:
                 )
             case Speed():
                 self._check_number(entry, 'a number or text such as "300 rpm"', path)
+            case Measured(example):
+                self._check_number(entry, f'a number or text such as "{example}"', path)
             case Text(words) if words and entry not in words:
                 wanted = " or ".join(f'"{word}"' for word in words)
                 self._wrong(path, f"must be {wanted}, got {_shown(entry)}")

@@ -14,6 +14,7 @@ from linkwork.foundation.paths import as_path
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.part.index import PARTS
 from linkwork.textfile.keys import FORMAT
@@ -91,6 +92,10 @@ def _head(description: Description) -> dict[str, Any]:
     for key in ("purpose", "source", "family", "configuration"):
         if text := getattr(description, key):
             found[key] = text
+    if isinstance(description, LoadedBodies):
+        usual = {"mass": LoadedBodies.mass, "force": LoadedBodies.force}
+        own = {key: getattr(description, key) for key in usual}
+        found |= {key: unit for key, unit in own.items() if unit != usual[key]}
     if isinstance(description, Linkage) and description.sketch:
         found["sketch"] = True
     return found
@@ -105,6 +110,7 @@ def _tables(description: Description) -> _Tables:
                 found[name] = dict(getattr(description, name))
             for name in PARTS:
                 found[name] = [_given(part) for part in getattr(description, name)]
+            found |= _masses(description)
             found |= _inputs(description)
         case Loops():
             found["loops"] = dict(description.loops)
@@ -112,6 +118,8 @@ def _tables(description: Description) -> _Tables:
             found |= _inputs(description)
             found["points"] = dict(description.points)
             found["links"] = dict(description.links)
+            found |= _masses(description)
+            found["loads"] = [_given(load) for load in description.loads]
         case PlainEquations():
             found["equations"] = dict(description.equations)
             found["guess"] = dict(description.guess)
@@ -123,6 +131,14 @@ def _tables(description: Description) -> _Tables:
     found["questions"] = [_given(question) for question in description.questions]
     needed = ("guess",)  # the reader requires it even if there are no unknowns
     return {name: table for name, table in found.items() if table or name in needed}
+
+
+def _masses(description: LoadedBodies) -> _Tables:
+    masses = {link: _given(mass) for link, mass in description.masses.items()}
+    gravity = description.gravity
+    # a table without keys would be left out
+    given = {} if gravity is None else {"size": gravity.size, **_given(gravity)}
+    return {"gravity": given, "masses": masses}
 
 
 def _inputs(description: Description) -> _Tables:
@@ -138,8 +154,9 @@ def _input(which: Input) -> dict[str, Any]:
 def _given(part: Any) -> dict[str, Any]:
     """The fields of a part that are given and differ from their defaults."""
     usual = {field.name: field.default for field in fields(part)}
+    names = {key.attribute: key.name for key in getattr(part, "keys", ())}
     return {
-        key: _rows(entry) if isinstance(entry, tuple) else entry
+        names.get(key, key): _rows(entry) if isinstance(entry, tuple) else entry
         for key, entry in vars(part).items()
         if entry is not None and entry != usual[key]
     }

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from linkwork.foundation.file_keys import Flag, Key, Text
+from linkwork.foundation.file_keys import Flag, Key, Number as NumberKey, Text
 from linkwork.mechanism.bodies import Bodies
+from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Outlines
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.part import PartChecks
@@ -52,6 +53,8 @@ class Belt(WheelPair):
     phase : number, optional
         Angle of the second wheel relative to the arm where that of the first is zero [file's angle
         unit]; by default as sketched.
+    pretension : number, optional
+        Tension of both strands at rest [force]; by default the slack strand has none.
 
     Examples
     --------
@@ -69,12 +72,14 @@ class Belt(WheelPair):
         *ARM_KEYS,
         *SIZE_KEYS,
         PHASE_KEY,
+        Key("pretension", NumberKey(), "Tension of both strands at rest; by default a slack chain"),
         Key("crossed", Flag(), "The belt crosses itself: the wheels turn in opposite directions"),
     )
     kind = JointKind("B", 2, "belt")
     disc_kind: ClassVar[str] = "pulley"
 
     crossed: bool = False
+    pretension: Number | None = None
 
     @property
     def together(self) -> bool:
@@ -86,6 +91,8 @@ class Belt(WheelPair):
 
     def check_shapes(self, checks: PartChecks) -> None:
         """Check that the wheels fit between their centres."""
+        if self.pretension is not None and checks.number(self.pretension, "pretension") < 0:
+            checks.add("must not be negative: a belt cannot push", "pretension")
         if self.radii is None:
             return
         distance = self.distance(checks.linkage)

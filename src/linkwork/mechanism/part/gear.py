@@ -12,13 +12,14 @@ from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.figures import Figure, Mesh, Outlines
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.part import AGREE, PartChecks
+from linkwork.mechanism.part.toothed import PRESSURE_KEY, ToothedPart
 from linkwork.mechanism.part.wheel_pair import ARM_KEYS, PHASE_KEY, SIZE_KEYS, WheelPair
 
 __all__ = ["Gear"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear(WheelPair):
+class Gear(ToothedPart, WheelPair):
     """Two wheels in mesh: r1 (θ1 - θ_arm) ± r2 (θ2 - θ_arm) is constant.
 
     Parameters
@@ -40,6 +41,8 @@ class Gear(WheelPair):
     phase : number, optional
         Angle of the second wheel relative to the arm where that of the first is zero [file's angle
         unit]; by default as sketched.
+    pressure_angle : number, optional
+        Pressure angle of the teeth [file's angle unit], for forces; 20 degrees unless given.
 
     Examples
     --------
@@ -58,6 +61,7 @@ class Gear(WheelPair):
         *SIZE_KEYS,
         PHASE_KEY,
         Key("internal", Flag(), "The larger wheel is a ring around the smaller one"),
+        PRESSURE_KEY,
     )
     kind = JointKind("G", 2, "gear pair")
     disc_kind: ClassVar[str] = "gear"
@@ -77,6 +81,7 @@ class Gear(WheelPair):
 
     def check_shapes(self, checks: PartChecks) -> None:
         """Check that the wheels fit between their centres."""
+        self.check_pressure(checks)
         if self.radii is None:
             return
         distance = self.distance(checks.linkage)

@@ -14,6 +14,7 @@ from linkwork.mechanism.part.cam import Cam
 from linkwork.mechanism.part.curve import Curve
 from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.gear import Gear
+from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.part.noncircular_gear import NoncircularGear
 from linkwork.mechanism.part.part import Part
 from linkwork.mechanism.part.rack import Rack
@@ -41,7 +42,8 @@ class _Tables:
     rolling: tuple[Rolling, ...] = ()
     cams: tuple[Cam, ...] = ()
     curves: tuple[Curve, ...] = ()
-    springs: tuple[Spring, ...] = ()  # noqa: V107
+    springs: tuple[Spring, ...] = ()
+    loads: tuple[Load, ...] = ()
 
 
 #: The kind of part of every table.
@@ -65,6 +67,10 @@ class JoinedBodies(_Tables, Bodies):
     def parts(self) -> tuple[Part, ...]:
         """Every part, in the order of the tables of a file."""
         return tuple(part for _, part in self.keyed_parts())
+
+    @property
+    def loaded(self) -> bool:
+        return bool(self.masses or self.loads or any(spring.pulls for spring in self.springs))
 
     def keyed_parts(self) -> Iterator[tuple[Key, Part]]:
         """All parts with their key paths in a file."""

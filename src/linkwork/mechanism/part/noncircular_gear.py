@@ -18,6 +18,7 @@ from linkwork.mechanism.figures import Contour, Figure, Outline, Outlines, circl
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.curve import COORDINATES, turned_back
 from linkwork.mechanism.part.part import AGREE, Inversion, PartChecks
+from linkwork.mechanism.part.toothed import PRESSURE_KEY, ToothedPart
 from linkwork.mechanism.part.wheel_pair import ARM_KEYS, PHASE_KEY, ArmPair
 
 __all__ = ["NoncircularGear", "PitchCurve"]
@@ -36,7 +37,7 @@ class PitchCurve(Contour):
 
 
 @dataclass(frozen=True, kw_only=True)
-class NoncircularGear(ArmPair):
+class NoncircularGear(ToothedPart, ArmPair):
     """Two external gears that roll on each other with the transmission law ψ(φ).
 
     φ and ψ are the angles of the first and the second wheel relative to the arm; the pitch radius
@@ -44,7 +45,7 @@ class NoncircularGear(ArmPair):
 
     Parameters
     ----------
-    wheels, centers, arm, phase
+    wheels, centers, arm, phase, pressure_angle
         As of :class:`~linkwork.mechanism.part.gear.Gear`.
     law : str, optional
         ψ as a decreasing function of phi; a formula of phi and dimensions.
@@ -77,6 +78,7 @@ class NoncircularGear(ArmPair):
         Key("pitch_curve", COORDINATES, "Or the first wheel's pitch curve about its centre"),
         Key("start", NumberKey("angle"), "Angle of the first wheel at which phi is 0"),
         PHASE_KEY,
+        PRESSURE_KEY,
     )
     kind = JointKind("G", 2, "non-circular gear pair")
     curves: ClassVar[tuple[str, str]] = ("_first", "_second")
@@ -89,6 +91,7 @@ class NoncircularGear(ArmPair):
     def check(self, checks: PartChecks) -> None:
         """Check the wheels, the arm and the law."""
         super().check(checks)
+        self.check_pressure(checks)
         given = [field for field in _LAWS if getattr(self, field)]
         if len(given) != 1:
             what = " and ".join(given) or "none of them"

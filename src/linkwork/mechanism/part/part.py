@@ -61,7 +61,8 @@ class Part:
     @classmethod
     def of_table(cls, table: Mapping[str, Any]) -> Self:
         """The part described by a table of a file."""
-        return cls(**table)
+        attributes = {key.name: key.attribute for key in cls.keys}
+        return cls(**{attributes[name]: entry for name, entry in table.items()})
 
     @property
     def label(self) -> str:
@@ -150,12 +151,12 @@ class Part:
         """A copy with new names of links, or of all names used."""
         changed: dict[str, object] = {}
         for key in self.keys:
-            entry = getattr(self, key.name)
+            entry = getattr(self, key.attribute)
             match key.kind:
                 case Text(of=named) if named and (not of or named == of) and entry is not None:
-                    changed[key.name] = rename(entry)
+                    changed[key.attribute] = rename(entry)
                 case ListOf(Text(), noun) if (not of or noun == of) and entry is not None:
-                    changed[key.name] = tuple(map(rename, entry))
+                    changed[key.attribute] = tuple(map(rename, entry))
         return replace(self, **changed)
 
 

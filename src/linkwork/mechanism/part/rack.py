@@ -11,8 +11,9 @@ from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines
 from linkwork.mechanism.joint import JointKind
-from linkwork.mechanism.part.part import LINK, POINT, SLIDER, NamedPart, PartChecks
+from linkwork.mechanism.part.part import LINK, POINT, SLIDER, PartChecks
 from linkwork.mechanism.part.slider import Slider
+from linkwork.mechanism.part.toothed import PRESSURE_KEY, ToothedPart
 
 __all__ = ["Rack", "RackBar"]
 
@@ -28,7 +29,7 @@ class RackBar(Figure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rack(NamedPart):
+class Rack(ToothedPart):
     """A rack and pinion: the displacement of a slider equals the arc rolled by the pinion.
 
     The sketch selects the side of the rack on which the pinion is.
@@ -45,6 +46,8 @@ class Rack(NamedPart):
         The slider that is the rack.
     radius : number
         Pitch radius of the pinion [length].
+    pressure_angle : number, optional
+        Pressure angle of the teeth [file's angle unit], for forces; 20 degrees unless given.
 
     Examples
     --------
@@ -66,6 +69,7 @@ class Rack(NamedPart):
         Key("center", POINT, "Its centre of rotation", required=True),
         Key("slider", SLIDER, "The slider of the rack", required=True),
         Key("radius", NumberKey("length"), "Pitch radius of the pinion", required=True),
+        PRESSURE_KEY,
     )
     kind = JointKind("G", 2, "rack and pinion")
 
@@ -98,6 +102,7 @@ class Rack(NamedPart):
                 f'slider "{self.slider}" is not defined {choices("sliders", names)}', "slider"
             )
         checks.positive(self.radius, "radius", "radius")
+        self.check_pressure(checks)
         if not known or slider is None:
             return
         checks.on(self.center, self.pinion, "center")

@@ -49,6 +49,8 @@ class MechanismNames:
         The unit of the input in derivatives: ``rad`` or the length unit; "" without an input.
     lead : str
         The leading input, the first one that changes from row to row; "" without an input.
+    further : tuple of RowQuantity
+        Quantities that this mechanism alone has, of no part: those of its forces.
     """
 
     units: Units
@@ -62,6 +64,7 @@ class MechanismNames:
     points: tuple[str, ...] = ()
     by: str = ""
     lead: str = ""
+    further: tuple[RowQuantity, ...] = ()
 
     @cached_property
     def dyads(self) -> tuple[Dyad, ...]:

@@ -94,9 +94,9 @@ class Quantities:
     def derived(self) -> dict[str, Asked]:
         """Quantities that follow from the mechanism's own, by name."""
         found: dict[str, Asked] = {}
-        for row in every.ROW_QUANTITIES:
+        for row in (*every.ROW_QUANTITIES, *self.names.further):
             for part, kind in row.of(self.names).items():
-                own = Quantity(name=f"{part}.{row.word}", kind=kind)
+                own = Quantity(name=f"{part}.{row.word}" if part else row.word, kind=kind)
                 found[own.name] = Asked(
                     names=self.names, own=own, group=Group.DERIVED, row=row, part=part
                 )

@@ -1,0 +1,146 @@
+"""Forces as a page of text: efforts, reactions, totals, and how far the two ways agree."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwork.cli.motion_page import range_lines
+from linkwork.cli.position_page import inputs_text
+from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
+from linkwork.cli.text_table import Column, fixed, significant, table_lines
+from linkwork.results.motion import Motion
+from linkwork.results.reactions import ForceStatus, Reactions
+from linkwork.results.table import Table
+
+__all__ = ["motion_forces_lines", "position_forces_lines", "reactions_data"]
+
+_TOTALS = ("shaking", "power", "kinetic_energy", "stored_energy", "load_power", "energy_rate")
+
+
+def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[str]:
+    """All forces at one position, or those asked for."""
+    where = inputs_text(
+        {name: float(value) for name, value in found.inputs.items()}, found.input_units
+    )
+    lines = title_lines(found.mechanism)
+    if found.status in (ForceStatus.NO_POSITION, ForceStatus.NO_RATES):
+        return [*lines, *sentence(bad, "No forces", where), *fields([("why", found.status.value)])]
+    lines += sentence(good, "Forces", where)
+    if names:
+        return [*lines, "", *_numbers("quantity", found, names)]
+    vectors = [stem for stem in _stems(found) if not stem.startswith("shaking")]
+    pairs = {f"{stem}.{axis}" for stem in vectors for axis in "xy"}
+    totals = [name for name in found.values if name.partition(".")[0] in _TOTALS]
+    others = [
+        name
+        for name in found.values
+        if name not in {*pairs, *totals, *found.efforts, "disagreement"}
+    ]
+    for title, listed in (("effort", found.efforts), ("reaction", others)):
+        if listed:
+            lines += ["", *_numbers(title, found, listed)]
+    if vectors:
+        lines += ["", *_vectors(found, vectors)]
+    lines += ["", *_numbers("total", found, totals)]
+    return [*lines, "", *fields(list(_evidence(found)))]
+
+
+def motion_forces_lines(found: Reactions, motion: Motion, names: Sequence[str] = ()) -> list[str]:
+    """The smallest and largest values of all forces over a motion."""
+    name = next(iter(found.inputs), "")
+    values, unit = found.inputs[name], found.input_units[name]
+    head = f"Forces for {name} from {values[0]:g} to {values[-1]:g} {unit}: {len(found)} positions"
+    lines = [*title_lines(found.mechanism), *sentence(str, head)]
+    counts = Counter(status for status in found.statuses if status is not ForceStatus.FOUND)
+    told = [
+        (status.name.lower().replace("_", " "), f"{count}: {status.value}")
+        for status, count in counts.items()
+    ]
+    lines += fields([("found", str(len(found) - counts.total())), *told])
+    listed = [
+        name
+        for name in names or found.values
+        if name != "disagreement" and np.isfinite(found.values[name]).any()
+    ]
+    lines += ["", *range_lines(motion, listed)] if listed else []
+    return [*lines, "", *fields(list(_evidence(found)))]
+
+
+def reactions_data(found: Reactions, table: Table) -> dict[str, Any]:
+    """The forces as JSON-ready data."""
+    return {
+        "mechanism": found.mechanism,
+        "status": found.status.name,
+        "units": dict(table.units),
+        "columns": {name: column.tolist() for name, column in table.columns.items()},
+        "undetermined": [name for name, rows in found.undetermined.items() if rows.any()],
+        "lifted": [name for name, rows in found.lifted.items() if rows.any()],
+    }
+
+
+def _stems(found: Reactions) -> Iterator[str]:
+    """The names of vectors without their axis."""
+    for name in found.values:
+        stem, _, axis = name.rpartition(".")
+        if axis == "x" and f"{stem}.y" in found.values:
+            yield stem
+
+
+def _numbers(title: str, found: Reactions, names: Sequence[str]) -> list[str]:
+    cells = [significant(float(found.values[name])) for name in names]
+    return table_lines(
+        [
+            Column(header=title, cells=list(names)),
+            Column(
+                header="value", cells=cells, align="point", units=[found.units[n] for n in names]
+            ),
+        ]
+    )
+
+
+def _vectors(found: Reactions, stems: Sequence[str]) -> list[str]:
+    """Forces by components, size and direction."""
+    places = [complex(*(float(found.values[f"{stem}.{axis}"]) for axis in "xy")) for stem in stems]
+    unit = found.units[f"{stems[0]}.x"]
+    parts = {
+        f"x [{unit}]": [place.real for place in places],
+        f"y [{unit}]": [place.imag for place in places],
+        f"size [{unit}]": [math.hypot(place.real, place.imag) for place in places],
+    }
+    angles = [math.degrees(cmath.phase(p)) if abs(p) > 0.0 else math.nan for p in places]
+    return table_lines(
+        [
+            Column(header="force", cells=list(stems)),
+            *(
+                Column(header=header, cells=[significant(v) for v in values], align="point")
+                for header, values in parts.items()
+            ),
+            Column(header="angle", cells=[fixed(a, 2) for a in angles], align="point"),
+            Column(header="on", cells=[_carrier(found.about[f"{stem}.x"]) for stem in stems]),
+        ]
+    )
+
+
+def _carrier(about: str) -> str:
+    """The body that a force acts on, from its explanation."""
+    return about.rpartition(" on ")[2]
+
+
+def _evidence(found: Reactions) -> Iterator[tuple[str, str]]:
+    """How far virtual work and free bodies agree, and what is wrong with joints."""
+    if "disagreement" in found.values:
+        worst = np.nanmax(found.values["disagreement"], initial=0.0)
+        yield "check", f"virtual work and free bodies agree to {worst:.1e} of the largest term"
+    lost = [name for name, rows in found.undetermined.items() if rows.any()]
+    if lost:
+        yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
+    for name, rows in found.lifted.items():
+        if rows.any():
+            where = "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
+            yield "lifts off", f"{name} would have to pull{where}"

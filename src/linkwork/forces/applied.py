@@ -1,0 +1,150 @@
+"""Loads in all rows: given forces and torques, springs, weight and inertia of masses."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import names_in
+from linkwork.forces.geometry import Geometry
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.names import GROUND
+from linkwork.foundation.units import force_of_inertia
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.mass import Mass
+
+__all__ = ["AppliedLoads", "Body", "time_of"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """A mass in motion: its weight and inertia as a force and a torque, (B,) each.
+
+    ``centre`` in the link's frame, ``place`` at rest on ground; the rates are those of its weight's
+    work and of its kinetic energy.
+    """
+
+    link: str
+    centre: complex
+    place: ComplexArray
+    force: ComplexArray
+    torque: Array
+    weight_rate: Array
+    kinetic_rate: Array
+
+
+@dataclass(eq=False)
+class AppliedLoads:
+    """All loads on a mechanism.
+
+    ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
+    springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
+    """
+
+    geometry: Geometry
+    rate: float
+    forces: list[tuple[str, ComplexArray, str | None]] = field(default_factory=list)
+    torques: list[tuple[str, Array]] = field(default_factory=list)
+    masses: list[Body] = field(default_factory=list)
+    kinetic: list[Array] = field(default_factory=list)
+    stored: list[Array] = field(default_factory=list)
+    stored_rates: list[Array] = field(default_factory=list)
+
+    def push(self, point: str, force: ComplexArray, link: str | None = None) -> None:
+        """A force on a point, (B,), on the pin there or on one of its links."""
+        self.forces.append((point, force, link))
+
+    def turn(self, link: str, torque: Array) -> None:
+        """A torque on a link, (B,)."""
+        self.torques.append((link, torque))
+
+    def value(self, number: Number) -> Array:
+        """A number or formula in all rows, (B,)."""
+        geometry, model = self.geometry, self.geometry.model
+        if not isinstance(number, str):
+            return np.full(geometry.rows, float(model.description.numbers(number)))
+        tree = parse(number, comparing=True)
+        names = {node.name: self._named(node.name) for node in names_in(tree)}
+        with np.errstate(all="ignore"):
+            known = {name: jet for name, jet in names.items() if jet is not None}
+            found = evaluate(tree, known, model.units.angle)
+        return np.array(np.broadcast_to(found.v, geometry.rows), dtype=float)
+
+    def _named(self, name: str) -> Jet | None:
+        model = self.geometry.model
+        known: Mapping[str, float] = model.description.numbers.known
+        if name in known:
+            return Jet.constant(known[name])
+        if name == "t":
+            return _constant(time_of(self.geometry))
+        if name in CONSTANTS:
+            return None
+        asked = model.motion_quantities.find(name)
+        return _constant(np.atleast_1d(asked.values(self.geometry.solved, model.speed)))
+
+    def weigh(self, loaded: LoadedBodies) -> None:
+        """Add the weight and the inertia of all masses."""
+        if not loaded.masses:
+            return
+        unit = force_of_inertia(loaded.mass, loaded.length, loaded.force)
+        fall = 0j
+        if loaded.gravity is not None:
+            size = loaded.gravity.acceleration(loaded.numbers, loaded.length)
+            angle, way = loaded.gravity.angle, -1j
+            if angle is not None:
+                way = cmath.exp(1j * loaded.numbers(angle) * loaded.angle.radians)
+            fall = size * way
+        for link, mass in loaded.masses.items():
+            if link != GROUND:
+                self._add_mass(link, mass, unit, fall)
+
+    def _add_mass(self, link: str, given: Mass, unit: float, fall: complex) -> None:
+        geometry = self.geometry
+        numbers = geometry.model.description.numbers
+        mass, inertia = numbers(given.mass) * unit, numbers(given.inertia) * unit
+        centre = complex(*map(numbers, given.center or (0.0, 0.0)))
+        if given.shape is not None:
+            first, second = geometry.links[link][:2]
+            span = abs(geometry.place(second).v - geometry.place(first).v)
+            length = float(np.nanmax(span)) if np.isfinite(span).any() else np.nan
+            centre, inertia = complex(length / 2.0), mass * length**2 / 12.0
+        place, turn, rate = geometry.local(link, centre), geometry.angle(link), self.rate
+        velocity, bend, spin, turned = (
+            # without a speed nothing moves, and rates need not exist
+            part * rate**order if rate else np.zeros(geometry.rows)
+            for part, order in ((place.d1, 1), (place.d2, 2), (turn.d1, 1), (turn.d2, 2))
+        )
+        falling = mass * (velocity * np.conj(fall)).real
+        self.masses.append(
+            Body(
+                link=link,
+                centre=centre,
+                place=place.v,
+                force=np.asarray(mass * (fall - bend), dtype=complex),
+                torque=-inertia * turned,
+                weight_rate=falling,
+                kinetic_rate=mass * (velocity.conj() * bend).real + inertia * spin * turned,
+            )
+        )
+        self.stored.append(-mass * (place.v * np.conj(fall)).real)
+        self.stored_rates.append(-falling)
+        self.kinetic.append(0.5 * (mass * np.abs(velocity) ** 2 + inertia * spin**2))
+
+
+def time_of(geometry: Geometry) -> Array:
+    """The time since the first row of the table [s]; NaN without a speed."""
+    model = geometry.model
+    lead = list(model.motion_quantities.names.inputs).index(model.motion_quantities.names.lead)
+    speed = model.speed or np.nan
+    return np.asarray((geometry.lead - model.rows[0, lead]) / speed)
+
+
+def _constant(value: Array) -> Jet:
+    zero = np.zeros(())
+    return Jet(value, zero, zero)

@@ -1,0 +1,173 @@
+"""Places, angles and rates of the bodies of a mechanism in all rows."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
+from linkwork.results.quantities.definition import Solved
+from linkwork.results.quantity import Kind
+
+__all__ = ["Geometry"]
+
+
+class Geometry:
+    """A mechanism's points and links in B rows, each computed once.
+
+    Derivatives are with respect to the leading input; ``partial`` ones with respect to each of the
+    p inputs alone; angles in radians.
+
+    Parameters
+    ----------
+    model : Model
+    solved : Solved
+        One position or the rows of a motion.
+    """
+
+    def __init__(self, model: Model, solved: Solved) -> None:
+        self.model, self.solved = model, solved
+        description = model.description
+        assert isinstance(description, LoadedBodies)
+        self.links = description.carried
+        self._places: dict[str, Jet] = {}
+        self._angles: dict[str, Jet] = {}
+
+    @cached_property
+    def rows(self) -> int:
+        """B."""
+        first = next(iter(self.points), None)
+        return 1 if first is None else len(self.place(first).v)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """The points of the file."""
+        return self.model.motion_quantities.names.points
+
+    @cached_property
+    def input_rates(self) -> Array:
+        """The rate of every input with respect to the leading one, (p,)."""
+        return leading_input(self.model.rows)[1]
+
+    def own(self, name: str) -> Jet:
+        """A variable of the mechanism [rad] or [length]."""
+        jet = self.solved.own(name)
+        kind = self.model.motion_quantities.own[name].own.kind
+        return Jet(*map(np.atleast_1d, (jet.v * self.model.units.scale(kind), jet.d1, jet.d2)))
+
+    def place(self, point: str) -> Jet:
+        """A point as x + iy."""
+        if point not in self._places:
+            jet = self.solved.place(point)
+            self._places[point] = Jet(*map(np.atleast_1d, (jet.v, jet.d1, jet.d2)))
+        return self._places[point]
+
+    def direction(self, link: str) -> Jet:
+        """The unit vector of a link's x axis: from its first point towards its second."""
+        if link == GROUND:
+            one = np.ones(self.rows, dtype=complex)
+            return Jet(one, 0.0 * one, 0.0 * one)
+        points = self.links[link]
+        if len(points) > 1:
+            span = self.place(points[1]) - self.place(points[0])
+            return _times(span, 1.0 / np.abs(span.v))  # of constant length
+        turn = self.angle(link)
+        unit = np.exp(1j * turn.v)
+        return Jet(unit, 1j * turn.d1 * unit, (1j * turn.d2 - turn.d1**2) * unit)
+
+    def angle(self, link: str) -> Jet:
+        """The angle of a link."""
+        if link not in self._angles:
+            self._angles[link] = self._angle(link)
+        return self._angles[link]
+
+    def _angle(self, link: str) -> Jet:
+        if link == GROUND:
+            zero = np.zeros(self.rows)
+            return Jet(zero, zero, zero)
+        if link in self.model.equations.links:
+            return self.own(link)
+        unit = self.direction(link)
+        first = unit.d1 / unit.v
+        second = (unit.d2 / unit.v).imag
+        return Jet(np.unwrap(np.angle(unit.v)), first.imag, second)
+
+    def local(self, link: str, place: complex) -> Jet:
+        """A point given in the frame of a link."""
+        return self.place(self.links[link][0]) + _times(self.direction(link), place)
+
+    @cached_property
+    def variables(self) -> Array:
+        """All variables, internal units, (B, N)."""
+        named = (self.own(variable.name).v for variable in self.model.equations.variables)
+        return np.stack(list(named), axis=1)
+
+    @cached_property
+    def _partials(self) -> tuple[ComplexArray, Array]:
+        """Derivatives with respect to each input: points (p, B, P), variables (p, B, N)."""
+        compiled, v = self.model.compiled, self.variables
+        units = np.eye(len(self.model.equations.inputs))
+        rates = np.stack([compiled.solver.rates(v, unit).first for unit in units])
+        places = [compiled.points.jet(v, rate, np.zeros_like(v))[1] for rate in rates]
+        return np.stack(places), rates
+
+    @property
+    def alone(self) -> bool:
+        """Whether there is one input, which leads."""
+        return len(self.model.equations.inputs) == 1
+
+    def partial(self, point: str) -> ComplexArray:
+        """Derivatives of a point with respect to each input, (p, B)."""
+        if self.alone:
+            found: ComplexArray = self.place(point).d1[None, :]
+            return found
+        return self._partials[0][:, :, self.model.compiled.points.names.index(point)]
+
+    def turning(self, link: str) -> Array:
+        """Derivatives of a link's angle with respect to each input, (p, B)."""
+        count = len(self.model.equations.inputs)
+        if link == GROUND or self.alone:
+            found: Array = np.broadcast_to(self.angle(link).d1, (count, self.rows))
+            return found
+        if link not in self.model.equations.links:
+            first, second = self.links[link][:2]
+            span = self.place(second).v - self.place(first).v
+            return np.asarray(((self.partial(second) - self.partial(first)) / span).imag)
+        variable = self.model.equations.links[link].variable
+        if variable is None:
+            return np.zeros((count, self.rows))
+        names = [x.name for x in self.model.equations.variables]
+        symbols = [x.symbol for x in self.model.equations.variables]
+        k = names.index(variable) if variable in names else symbols.index(variable)
+        return self._partials[1][:, :, k]
+
+    def partial_local(self, link: str, place: complex) -> ComplexArray:
+        """Derivatives of a point in the frame of a link with respect to each input, (p, B)."""
+        arm = 1j * self.direction(link).v * place
+        found: ComplexArray = self.partial(self.links[link][0]) + self.turning(link) * arm
+        return found
+
+    @cached_property
+    def length(self) -> float:
+        """The longest link."""
+        return self.model.equations.length_scale
+
+    @property
+    def lead(self) -> Array:
+        """The leading input, [rad] or [length]."""
+        return self.own(self.model.motion_quantities.names.lead).v
+
+    def kind(self, name: str) -> Kind:
+        """Whether an input is an angle or a length."""
+        return self.model.motion_quantities.names.inputs[name]
+
+
+def _times(jet: Jet, factor: complex | Array) -> Jet:
+    """A jet times what does not change along the motion."""
+    return Jet(jet.v * factor, jet.d1 * factor, jet.d2 * factor)

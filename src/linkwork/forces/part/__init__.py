@@ -1,0 +1,1 @@
+"""The reactions of parts, one module for each kind."""

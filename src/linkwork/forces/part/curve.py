@@ -1,0 +1,43 @@
+"""Reaction of a curve: it pushes its pin along its normal."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.equations.outline import Outline
+from linkwork.forces.free_bodies import Act, FreeBodies
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.mechanism.part.curve import Curve
+from linkwork.results.quantity import Kind
+
+__all__ = ["drive", "write"]
+
+
+def write(curve: Curve, bodies: FreeBodies) -> None:
+    """The normal force on the pin, positive to the left of the curve."""
+    tangent = _tangent(curve, bodies)
+    place = bodies.geometry.place(curve.point).v
+    normal = 1j * tangent / np.abs(tangent)
+    force = bodies.pair(bodies.at(curve.point), bodies.link(curve.on), place, normal)
+    about = f"force of the curve on the pin {curve.point}, to its left"
+    bodies.read(f"{curve.name}.normal", Kind.FORCE, about, force)
+
+
+def drive(curve: Curve, bodies: FreeBodies) -> int:
+    """The force along the curve for a unit of work per unit of its coordinate."""
+    tangent = _tangent(curve, bodies)
+    along = tangent / np.abs(tangent) ** 2
+    place = bodies.geometry.place(curve.point).v
+    pin, on = bodies.at(curve.point), bodies.link(curve.on)
+    return bodies.unknown(Act(pin, place, along), Act(on, place, -along))
+
+
+def _tangent(curve: Curve, bodies: FreeBodies) -> ComplexArray:
+    """The derivative of the curve by its coordinate, (B,)."""
+    numbers, geometry = bodies.linkage.numbers, bodies.geometry
+    points = [complex(numbers(x), numbers(y)) for x, y in curve.through]
+    outline = Outline.through(points, closed=curve.closed)
+    u = geometry.own(curve.name).v
+    local = outline.x.jet(u)[1] + 1j * outline.y.jet(u)[1]
+    found: ComplexArray = local * geometry.direction(curve.on).v
+    return found

@@ -1,0 +1,41 @@
+"""The line of a guide: its direction, and forces along it and across."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from linkwork.forces.free_bodies import FreeBodies
+from linkwork.forces.geometry import Geometry
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.mechanism.linkage import Linkage
+
+__all__ = ["across_line", "along_line", "line_of", "side_of"]
+
+
+def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
+    """The unit vector from the first to the second point of a line, (B,)."""
+    span = geometry.place(line[1]).v - geometry.place(line[0]).v
+    unit: ComplexArray = span / np.abs(span)
+    return unit
+
+
+def side_of(line: tuple[str, str], point: str, linkage: Linkage) -> float:
+    """The side of a line on which a point is sketched: 1 for left, -1 for right."""
+    start, end, place = map(linkage.sketched, (*line, point))
+    return math.copysign(1.0, ((place - start) * (end - start).conjugate()).imag)
+
+
+def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
+    """A force on a point along a line of another body."""
+    geometry = bodies.geometry
+    way, place = line_of(line, geometry), geometry.place(point).v
+    return bodies.pair(bodies.at(point), bodies.link(on), place, way)
+
+
+def across_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:
+    """A force on a point to the left of a line of another body."""
+    geometry = bodies.geometry
+    way, place = line_of(line, geometry), geometry.place(point).v
+    return bodies.pair(bodies.at(point), bodies.link(on), place, 1j * way)

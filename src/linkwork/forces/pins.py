@@ -1,0 +1,58 @@
+"""Forces in pins: each link at a point is acted on by the pin there, which is in equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwork.forces.free_bodies import Act, FreeBodies, Holder, Reading
+from linkwork.results.quantity import Kind
+
+__all__ = ["join_pins", "read_first_links"]
+
+
+def join_pins(bodies: FreeBodies) -> None:
+    """Add the forces between all links that share a point.
+
+    The first link at a point takes what acts on the pin: loads, guides, cylinders; the others act
+    on it through the pin.
+    """
+    for point, links in bodies.joined.items():
+        if len(links) < 2:
+            continue
+        place = bodies.geometry.place(point).v
+        for other in links[1:]:
+            for axis, unit in (("x", 1.0 + 0j), ("y", 1j)):
+                along = np.array([unit])
+                force = bodies.pair(Holder(other), Holder(links[0], point), place, along)
+                for name in _names(bodies, point, other, axis):
+                    about = f"force of the pin {point} on {other}"
+                    bodies.read(name, Kind.FORCE, about, force)
+
+
+def _names(bodies: FreeBodies, point: str, link: str, axis: str) -> list[str]:
+    """What a force on a link at a pin is called."""
+    names = bodies.carriers[point]
+    if len(names) > 2:
+        return [f"{point}.force.{link}.{axis}"]
+    return [f"{point}.force.{axis}"] if link == names[-1] else []
+
+
+def read_first_links(bodies: FreeBodies, known: Sequence[Act]) -> None:
+    """Name the force on the first link at every pin of three: the sum of what it takes."""
+    for point, links in bodies.joined.items():
+        if len(bodies.carriers[point]) < 3 or not links:
+            continue
+        given = bodies.through(point, known)
+        forces = [(k, bodies.through(point, acts)) for k, acts in enumerate(bodies.unknowns)]
+        for axis, part in (("x", np.real), ("y", np.imag)):
+            bodies.readings.append(
+                Reading(
+                    name=f"{point}.force.{links[0]}.{axis}",
+                    kind=Kind.FORCE,
+                    about=f"force of the pin {point} on {links[0]}",
+                    terms=tuple((k, part(force)) for k, force in forces if force.any()),
+                    constant=part(given),
+                )
+            )

@@ -1,0 +1,164 @@
+"""The quantities of forces in the registry of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.jets import Jet
+from linkwork.expression.tree import names_in
+from linkwork.forces.system import ForceRows, solve_forces
+from linkwork.foundation.errors import LinkworkError, MechanismError, Problem
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
+from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import RowValues
+from linkwork.results.quantities.definition import (
+    UNKNOWN,
+    MechanismNames,
+    RowQuantity,
+    Solved,
+)
+from linkwork.results.quantity import Kind
+
+__all__ = ["force_quantities"]
+
+
+def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
+    """One quantity for every effort, reaction and total of a loaded mechanism.
+
+    Raises
+    ------
+    MechanismError
+        For loads that use unknown quantities.
+    """
+    _check_formulas(model)
+    # the names only: at the guess, which need not be a position
+    v = model.compiled.solver.solve(model.equations.start[None, :]).v
+    still = np.zeros_like(v)
+    guess = RowValues(model, v, still, still, np.ones(1, dtype=bool))
+    solved = _Solver(model)
+    return tuple(
+        RowQuantity(
+            word=name,
+            about=force.about,
+            needs=2,
+            of=_Whole(force.kind),
+            evaluate=_Evaluation(solved, name),
+        )
+        for name, force in solve_forces(model, guess).values.items()
+    )
+
+
+class SolvedDesign(Solved, Protocol):
+    """Solved positions of one design of a family, (R,)."""
+
+    @property
+    def model(self) -> Model:
+        """A model with the numbers of the design."""
+
+
+@runtime_checkable
+class SolvedDesigns(Solved, Protocol):
+    """Solved positions of D designs, (R, D)."""
+
+    def apart(self) -> Iterator[SolvedDesign | None]:
+        """Every design by itself; ``None`` for one without positions."""
+
+
+class _Solver:
+    """Solves the forces of a motion once for all its quantities."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.known: WeakKeyDictionary[Solved, ForceRows] = WeakKeyDictionary()
+        self.families: WeakKeyDictionary[SolvedDesigns, list[ForceRows | None]] = (
+            WeakKeyDictionary()
+        )
+
+    def __getstate__(self) -> Model:
+        return self.model
+
+    def __setstate__(self, model: Model) -> None:
+        self.__init__(model)  # type: ignore[misc]  # caches are not kept
+
+    def forces(self, solved: Solved) -> ForceRows:
+        """The forces of solved positions."""
+        if solved not in self.known:
+            self.known[solved] = solve_forces(self.model, solved)
+        return self.known[solved]
+
+    def designs(self, solved: SolvedDesigns) -> list[ForceRows | None]:
+        """The forces of every design of a family."""
+        if solved not in self.families:
+            self.families[solved] = [
+                None if own is None else solve_forces(own.model, own) for own in solved.apart()
+            ]
+        return self.families[solved]
+
+
+@dataclass(frozen=True)
+class _Whole:
+    """The mechanism itself has the quantity."""
+
+    kind: Kind
+
+    def __call__(self, names: MechanismNames) -> Mapping[str, Kind]:
+        return {"": self.kind}
+
+
+@dataclass(frozen=True, eq=False)
+class _Evaluation:
+    """The values of one quantity."""
+
+    solver: _Solver
+    name: str
+
+    def __call__(self, names: MechanismNames, solved: Solved, part: str) -> Jet:
+        places = solved.place(names.points[0]).v
+        if not isinstance(places, np.ndarray | np.generic):
+            raise TypeError("forces are computed from arrays, and cannot be recorded")
+        shape = places.shape
+        if isinstance(solved, SolvedDesigns):
+            value = np.full(shape, np.nan)
+            for k, rows in enumerate(self.solver.designs(solved)):
+                if rows is not None:
+                    value[:, k] = rows.values[self.name].value
+        else:
+            value = self.solver.forces(solved).values[self.name].value.reshape(shape)
+        return Jet(value, UNKNOWN, UNKNOWN)
+
+
+def _check_formulas(model: Model) -> None:
+    """Refuse loads that use quantities which the mechanism does not have."""
+    description = model.description
+    assert isinstance(description, Linkage | Loops)
+    problems = []
+    for k, load in enumerate(description.loads):
+        for key, number in load.formulas:
+            message = _mistake(model, number) if isinstance(number, str) else None
+            if message is not None:
+                problems.append(Problem(key=("loads", k, *key), message=message))
+    if problems:
+        raise MechanismError(problems, f'mechanism "{description.name}"')
+
+
+def _mistake(model: Model, formula: str) -> str | None:
+    """What is wrong with the names of a formula."""
+    for node in names_in(parse(formula, comparing=True)):
+        if node.name in CONSTANTS or node.name in model.description.numbers.known:
+            continue
+        if node.name == "t":
+            if model.speed is None:
+                return f"column {node.column}: the time t needs the speed of an input"
+            continue
+        try:
+            model.motion_quantities.find(node.name).check_rate(model.speed)
+        except LinkworkError as error:
+            return f"column {node.column}: {error}"
+    return None

@@ -1,0 +1,62 @@
+"""Forces of a position and of a motion as results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.forces.system import solve_forces
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+from linkwork.results.quantities.definition import Solved
+from linkwork.results.reactions import ForceStatus, Reactions
+
+__all__ = ["forces_of_motion", "forces_of_position"]
+
+
+def forces_of_position(model: Model, position: Position) -> Reactions:
+    """Efforts and reactions at one position.
+
+    Raises
+    ------
+    InputError
+        If nothing loads the mechanism.
+    """
+    return _reactions(model, position, dict(position.input), position.input_units, ())
+
+
+def forces_of_motion(model: Model, motion: Motion) -> Reactions:
+    """Efforts and reactions in all rows of a motion; raises like :func:`forces_of_position`."""
+    return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),))
+
+
+def _reactions(
+    model: Model,
+    solved: Solved,
+    inputs: Mapping[str, Array] | Mapping[str, float],
+    input_units: Mapping[str, str],
+    shape: tuple[int, ...],
+) -> Reactions:
+    if not getattr(model.description, "loaded", False):
+        raise InputError(
+            f"nothing loads {model.description.name}: add [masses], [[loads]] or a spring with a "
+            "stiffness"
+        )
+    rows = solve_forces(model, solved)
+    values = rows.values.items()
+    return Reactions(
+        mechanism=model.description.name,
+        inputs={name: np.asarray(value) for name, value in inputs.items()},
+        input_units=input_units,
+        values={name: force.value.reshape(shape) for name, force in values},
+        kinds={name: force.kind for name, force in values},
+        units={name: model.units.of(force.kind) for name, force in values},
+        about={name: force.about for name, force in values},
+        statuses=ForceStatus.of_codes(rows.status),
+        undetermined={name: force.undetermined.reshape(shape) for name, force in values},
+        lifted={name: force.lifted.reshape(shape) for name, force in values},
+    )

@@ -1,0 +1,273 @@
+"""The forces of a mechanism: reactions by free bodies, efforts by virtual work, each checking the
+other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.drives import drive_inputs, effort_kind, effort_name
+from linkwork.forces.equilibrium import balance
+from linkwork.forces.free_bodies import Act, FreeBodies, Reading
+from linkwork.forces.geometry import Geometry
+from linkwork.forces.part.index import join_parts
+from linkwork.forces.part.load import apply_load
+from linkwork.forces.pins import join_pins, read_first_links
+from linkwork.forces.read_bodies import read_geometry
+from linkwork.forces.virtual_work import efforts, energies
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.loops import Loops
+from linkwork.motion.model import Model
+from linkwork.results.quantities.definition import Solved
+from linkwork.results.quantity import Kind
+from linkwork.results.reactions import ForceStatus
+
+__all__ = ["ForceRows", "ForceValue", "solve_forces"]
+
+_UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ForceValue:
+    """A quantity of forces in B rows.
+
+    ``undetermined``: where a self-stress changes it; ``lifted``: where a joint that can only push
+    would have to pull.
+    """
+
+    kind: Kind
+    about: str
+    value: Array
+    undetermined: BoolArray
+    lifted: BoolArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ForceRows:
+    """All forces in B rows: quantities by name, and the status code of every row."""
+
+    values: Mapping[str, ForceValue]
+    status: StatusArray
+
+
+@dataclass(eq=False)
+class _Solution:
+    geometry: Geometry
+    applied: AppliedLoads
+    regular: BoolArray
+    values: dict[str, ForceValue] = field(default_factory=dict)
+
+    def add(
+        self, name: str, kind: Kind, about: str, value: Array,
+        undetermined: BoolArray | None = None, *, pushes: bool = False,
+    ) -> None:  # fmt: skip
+        none = np.zeros(self.geometry.rows, dtype=bool)
+        unknown = none if undetermined is None else undetermined & self.regular
+        value = np.where(self.regular & ~unknown, value, np.nan)
+        size = np.nanmax(np.abs(value), initial=0.0)
+        lifted = value < -1e-9 * size if pushes else none
+        self.values[name] = ForceValue(
+            kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted
+        )
+
+
+def solve_forces(model: Model, solved: Solved) -> ForceRows:
+    """All forces of solved positions.
+
+    Raises
+    ------
+    InputError
+        If a load uses a quantity that the mechanism does not have.
+    """
+    description = model.description
+    assert isinstance(description, LoadedBodies)
+    geometry = Geometry(model, solved)
+    applied = AppliedLoads(geometry, model.speed or 0.0)
+    bodies = None
+    with np.errstate(all="ignore"):
+        applied.weigh(description)
+        if isinstance(description, Linkage):
+            bodies = _free_bodies(description, geometry, applied)
+        elif isinstance(description, Loops):
+            for load in description.loads:
+                apply_load(load, applied)
+            bodies = _read_bodies(geometry, applied)
+        by_work, largest = efforts(applied)
+        found = _Solution(geometry, applied, _has_rates(by_work, geometry))
+        if bodies is not None:
+            _add_reactions(found, bodies)
+        drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
+        _add_efforts(found, by_work, largest, drives)
+        _add_totals(found)
+    lost = ~np.isfinite(next(iter(_anything(geometry))))
+    status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
+    status[lost] = ForceStatus.NO_POSITION.code
+    partly = np.any([value.undetermined for value in found.values.values()], axis=0)
+    status[partly & found.regular] = ForceStatus.UNDETERMINED.code
+    return ForceRows(values=found.values, status=status.astype(np.int8))
+
+
+def _anything(geometry: Geometry) -> Iterator[Array]:
+    for point in geometry.points:
+        if point not in geometry.model.equations.fixed:
+            yield np.abs(geometry.place(point).v)
+    yield np.zeros(geometry.rows)
+
+
+def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
+    """Rows in which the input moves the mechanism at a finite rate."""
+    most = np.zeros(geometry.rows)
+    for link in geometry.links:
+        most = np.fmax(most, np.abs(geometry.angle(link).d1))
+    for point in geometry.points:
+        most = np.fmax(most, np.abs(geometry.place(point).d1) / geometry.length)
+    found: BoolArray = (most < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
+    return found
+
+
+def _free_bodies(linkage: Linkage, geometry: Geometry, applied: AppliedLoads) -> FreeBodies:
+    bodies = FreeBodies(linkage, geometry, applied)
+    join_pins(bodies)
+    join_parts(bodies)
+    drive_inputs(bodies)
+    return bodies
+
+
+def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
+    """The free bodies of loops that read as a linkage with everything that is loaded."""
+    links = {body.link for body in applied.masses} | {link for link, _ in applied.torques}
+    links |= {link for _, _, link in applied.forces if link is not None}
+    own = read_geometry(geometry, links)
+    if own is None:
+        return None
+    linkage = own.model.description
+    assert isinstance(linkage, Linkage)
+    for k, (point, force, link) in enumerate(applied.forces):
+        if link is None and point not in linkage.points:
+            # only pins are points of what was read: the link of the file that carries it
+            carrier = next((name for name, on in geometry.links.items() if point in on), "")
+            if carrier not in linkage.links:
+                return None
+            applied.forces[k] = (point, force, carrier)
+    return _free_bodies(linkage, own, applied)
+
+
+def _known_acts(bodies: FreeBodies) -> list[Act]:
+    """Everything that acts on the bodies and is known."""
+    geometry, applied = bodies.geometry, bodies.applied
+    acts = [
+        Act(bodies.link(link) if link else bodies.at(point), applied.geometry.place(point).v, force)
+        for point, force, link in applied.forces
+    ]
+    none = np.zeros(geometry.rows, dtype=complex)
+    acts += [Act(bodies.link(link), none, none, torque) for link, torque in applied.torques]
+    acts += [
+        Act(bodies.link(body.link), body.place, body.force, body.torque) for body in applied.masses
+    ]
+    return acts
+
+
+def _add_reactions(found: _Solution, bodies: FreeBodies) -> None:
+    """All readings, from the unknowns and the acts that follow from them."""
+    acts = _known_acts(bodies)
+    known = balance(bodies.matrix())
+    r = known.solve(bodies.sums(acts))
+    sizes, unsure = [], []
+    for k, size, follow in bodies.following:
+        unit = np.zeros_like(r)
+        unit[:, k] = 1.0
+        doubtful = known.undetermined(unit)
+        amount = np.where(doubtful, 0.0, size(r[:, k]))
+        answer = known.solve(bodies.sums(follow))
+        sizes.append(amount)
+        unsure.append((doubtful, answer))
+        acts += [_scaled(act, amount) for act in follow]
+    for amount, (_, answer) in zip(sizes, unsure, strict=True):
+        r = r + amount[:, None] * answer
+    found.regular &= np.isfinite(r).all(axis=1)
+    read_first_links(bodies, acts)
+    for reading in bodies.readings:
+        value, factors = _value(reading, r)
+        if reading.follow is not None:
+            value = value + sizes[reading.follow]
+        doubt = known.undetermined(factors)
+        for k, (doubtful, answer) in enumerate(unsure):
+            change = np.abs((factors * answer).sum(axis=1))
+            doubt |= doubtful & ((change > 1e-9) | (reading.follow == k))
+        found.add(reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes)
+
+
+def _scaled(act: Act, amount: Array) -> Act:
+    return Act(act.on, act.place, act.force * amount, act.moment)
+
+
+def _value(reading: Reading, r: Array) -> tuple[Array, Array]:
+    """The reading and its factors of all unknowns (B, n)."""
+    factors = np.zeros_like(r)
+    for k, factor in reading.terms:
+        factors[:, k] += factor
+    value: Array = (factors * np.nan_to_num(r)).sum(axis=1) + reading.constant
+    return value, factors
+
+
+def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Sequence[str]) -> None:
+    """Efforts by virtual work, and their largest difference from those of the free bodies."""
+    geometry = found.geometry
+    worst = np.zeros(geometry.rows)
+    power, checked = np.zeros(geometry.rows), False
+    for k, variable in enumerate(geometry.model.equations.inputs):
+        name = effort_name(variable.name)
+        if drives:  # of the linkage that loops read as, under the name of the loops' variable
+            found.values[name] = found.values.pop(drives[k])
+        checked = name in found.values
+        if checked:
+            # the largest term may be one that several terms only approach
+            size = np.where(largest[k] > 0.0, largest[k], 1.0)
+            worst = np.fmax(worst, np.abs(found.values[name].value - by_work[k]) / size)
+        kind = effort_kind(geometry.kind(variable.name))
+        found.add(name, kind, f"effort of the input {variable.name}", by_work[k])
+        power += by_work[k] * geometry.input_rates[k] * found.applied.rate
+    if not len(by_work):
+        return
+    if checked:
+        found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
+    if found.applied.rate:
+        found.add("power", Kind.POWER, "power of all inputs", power)
+
+
+def _add_totals(found: _Solution) -> None:
+    """The force and the moment on the ground, energies and powers."""
+    geometry, applied = found.geometry, found.applied
+    force: ComplexArray = np.zeros(geometry.rows, dtype=complex)
+    moment = np.zeros(geometry.rows)
+    pushes = [(geometry.place(point).v, own) for point, own, _ in applied.forces]
+    for place, own in [*pushes, *((body.place, body.force) for body in applied.masses)]:
+        force = force + own
+        moment = moment + (place.conj() * own).imag
+    for torque in [own for _, own in applied.torques] + [body.torque for body in applied.masses]:
+        moment = moment + torque
+    for point in dict.fromkeys(point for point, _, _ in applied.forces):
+        total = np.zeros(geometry.rows, dtype=complex)
+        for own in (own for name, own, _ in applied.forces if name == point):
+            total += own
+        for axis, part in (("x", total.real), ("y", total.imag)):
+            found.add(f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part)
+    found.add("shaking.x", Kind.FORCE, "force on the ground", force.real)
+    found.add("shaking.y", Kind.FORCE, "force on the ground", force.imag)
+    found.add("shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment)
+    about = {
+        "kinetic_energy": "energy of all masses in motion",
+        "stored_energy": "energy of springs and weights",
+        "load_power": "power of loads and dampers on the mechanism",
+        "energy_rate": "rate of the kinetic and stored energy",
+    }
+    if applied.rate:
+        for name, value in energies(applied).items():
+            kind = Kind.POWER if name in ("load_power", "energy_rate") else Kind.ENERGY
+            found.add(name, kind, about[name], value)

@@ -1,0 +1,172 @@
+"""Reactions of joints and efforts of inputs, of one position or of a motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.foundation.coded_enum import CodedEnum
+from linkwork.foundation.errors import UnknownNameError
+from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.names import find_spelling
+from linkwork.results.force import Force
+from linkwork.results.quantities.registry import nearest
+from linkwork.results.quantity import Kind
+from linkwork.results.summary import Summary
+from linkwork.results.table import Table
+
+__all__ = ["ForceStatus", "Reactions"]
+
+
+class ForceStatus(CodedEnum):
+    """How the computation of forces ended in a row; the value is a sentence with a next step.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.example("crank-press").forces(at=60).status.name
+    'FOUND'
+    """
+
+    FOUND = "all forces found"
+    UNDETERMINED = (
+        "a self-stress of redundant links loads some joints, whose forces depend on tolerances: "
+        "they are not given; release a link to determine them"
+    )
+    NO_RATES = (
+        "at a dead point or change point the input has no finite effort: ask for a value beside it"
+    )
+    NO_POSITION = "there is no position: see its own status"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Reactions:
+    """Forces and moments of a mechanism, at one position or in the N rows of a motion.
+
+    ``reactions["A.force.x"]`` is a quantity in the units of the file, a number or (N,), NaN where
+    it is not determined.
+
+    Parameters
+    ----------
+    mechanism : str
+        The name of the mechanism.
+    inputs : Mapping[str, array]
+        The values of the inputs in file units.
+    values : Mapping[str, array]
+        All quantities by name.
+    kinds : Mapping[str, Kind]
+    units, about : Mapping[str, str]
+        Unit and meaning of every quantity.
+    statuses : tuple of ForceStatus
+        One for each row.
+    undetermined, lifted : Mapping[str, array of bool]
+        Where a self-stress changes a quantity; where a joint that can only push would have to pull.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> reactions = lw.example("crank-press").forces(at=60)
+    >>> reactions.units["crank.effort"]
+    'N·mm'
+    >>> reactions["disagreement"] < 1e-12
+    True
+    """
+
+    mechanism: str
+    inputs: Mapping[str, Array]
+    input_units: Mapping[str, str]
+    values: Mapping[str, Array]
+    kinds: Mapping[str, Kind]
+    units: Mapping[str, str]
+    about: Mapping[str, str]
+    statuses: tuple[ForceStatus, ...]
+    undetermined: Mapping[str, BoolArray]
+    lifted: Mapping[str, BoolArray]
+
+    def __post_init__(self) -> None:
+        for name in ("inputs", "values", "undetermined", "lifted"):
+            table = {key: read_only(array) for key, array in getattr(self, name).items()}
+            object.__setattr__(self, name, FrozenDict(table))
+
+    def __len__(self) -> int:
+        return len(self.statuses)
+
+    def __getitem__(self, name: str) -> Array | float:
+        """A quantity by name: a number at one position, else (N,).
+
+        Raises
+        ------
+        UnknownNameError
+            Lists the nearest names.
+        """
+        own = find_spelling(name, self.values)
+        if own not in self.values:
+            raise UnknownNameError(f'there is no "{name}" {nearest(name, self.values)}')
+        value = self.values[own]
+        return float(value) if value.ndim == 0 else value
+
+    @property
+    def status(self) -> ForceStatus:
+        """That of the only row, or the first one that is not ``FOUND``."""
+        wrong = [status for status in self.statuses if status is not ForceStatus.FOUND]
+        return wrong[0] if wrong else ForceStatus.FOUND
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the inputs' efforts."""
+        return tuple(name for name in self.values if name.endswith(".effort"))
+
+    @property
+    def arrows(self) -> tuple[Force, ...]:
+        """Forces of pins and loads at one position, for drawings."""
+        found = []
+        for name in self.values:
+            stem, _, axis = name.rpartition(".")
+            if axis != "x" or not ({"force", "load"} & {*stem.split(".")[1:2]}):
+                continue
+            x, y = self[f"{stem}.x"], self[f"{stem}.y"]
+            if isinstance(x, float) and isinstance(y, float) and math.isfinite(x + y):
+                found.append(Force(at=stem.split(".")[0], x=x, y=y, unit=self.units[name]))
+        return tuple(found)
+
+    def table(self, *names: str) -> Table:
+        """Columns of all rows with units.
+
+        Parameters
+        ----------
+        names : str
+            Quantities; by default all.
+
+        Raises
+        ------
+        UnknownNameError
+            Lists the nearest names.
+        """
+        columns: dict[str, AnyArray] = {n: np.atleast_1d(v) for n, v in self.inputs.items()}
+        columns |= {name: np.atleast_1d(self[name]) for name in names or self.values}
+        columns["status"] = np.array([status.name for status in self.statuses])
+        units = {**self.units, **self.input_units, "status": ""}
+        index = next(iter(self.inputs), "status")
+        return Table(columns=columns, units={n: units[n] for n in columns}, index=index)
+
+    def __repr__(self) -> str:
+        return str(summary_of(self))
+
+
+def summary_of(reactions: Reactions) -> Summary:
+    """Efforts, the largest reactions and the check, for terminals."""
+    rows = []
+    for name, value in reactions.values.items():
+        sizes = np.abs(value[np.isfinite(value)])
+        if not sizes.size:
+            rows.append((name, "undetermined" if reactions.undetermined[name].any() else "none"))
+            continue
+        unit = reactions.units[name]
+        most = value.item() if value.ndim == 0 else float(sizes.max())
+        rows.append((name, f"{'' if value.ndim == 0 else 'at most '}{most:.6g} {unit}".rstrip()))
+    head = f"Forces of {reactions.mechanism}"
+    return Summary(head, tuple(rows))

@@ -1,0 +1,82 @@
+"""Virtual work and free bodies give the same efforts, with loads of every kind on every joint."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
+from linkwork.results.reactions import ForceStatus
+from tests.forces.random_loads import loaded
+
+LINKAGES = [
+    name
+    for name in lw.examples()
+    if isinstance((own := lw.example(name)).description, Linkage) and own.description.inputs
+]
+REDUNDANT = ("dixon-one", "dixon-two", "parallel-cranks", "scissor-three-bars")
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_two_ways_agree_on_a_library_mechanism(name: str) -> None:
+    mechanism = loaded(lw.example(name), seed=len(name))
+    values = mechanism.description.rows(mechanism.description.inputs[0])
+    single = len(mechanism.description.inputs) == 1
+    for at in values[[len(values) // 7, len(values) // 2]] if single else [None]:
+        position = mechanism.solve(None if at is None else float(at), certify=False)
+        if position.condition > 1e8 or not position.status.ok:
+            continue
+        found = mechanism.forces(None if at is None else float(at)) if single else _here(mechanism)
+        expected = ForceStatus.UNDETERMINED if name in REDUNDANT else ForceStatus.FOUND
+        assert found.status is expected
+        assert found["disagreement"] < 1e-10
+        given = abs(found["power"]) + abs(found["load_power"]) + abs(found["energy_rate"])
+        assert abs(found["power"] + found["load_power"] - found["energy_rate"]) < 1e-12 * given
+
+
+def _here(mechanism: lw.Mechanism) -> lw.Reactions:
+    return mechanism.forces(mechanism.solve(certify=False).input)
+
+
+def test_the_energy_rate_is_the_slope_of_the_energy() -> None:
+    mechanism = loaded(lw.example("four-bar"), seed=3)
+    motion = mechanism.sweep(start=0, stop=2, step=0.01, certify=False)
+    found = mechanism.forces(motion=motion)
+    energy = np.asarray(found["kinetic_energy"]) + np.asarray(found["stored_energy"])
+    slope = (energy[2:] - energy[:-2]) / (2.0 * 0.01 / 2.0)  # at 2 deg/s
+    assert slope == pytest.approx(np.asarray(found["energy_rate"])[1:-1], rel=1e-6)
+
+
+def test_units_of_one_machine_change_no_force() -> None:
+    """Millimetres, metres and inches with pounds: the effort in N m is the same."""
+    efforts = []
+    for length, mass, force, scale, kilograms, newtons in (
+        ("mm", "kg", "N", 1.0, 1.0, 1.0),
+        ("m", "g", "kN", 1e-3, 1e3, 1e-3),
+        ("in", "lb", "lbf", 1.0 / 25.4, 1.0 / 0.45359237, 1.0 / 4.4482216152605),
+    ):
+        press = lw.example("crank-press")
+        old = press.description
+        assert isinstance(old, Linkage)
+        points = {name: tuple(scale * c for c in place) for name, place in old.points.items()}
+        masses = {
+            link: lw.Mass(
+                mass=kilograms * own.mass,
+                center=None if own.center is None else tuple(scale * c for c in own.center),
+                inertia=kilograms * scale**2 * own.inertia,
+            )
+            for link, own in old.masses.items()
+        }
+        found = press.changed(
+            length=length,
+            mass=mass,
+            force=force,
+            points=points,
+            lengths={name: scale * value for name, value in old.lengths.items()},
+            masses=masses,
+            loads=[lw.Load(point="C", link="ram", force=(0, 2e4 * newtons))],
+        ).forces(at=200)
+        efforts.append(found["crank.effort"] / (newtons * scale))
+        assert found.units["crank.effort"] == f"{force}·{length}"
+    assert efforts == pytest.approx([efforts[0]] * 3, rel=1e-12)
