@@ -131,7 +131,7 @@ body { margin: 0; min-height: 100%; }
   .lw-full > .lw-side > .lw-facts { flex: 1 0 40%; max-height: 100%; }
   .lw-full > .lw-charts { grid-template-columns: repeat(auto-fit, minmax(380px, 1fr)); max-height: 44dvh; overflow-y: auto; padding-top: 10px; }
   .lw-full .lw-plot { height: 150px; }
-  .lw-full.lw-tall { grid-template: "head head head" auto "stage charts side" minmax(0, 1fr) / minmax(0, 1fr) 390px 390px; }
+  .lw-full.lw-tall:not(.lw-still) { grid-template: "head head head" auto "stage charts side" minmax(0, 1fr) / minmax(0, 1fr) 390px 390px; }
   .lw-full.lw-tall > .lw-charts { display: flex; flex-direction: column; max-height: none; padding-top: 0; }
   .lw-full.lw-tall .lw-chart { flex: 1 0 220px; }
   .lw-full.lw-tall .lw-chart-add { align-self: start; flex: none; }
