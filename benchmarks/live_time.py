@@ -14,15 +14,22 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from statistics import median
 from typing import Any
+
+import linkwork as lw
+from linkwork.viewer.live.messages import encoded
+from linkwork.viewer.live.motion_picture import MotionPicture
+from linkwork.viewer.live.result_events import motion_found
 
 __all__ = ["measure"]
 
 _PICTURE_BAR = 1.0  # s from the command to the first picture, in a browser that runs
 _RATE_BAR = 30.0  # cycles per second while a dimension is dragged
 _DRAG = 4.0  # s
+_STAGES = ("read", "solve", "draw", "encode")
 _SHOWN = """() => new Promise(done => {
   const look = () =>
     document.querySelector('.lw[data-row]') ? done() : requestAnimationFrame(look);
@@ -49,6 +56,7 @@ _DRAGGED = """async ([name, seconds]) => {
 def measure(repeats: int = 7) -> bool:
     """Limits: 1 s to the first picture; 30 solved cycles a second."""
     print("the live page of Jansen's leg")
+    _stages()
     rates = [_over_socket() for _ in range(3)]
     print(f"  cycles per second during a drag of a length, over the socket: {median(rates):.0f}")
     program = shutil.which("chromium")
@@ -80,6 +88,29 @@ def measure(repeats: int = 7) -> bool:
         f"({min(dragged):.0f} to {max(dragged):.0f})"
     )
     return median(shown) <= _PICTURE_BAR and median(dragged) >= _RATE_BAR
+
+
+def _stages(repeats: int = 60) -> None:
+    """Processor time of the stages of a drag, median [ms] and as a ratio to the solving."""
+    text = lw.example_text("jansen-leg")
+    motion, picture = lw.loads(text).sweep(), MotionPicture()
+    took: dict[str, list[float]] = {}
+    for k in range(repeats):
+        changed = text.replace('"O A" = 15', f'"O A" = {15 + 0.01 * (k % 50)}')
+        times = [time.process_time()]
+        mechanism = lw.loads(changed)
+        times.append(time.process_time())
+        motion = mechanism.approximate_sweep(motion)
+        times.append(time.process_time())
+        page = picture.page(motion, brief=True)
+        times.append(time.process_time())
+        encoded(motion_found(motion, live=True, page=page))
+        times.append(time.process_time())
+        for name, (one, other) in zip(_STAGES, pairwise(times), strict=True):
+            took.setdefault(name, []).append(1000 * (other - one))
+    solving = median(took["solve"])
+    for name, times in took.items():
+        print(f"  {name:<8} {median(times):5.2f} ms, {median(times) / solving:4.2f} of solving")
 
 
 @contextmanager

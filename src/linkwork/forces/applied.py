@@ -128,6 +128,7 @@ class AppliedLoads:
                 link=link,
                 centre=centre,
                 place=place.v,
+                # weight and inertia of eq. (71) as one load
                 force=np.asarray(mass * (fall - bend), dtype=complex),
                 torque=-inertia * turned,
                 weight_rate=falling,

@@ -42,6 +42,7 @@ class Balance:
 
     def solve(self, loads: Array) -> Array:
         """The unknowns (B, n) for loads (B, E), refined once; NaN where nothing balances them."""
+        # eq. (72)
         r = -matrix_vector(self.inverse, loads)
         # an explicit inverse loses digits where W is ill-conditioned
         rest = matrix_vector(self.matrix, r) + loads
@@ -57,6 +58,7 @@ class Balance:
         """Whether a self-stress changes Σ factor · unknown, (B,), for factors (B, n)."""
         if self.stress is None:
             return np.zeros(len(factors), dtype=bool)
+        # eq. (73)
         part = np.linalg.norm(np.einsum("bi,bij->bj", factors, self.stress), axis=1)
         found: BoolArray = part > _LOADED * np.linalg.norm(factors, axis=1)
         return found
@@ -86,6 +88,7 @@ def balance(matrix: Array) -> Balance:
         weights = np.where(kept, 1.0 / sizes, 0.0)
     used = np.where(kept[:, :, None], vh, 0.0)
     inverse[left] = np.einsum("bki,bk,bjk->bij", used, weights, u)
+    # eq. (73)
     stress[left] = np.eye(unknowns) - np.einsum("bki,bkj->bij", used, used)
     return Balance(matrix=matrix, inverse=inverse, stress=stress)
 

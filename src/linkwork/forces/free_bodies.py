@@ -134,6 +134,7 @@ class FreeBodies:
 
         (B, E, n), E rows: two forces and a moment of every link, two forces of a free point.
         """
+        # W of eq. (72)
         rows = np.zeros((self.geometry.rows, self._equations, len(self.unknowns)))
         for k, acts in enumerate(self.unknowns):
             for act in acts:

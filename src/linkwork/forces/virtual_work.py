@@ -1,7 +1,4 @@
-"""Efforts of the inputs by virtual work.
-
-τₖ = Σ [m Re(Ḡ̈ ∂ₖG) + I θ̈ ∂ₖθ] - Σ [Re(F̄ ∂ₖP) + M ∂ₖθ], for every input k.
-"""
+"""Efforts of the inputs by virtual work."""
 
 from __future__ import annotations
 
@@ -25,6 +22,7 @@ def efforts(applied: AppliedLoads) -> tuple[Array, Array]:
     shape = (len(geometry.model.equations.inputs), geometry.rows)
     total, largest = np.zeros(shape), np.zeros(shape)
     for load, moved in _terms(applied):
+        # eq. (71)
         total -= (np.conj(load) * moved).real
         largest = np.maximum(largest, np.abs(load) * np.abs(moved))
     return total, largest

@@ -8,6 +8,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.file_state import FileState
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.workbench import Workbench
 
@@ -27,3 +28,16 @@ def test_a_length_of_a_draft_is_set_without_ground_and_between_coinciding_points
     told = bench.handle(ask.SetNumber(name="A B", value=7.0))
     assert next(type(event).__name__ for event in told) == "FileState"
     assert '"A B" = 7' in bench.text
+
+
+def test_a_formula_of_a_draft_without_value_is_told_and_can_be_undone(tmp_path: Path) -> None:
+    path = tmp_path / "draft.toml"
+    begun = "format = 1\n[points]\nA = [0, 0]\nB = [5, 0]\n"
+    path.write_text(begun, encoding="utf-8")
+    bench = Workbench(MechanismFile(path), lw.loads)
+    told = bench.handle(ask.SetText(text=begun + 'rod = ["A", "B"]\n'))
+    state = told[0]
+    assert isinstance(state, FileState)
+    assert state.text == bench.text
+    assert {number.name for number in state.numbers} >= {"A.x", "B.y"}
+    assert state.lacks

@@ -25,8 +25,9 @@ NUMBERS = st.sampled_from(
     [0.0, 1.0, -5.0, 30.0, 40.0, 60.0, 90.0, 118.0, 200.0, 1e-9, 1e12, -1e300]
 )
 SIMPLE = {str: NAMES, float: NUMBERS, bool: st.booleans(), int: st.integers(-1, 60)}
-#: Those that may ask for long tables, or write, are tried elsewhere.
-QUICK = [r for r in ask.REQUESTS if r not in (ask.Save, ask.SetText, ask.SetInput)]
+#: Those that may ask for long tables, write, or open another file are tried elsewhere.
+_SLOW = (ask.Save, ask.SetText, ask.SetInput, ask.OpenExample)
+QUICK = [r for r in ask.REQUESTS if r not in _SLOW]
 
 
 def values(kind: Any) -> st.SearchStrategy[Any]:

@@ -810,3 +810,13 @@ def test_a_draft_is_linked_too(tmp_path: Path) -> None:
     bench = Workbench(MechanismFile(tmp_path / "new.toml", "[points]\nA = [0, 0]\n"), lw.loads)
     (made,) = bench.handle(ask.MakeLink())
     assert made == tell.LinkMade(link=fragment_of(bench.text), embed="", qr="", note="")
+
+
+def test_a_point_without_a_value_is_refused_and_one_in_a_file_is_shown(bench: Workbench) -> None:
+    (refused,) = bench.handle(ask.AddPoint(name="Q", x=0.0, y="O2", links=()))
+    assert isinstance(refused, tell.Refused)
+    assert '"O2" is not defined' in refused.message
+    state, *_ = bench.handle(ask.SetText(text=bench.text.replace("P = [90, 90]", 'P = [90, "O2"]')))
+    assert isinstance(state, tell.FileState)
+    assert '"O2" is not defined' in state.lacks[0].message
+    assert "P.y" not in {number.name for number in state.numbers}

@@ -57,7 +57,7 @@ def _separating(tangent: Array, *, pressure: float, slope: Array | float) -> Arr
     A tooth pushes along ± t + n tan α, t the common tangent and n its normal.
     """
     side = np.sign(tangent)
-    # the direction of the push in the frame of the line of centres: e along it, i e across
+    # eq. (74): p, the direction of the push in the frame of the line of centres
     push = (side * 1j + np.tan(pressure)) * np.exp(1j * np.asarray(slope))
     found: Array = np.where(side == 0.0, 0.0, tangent * push.real / push.imag)
     return found

@@ -104,6 +104,8 @@ def _(edit: ask.SetInput, text: TextEdits, before: Before) -> Followed:
 def _(edit: ask.AddPoint, text: TextEdits, before: Before) -> Followed:
     units = TypedUnits.of(before.description)
     place = [units.number(c, "length", letter) for c, letter in ((edit.x, "x"), (edit.y, "y"))]
+    for c in place:
+        before.description.numbers(c)  # refuses a formula that has no value
     add_entry(text, "points", edit.name, [c if isinstance(c, str) else rounded(c) for c in place])
     for link in edit.links:
         carry(text, link, edit.name)

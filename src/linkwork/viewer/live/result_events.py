@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 from linkwork.equations.notation import PlainText
 from linkwork.equations.writing import EquationSheet
-from linkwork.foundation.errors import MechanismError, key_text
+from linkwork.foundation.errors import ExpressionError, MechanismError, key_text
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
@@ -206,9 +206,13 @@ def _changeable_numbers(
     """
     for quantity in varied_numbers(description):
         written = quantity.written(description)
+        try:
+            value = description.numbers(written)
+        except ExpressionError:  # of a draft, which says so
+            continue
         yield tell.ChangeableNumber(
             name=quantity.name,
-            value=description.numbers(written),
+            value=value,
             unit=quantity.unit(description, kinds),
             table=quantity.table,
             formula=written if isinstance(written, str) else "",
