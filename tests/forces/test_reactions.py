@@ -9,6 +9,8 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
 
 SLIDER_CRANK = {
     "points": {"O": (0, 0), "A": (3, 4), "B": (15, 0), "T": (10, 0)},
@@ -83,7 +85,7 @@ def test_teeth_push_apart_whichever_way_they_turn(internal: bool, torque: float)
 def test_a_gear_without_its_pressure_angle_has_twenty_degrees() -> None:
     found = loaded_pair("gears", lw.Gear, pretension=None)
     assert found["mesh.radial"] == pytest.approx(
-        abs(found["mesh.tangent"]) * math.tan(math.radians(20))
+        abs(float(found["mesh.tangent"])) * math.tan(math.radians(20))
     )
 
 
@@ -121,13 +123,14 @@ def test_a_chain_has_a_slack_strand_and_a_belt_its_pretension() -> None:
 def test_noncircular_teeth_are_inclined_with_the_pitch_curves() -> None:
     """Equal ellipses about their foci: r1 from the focus, the tangent from its slope."""
     mechanism = lw.example("elliptical-gears")
-    wheels = mechanism.description.noncircular_gears[0].wheels
+    gear = described_as(Linkage, mechanism).noncircular_gears[0]
+    wheels = gear.wheels
     found = mechanism.changed(
         loads=[lw.Load(link=wheels[1], torque=100)]
     ).forces(at=70)  # fmt: skip
-    name = mechanism.description.noncircular_gears[0].name
+    name = gear.name
     position = mechanism.solve(at=70)
-    first, second = (position.points[p] for p in mechanism.description.noncircular_gears[0].centers)
+    first, second = (position.points[p] for p in gear.centers)
     distance = math.hypot(second[0] - first[0], second[1] - first[1])
     rate = position.first[wheels[1]]
     radius = -rate * distance / (1 - rate)
@@ -136,7 +139,7 @@ def test_noncircular_teeth_are_inclined_with_the_pitch_curves() -> None:
     slope = math.atan2(-bend * distance / (1 - rate) ** 2, radius)
     side = math.copysign(1.0, found[f"{name}.tangent"])
     inclined = math.tan(math.radians(20) - side * slope)
-    assert found[f"{name}.radial"] == pytest.approx(abs(found[f"{name}.tangent"]) * inclined)
+    assert found[f"{name}.radial"] == pytest.approx(abs(float(found[f"{name}.tangent"])) * inclined)
 
 
 def test_a_spring_pulls_and_its_damper_brakes() -> None:
@@ -195,8 +198,9 @@ def test_three_links_at_a_pin_have_a_force_each_that_add_up_to_the_load() -> Non
 
 def test_forces_do_not_exist_at_a_dead_point() -> None:
     mechanism = lw.example("rapier-drive-limited-links")
-    body = next(link for link in mechanism.description.links if link != "ground")
-    point = mechanism.description.links[body][-1]
+    links = described_as(Linkage, mechanism).links
+    body = next(link for link in links if link != "ground")
+    point = links[body][-1]
     found = mechanism.changed(loads=[lw.Load(point=point, force=(1, 2))]).forces()
     counts = [status.name for status in found.statuses]
     assert counts.count("NO_RATES") == 2
@@ -208,18 +212,18 @@ def test_forces_do_not_exist_at_a_dead_point() -> None:
 def test_only_stressed_joints_are_undetermined() -> None:
     """Three parallel cranks: a fourth link on a joint of its own carries no self-stress."""
     cranks = lw.example("parallel-cranks")
-    given = cranks.description
+    given = described_as(Linkage, cranks)
     links = {**given.links, "ground": [*given.links["ground"], "S", "T"], "hung": ["H", "I"]}
     coupler = next(
         link for link in links if link not in ("ground", "hung") and len(links[link]) > 2
     )
     links[coupler] = [*links[coupler], "H"]
     ground = {"S": (400.0, -300.0), "T": (500.0, -300.0)}
-    reference = given.points[links[coupler][0]]
+    x, y = (float(given.numbers(number)) for number in given.points[links[coupler][0]])
     points = {
         **given.points,
         **ground,
-        "H": (reference[0], reference[1] + 30.0),
+        "H": (x, y + 30.0),
         "I": (450.0, -300.0),
     }
     loaded = cranks.changed(
@@ -294,6 +298,6 @@ def test_a_family_has_the_forces_of_its_designs() -> None:
 
 
 def test_an_inversion_has_no_loads() -> None:
-    inverted = lw.example("crank-press").inversion("rod")
-    assert not inverted.description.masses
-    assert not inverted.description.loads
+    inverted = described_as(Linkage, lw.example("crank-press").inversion("rod"))
+    assert not inverted.masses
+    assert not inverted.loads

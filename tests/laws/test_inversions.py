@@ -292,19 +292,19 @@ def test_a_wheel_of_one_point_as_ground_keeps_the_ratio_of_teeth() -> None:
 
 def test_a_table_that_an_inversion_does_not_know_is_refused() -> None:
     @dataclass(frozen=True, kw_only=True)
-    class Loaded(Linkage):
-        loads: tuple[str, ...] = ()
+    class Noted(Linkage):
+        notes: tuple[str, ...] = ()
 
     bar = lw.example("four-bar").description
     parts = {name: getattr(bar, name) for name in ("points", "links", "lengths", "inputs")}
-    loaded = Loaded(name="Loaded bar", loads=("weight",), **parts)
-    places = {point: loaded.sketched(point) for point in loaded.points}
+    noted = Noted(name="Noted bar", notes=("weight",), **parts)
+    places = {point: noted.sketched(point) for point in noted.points}
     with pytest.raises(
         lw.InputError,
-        match=r"^an inversion of Loaded bar cannot move \[loads\] to another ground: "
+        match=r"^an inversion of Noted bar cannot move \[notes\] to another ground: "
         r"remove it, or write the inversion by hand$",
     ):
-        inverted(loaded, "crank", places)
+        inverted(noted, "crank", places)
 
 
 def test_another_input_by_one_call() -> None:

@@ -81,6 +81,7 @@ class AppliedLoads:
         known: Mapping[str, float] = model.description.numbers.known
         if name in known:
             return Jet.constant(known[name])
+        # dimensions come first: a file may call one of them t
         if name == "t":
             return _constant(time_of(self.geometry))
         if name in CONSTANTS:
@@ -109,6 +110,7 @@ class AppliedLoads:
         numbers = geometry.model.description.numbers
         mass, inertia = numbers(given.mass) * unit, numbers(given.inertia) * unit
         centre = complex(*map(numbers, given.center or (0.0, 0.0)))
+        # a rod's length follows from its points, which loops give row by row
         if given.shape is not None:
             first, second = geometry.links[link][:2]
             span = abs(geometry.place(second).v - geometry.place(first).v)

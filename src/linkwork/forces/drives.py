@@ -31,6 +31,7 @@ def _links(bodies: FreeBodies, which: Input) -> tuple[str, str]:
     kind, name = which.drives
     if kind == "link":
         return name, which.relative_to or GROUND
+    # as the equations drive it: the later link, or the one that is not ground
     against, link = bodies.linkage.bodies_at(name)
     return (against, link) if link == GROUND else (link, against)
 

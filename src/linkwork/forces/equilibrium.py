@@ -44,9 +44,11 @@ class Balance:
         """The unknowns (B, n) for loads (B, E), refined once; NaN where nothing balances them."""
         # eq. (72)
         r = -matrix_vector(self.inverse, loads)
+        # an explicit inverse loses digits where W is ill-conditioned
         rest = matrix_vector(self.matrix, r) + loads
         r -= matrix_vector(self.inverse, rest)
         if self.stress is not None:
+            # loads on an idle freedom, or at a dead point, are not balanced by any force
             rest = np.abs(matrix_vector(self.matrix, r) + loads).max(axis=1, initial=0.0)
             size = np.abs(loads).max(axis=1, initial=0.0) + np.abs(r).max(axis=1, initial=0.0)
             r[~(rest <= _BALANCED * size)] = np.nan
@@ -71,6 +73,7 @@ def balance(matrix: Array) -> Balance:
     if equations == unknowns:
         inverse[fine] = _inverses(matrix[fine])
         with np.errstate(all="ignore"):
+            # forces and scaled moments have one unit, so that rows and columns compare
             size = np.abs(matrix).sum(axis=2).max(axis=1, initial=0.0)
             back = np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
             regular = size * back <= _REGULAR
@@ -78,6 +81,7 @@ def balance(matrix: Array) -> Balance:
     if not len(left):
         return Balance(matrix=matrix, inverse=inverse, stress=None)
     stress = np.zeros((rows, unknowns, unknowns))
+    # the square case is cheaper by far; self-stresses and idle freedoms need singular values
     u, sizes, vh = np.linalg.svd(matrix[left], full_matrices=False)
     kept = sizes > RANK_TOLERANCE * sizes[:, :1]
     with np.errstate(divide="ignore"):
@@ -95,6 +99,7 @@ def _inverses(matrices: Array) -> Array:
         return np.asarray(np.linalg.inv(matrices))
     except np.linalg.LinAlgError:
         found = np.full_like(matrices, np.nan)
+        # one singular row would spoil all others
         for k, matrix in enumerate(matrices):
             if np.linalg.cond(matrix) < _REGULAR:
                 found[k] = np.linalg.inv(matrix)

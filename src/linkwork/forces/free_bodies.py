@@ -92,6 +92,7 @@ class FreeBodies:
     def at(self, point: str) -> Holder:
         """What a force on a point acts on."""
         own = self.joined[point]
+        # pins of cylinders alone are bodies themselves
         if not own:
             return Holder(point)
         return Holder(own[0], point if len(self.carriers[point]) > 1 else "")
@@ -152,6 +153,7 @@ class FreeBodies:
         return 3 * len(self.bodies) - len(self.free_points)
 
     def _add(self, rows: Array, act: Act) -> None:
+        # ground is not free: nothing has to balance there
         if act.on.body == GROUND:
             return
         k = self.bodies.index(act.on.body)
@@ -159,6 +161,7 @@ class FreeBodies:
         first = 3 * k if k < links else 3 * links + 2 * (k - links)
         rows[:, first] += act.force.real
         rows[:, first + 1] += act.force.imag
+        # a pin between cylinders has no moment to balance
         if k < links:
             arm = act.place - self._centre(act.on.body)
             turning = (arm.conj() * act.force).imag + act.moment

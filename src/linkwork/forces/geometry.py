@@ -93,6 +93,7 @@ class Geometry:
             return Jet(zero, zero, zero)
         if link in self.model.equations.links:
             return self.own(link)
+        # loops have no angles of links, only their points
         unit = self.direction(link)
         first = unit.d1 / unit.v
         second = (unit.d2 / unit.v).imag
@@ -124,6 +125,7 @@ class Geometry:
 
     def partial(self, point: str) -> ComplexArray:
         """Derivatives of a point with respect to each input, (p, B)."""
+        # the usual case: the motion itself is the partial derivative
         if self.alone:
             found: ComplexArray = self.place(point).d1[None, :]
             return found
@@ -140,6 +142,7 @@ class Geometry:
             span = self.place(second).v - self.place(first).v
             return np.asarray(((self.partial(second) - self.partial(first)) / span).imag)
         variable = self.model.equations.links[link].variable
+        # links held by sliders on ground do not turn
         if variable is None:
             return np.zeros((count, self.rows))
         names = [x.name for x in self.model.equations.variables]

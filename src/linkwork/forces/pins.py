@@ -19,6 +19,7 @@ def join_pins(bodies: FreeBodies) -> None:
     on it through the pin.
     """
     for point, links in bodies.joined.items():
+        # a pin of one link transmits no force
         if len(links) < 2:
             continue
         place = bodies.geometry.place(point).v
@@ -44,6 +45,7 @@ def read_first_links(bodies: FreeBodies, known: Sequence[Act]) -> None:
     for point, links in bodies.joined.items():
         if len(bodies.carriers[point]) < 3 or not links:
             continue
+        # loads, guides and cylinders act on the pin, and so on its first link
         given = bodies.through(point, known)
         forces = [(k, bodies.through(point, acts)) for k, acts in enumerate(bodies.unknowns)]
         for axis, part in (("x", np.real), ("y", np.imag)):

@@ -126,6 +126,7 @@ class _Evaluation:
         shape = places.shape
         if isinstance(solved, SolvedDesigns):
             value = np.full(shape, np.nan)
+            # masses, pins and wheels of every design have places of their own
             for k, rows in enumerate(self.solver.designs(solved)):
                 if rows is not None:
                     value[:, k] = rows.values[self.name].value

@@ -11,7 +11,7 @@ from linkwork.motion.named_quantities import RowValues
 
 __all__ = ["read_geometry"]
 
-_ONE_ANGLE = 1e-9  # of the longest link: distance of the points of both descriptions
+_APART = 1e-9  # of the longest link: distance of the points of both descriptions
 
 
 def read_geometry(geometry: Geometry, links: set[str]) -> Geometry | None:
@@ -41,7 +41,7 @@ def read_geometry(geometry: Geometry, links: set[str]) -> Geometry | None:
         place = geometry.place(point)
         # at dead points, which have no forces, Newton-Raphson is less precise
         apart = np.where(np.isfinite(place.d1), np.abs(place.v - own.place(point).v), 0.0)
-        if np.nanmax(apart, initial=0.0) > _ONE_ANGLE * geometry.length:
+        if np.nanmax(apart, initial=0.0) > _APART * geometry.length:
             return None
     return own
 
@@ -54,6 +54,7 @@ def _rows(geometry: Geometry, seen: Seen) -> Array:
     solver = model.compiled.solver
     start = solver.solve(model.equations.start[None, :]).v[0]
     v = np.tile(other.start, (geometry.rows, 1))
+    # directions are sums of the loops' angles; lengths follow by Newton-Raphson
     for k, variable in enumerate(other.unknowns):
         for own in seen.turning.get(variable.name, ()):
             v[:, k] += here[:, names.index(own)] - start[names.index(own)]

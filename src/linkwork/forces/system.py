@@ -71,6 +71,7 @@ class _Solution:
         unknown = none if undetermined is None else undetermined & self.regular
         value = np.where(self.regular & ~unknown, value, np.nan)
         size = np.nanmax(np.abs(value), initial=0.0)
+        # rounding of a contact without force is no lift-off
         lifted = value < -1e-9 * size if pushes else none
         self.values[name] = ForceValue(
             kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted
@@ -123,6 +124,7 @@ def _anything(geometry: Geometry) -> Iterator[Array]:
 def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
     """Rows in which the input moves the mechanism at a finite rate."""
     most = np.zeros(geometry.rows)
+    # rates at a dead point are infinite, or huge if the row misses it by rounding
     for link in geometry.links:
         most = np.fmax(most, np.abs(geometry.angle(link).d1))
     for point in geometry.points:
@@ -182,14 +184,17 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> None:
     for k, size, follow in bodies.following:
         unit = np.zeros_like(r)
         unit[:, k] = 1.0
+        # teeth under self-stress: the size of what follows from them is not known either
         doubtful = known.undetermined(unit)
         amount = np.where(doubtful, 0.0, size(r[:, k]))
+        # the equations are linear: what follows is added to the first solution
         answer = known.solve(bodies.sums(follow))
         sizes.append(amount)
         unsure.append((doubtful, answer))
         acts += [_scaled(act, amount) for act in follow]
     for amount, (_, answer) in zip(sizes, unsure, strict=True):
         r = r + amount[:, None] * answer
+    # where nothing balances the loads, no reading means anything
     found.regular &= np.isfinite(r).all(axis=1)
     read_first_links(bodies, acts)
     for reading in bodies.readings:
@@ -220,6 +225,7 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Seque
     """Efforts by virtual work, and their largest difference from those of the free bodies."""
     geometry = found.geometry
     worst = np.zeros(geometry.rows)
+    # the effort by virtual work replaces the other one, which only checks it
     power, checked = np.zeros(geometry.rows), False
     for k, variable in enumerate(geometry.model.equations.inputs):
         name = effort_name(variable.name)
@@ -247,6 +253,7 @@ def _add_totals(found: _Solution) -> None:
     force: ComplexArray = np.zeros(geometry.rows, dtype=complex)
     moment = np.zeros(geometry.rows)
     pushes = [(geometry.place(point).v, own) for point, own, _ in applied.forces]
+    # internal forces cancel: loads, weights and inertia alone reach the ground
     for place, own in [*pushes, *((body.place, body.force) for body in applied.masses)]:
         force = force + own
         moment = moment + (place.conj() * own).imag

@@ -39,6 +39,7 @@ def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, 
     """The tangent points of a strand on both wheels."""
     first, second = (bodies.geometry.place(center).v for center in belt.centers)
     small, large = belt.pitch_radii(bodies.linkage)
+    # the strands of a crossed belt touch the second wheel on its other side
     large = -large if belt.crossed else large
     distance = np.abs(second - first)
     cosine = (small - large) / distance

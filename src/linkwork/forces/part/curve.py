@@ -26,6 +26,7 @@ def write(curve: Curve, bodies: FreeBodies) -> None:
 def drive(curve: Curve, bodies: FreeBodies) -> int:
     """The force along the curve for a unit of work per unit of its coordinate."""
     tangent = _tangent(curve, bodies)
+    # the coordinate of a curve is no arc length: the force is the work per unit of it
     along = tangent / np.abs(tangent) ** 2
     place = bodies.geometry.place(curve.point).v
     pin, on = bodies.at(curve.point), bodies.link(curve.on)

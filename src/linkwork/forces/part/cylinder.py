@@ -36,6 +36,7 @@ def _read_ends(cylinder: Cylinder, bodies: FreeBodies, force: int | None) -> Non
     for point, sign in zip(cylinder.between, (1.0, -1.0), strict=True):
         names = bodies.carriers[point]
         stem = f"{point}.force" if len(names) < 3 else f"{point}.force.{cylinder.name}"
+        # the force on the link named later is read: on the other one it is the opposite
         if len(names) < 2 or (len(names) == 2 and names[-1] != cylinder.name):
             continue
         parts: dict[str, Array] = {"x": along.real, "y": along.imag}

@@ -17,6 +17,7 @@ def write(slider: Slider, bodies: FreeBodies) -> None:
     force = bodies.pair(link, on, place, 1j * line_of(slider.line, bodies.geometry))
     about = f"force of {slider.on} on {slider.link} at {slider.points[0]}, to the left of its line"
     bodies.read(f"{slider.name}.normal", Kind.FORCE, about, force)
+    # a slider transmits a moment: its link cannot turn on the other
     moment, length = bodies.couple(link, on), bodies.geometry.length
     about = f"moment of {slider.on} on {slider.link} about {slider.points[0]}"
     bodies.read(f"{slider.name}.moment", Kind.MOMENT, about, moment, length)
