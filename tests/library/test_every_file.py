@@ -21,11 +21,12 @@ MODULES = [
     for path in sorted(Path(__file__).parent.glob("test_*.py"))
     if path != Path(__file__)
 ]
-#: Tables that a file of points and links may repeat, by its published schema; inputs are another.
+#: Tables that a file of points and links may repeat, by its published schema; inputs are another,
+#: and questions are no parts.
 JOINT_TABLES = [
     table
     for table, entry in json_schema()["$defs"]["points_and_links"]["properties"].items()
-    if entry.get("type") == "array"
+    if entry.get("type") == "array" and table != "questions"
 ]
 DRIVEN = driven_examples()
 

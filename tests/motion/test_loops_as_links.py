@@ -30,6 +30,7 @@ def _all() -> dict[str, lw.Mechanism]:
         for name, mechanism in made.items()
         if isinstance(mechanism.description, Linkage)
         and not any(getattr(mechanism.description, kind) for kind in _HIGHER)
+        and mechanism.loop_equations.loops
         and not mechanism.loop_equations.linear
         and not mechanism.loop_equations.redundant
     }

@@ -26,7 +26,7 @@ from tests.viewer.unpacking import unpacked
 
 TITLES = [
     "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Non-circular gears", "Belt or chain",
-    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring",
+    "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring", "Load",
 ]  # fmt: skip
 
 
