@@ -149,7 +149,7 @@ def changed(**fields: Any) -> Callable[[], object]:
         (
             lambda: lw.loops(loop={}),
             'there is no field "loop" (fields: loops, name, length, angle, dimensions, inputs, '
-            "trace, outputs, … 7 more)",
+            "trace, outputs, … 13 more)",
         ),
         (
             lambda: lw.loops(loops={"l": 3}, guess={}),

@@ -126,3 +126,10 @@ def test_masses_and_formulas_of_loads_follow_a_name() -> None:
     assert list(press.masses) == ["crank", "rod", "plunger"]
     assert press.loads[0].link == "plunger"
     assert press.loads[0].force == (0, "20000*(h < 160)*(h.velocity < 0)")
+
+
+def test_something_without_a_name_is_not_renamed() -> None:
+    edits = TextEdits("[points]\nO2 = [0, 0]\n")
+    with pytest.raises(InputError, match="choose a point, link or part"):
+        rename(edits, "O2", "O2", "Q")
+    assert edits.text == "[points]\nO2 = [0, 0]\n"

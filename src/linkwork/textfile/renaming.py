@@ -84,6 +84,8 @@ def rename(edits: TextEdits, of: str, name: str, new: str) -> None:
 
 
 def _check(edits: TextEdits, of: str, name: str, new: str) -> None:
+    if of not in ("point", "link", "part"):
+        raise InputError(f'"{of}" has no name to change: choose a point, link or part')
     known = names_in_file(edits)
     nouns = {"point": {"point"}, "link": {"link"}}.get(of)
     noun = known.get(canonical(name))

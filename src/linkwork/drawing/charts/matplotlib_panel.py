@@ -134,6 +134,8 @@ def _bent(panel: Panel, across: Axis, curve: Curve) -> Curve:
     tall /= _FLAT
     if panel.shape is Shape.PLANE:
         wide = tall = max(wide, _FLAT * tall)
+    # powers of two, so that the rows keep their values
+    wide, tall = (float(np.exp2(np.round(np.log2(one)))) for one in (wide, tall))
     path = smoothed(x / wide + 1j * y / tall, UNSEEN)
     return replace(curve, x=wide * path.real, y=tall * path.imag)
 

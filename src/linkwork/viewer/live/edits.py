@@ -254,6 +254,8 @@ def _(edit: ask.Duplicate, text: TextEdits, before: Before) -> Followed:
             raise InputError(f'"{copy}" is already in the file: choose another name')
     for point, place in edit.places.items():
         _known_point(linkage, point)
+        if point not in edit.names:
+            raise InputError(f'the copy of "{point}" needs a name')
         add_entry(text, "points", edit.names[point], [rounded(c) for c in place])
     copy_selection(text, edit.names, mirrored=edit.mirrored)
     return Followed()
