@@ -43,6 +43,22 @@ class Sheet:
         self.page.wait_for_function(f"before => {updates} !== before", arg=before)
         self.page.wait_for_timeout(100)  # the last of several answers
 
+    def settle(self) -> None:
+        """Wait until the drawing has kept its place in the window for a while."""
+        self.page.evaluate(
+            """() => new Promise((resolve) => {
+              let [last, frames] = ["", 0];
+              const look = () => {
+                const { a, d, e, f } = document.querySelector(".lw-drawing").getScreenCTM();
+                const now = [a, d, e, f].join();
+                [last, frames] = [now, now === last ? frames + 1 : 0];
+                if (frames < 20) requestAnimationFrame(look);
+                else resolve();
+              };
+              look();
+            })"""
+        )
+
     def drag(self, start: Place, end: Place) -> None:
         mouse = self.page.mouse
 
@@ -154,7 +170,8 @@ def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
     assert len(motion.unknowns) == 4
     assert sheet.actions <= 20
     sheet.key("d")
-    sheet.page.wait_for_timeout(300)  # the sketch that the tool shows
+    sheet.page.locator(".lw-still").wait_for()  # the sketch has arrived
+    sheet.settle()
     sheet.click((55, 15))
     assert sheet.mechanism.description.inputs[0].link == "link6"
     assert sheet.mechanism.sweep().found.any()
@@ -177,8 +194,9 @@ def test_gears_on_an_arm_take_nine_actions_and_are_changed_in_their_panel(
     assert int(sheet.mechanism.sweep().certified.sum()) == 361
     assert sheet.actions <= 9
     sheet.key("v")
-    sheet.page.wait_for_timeout(200)
-    sheet.page.mouse.click(*sheet._on_screen((10, 22)))  # the second gear's disc
+    sheet.page.locator(".lw-still").wait_for()  # the sketch has arrived
+    sheet.settle()
+    sheet.page.mouse.click(*sheet._on_screen((22, 10)))  # the second gear's disc
     panel.get_by_text("Gear pair").wait_for()
     assert panel.get_by_label("Name of the part").input_value() == "mesh1"
     teeth = panel.get_by_label("teeth")
@@ -186,7 +204,8 @@ def test_gears_on_an_arm_take_nine_actions_and_are_changed_in_their_panel(
     sheet._done(lambda: teeth.press("Enter"))
     assert tomllib.loads(sheet.bench.text)["gears"][0]["teeth"] == [20, 40]
     panel.get_by_role("button", name="Close").click()
-    sheet.page.mouse.click(*sheet._on_screen((10, 22)))
+    sheet.settle()
+    sheet.page.mouse.click(*sheet._on_screen((22, 10)))
     panel.get_by_text("Gear pair").wait_for()
     assert panel.get_by_label("Name of the part").input_value() == "mesh1"
     sheet.key("Delete")
