@@ -30,7 +30,7 @@ def page(open_page: Open, motion: lw.Motion) -> Any:
 def test_the_drawing_has_words_that_follow_it(page: Any) -> None:
     page.get_by_text("In words").click()
     words = page.locator(".lw-words")
-    assert "crank = 0°, driven at crank; position found" in words.text_content()
+    words.filter(has_text="crank = 0°, driven at crank; position found").wait_for()
     for _ in range(9):
         page.keyboard.press("ArrowRight")
     page.get_by_text("A at 0, 40").wait_for()

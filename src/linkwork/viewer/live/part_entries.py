@@ -37,8 +37,8 @@ def parts_shown(draft: Draft) -> Iterator[PartShown]:
         typed = {
             key.name: _typed(key, entry)
             for key in part.keys
-            if (entry := getattr(part, key.name)) is not None
-            and (key.name in _NAMING or entry != usual[key.name])
+            if (entry := getattr(part, key.attribute)) is not None
+            and (key.name in _NAMING or entry != usual[key.attribute])
         }
         yield PartShown(
             table=str(table),
@@ -52,7 +52,7 @@ def parts_shown(draft: Draft) -> Iterator[PartShown]:
 def _named(part: Part, noun: str) -> Iterator[str]:
     """The links or points that a part names."""
     for key in part.keys:
-        entry = getattr(part, key.name)
+        entry = getattr(part, key.attribute)
         match key.kind:
             case Text(of=of) if of == noun and entry is not None:
                 yield entry
@@ -72,7 +72,7 @@ def _typed(key: Key, entry: object) -> Typed:
         case ListOf(), tuple():
             return (", ".join(map(str, entry)),)
         case Tables(keys), tuple():
-            return tuple(", ".join(str(getattr(row, k.name)) for k in keys) for row in entry)
+            return tuple(", ".join(str(getattr(row, k.attribute)) for k in keys) for row in entry)
     return str(entry)
 
 
