@@ -34,6 +34,7 @@ Array = npt.NDArray[np.float64]
 DRIVEN = driven_examples()
 #: What the compiled march does not lead through all rows, and why.
 ALONE = {
+    "balanced-lamp": "no unknowns",
     "cam-roller-follower": "a law",
     "curved-slot": "a law",
     "elliptical-gears": "a law",
@@ -394,3 +395,10 @@ def test_steps_that_are_lost_in_rounding_end_the_march() -> None:
     motion = far.family({"r": [1.0, 2.0]}).sweep()
     assert motion.rows.alone.all()
     np.testing.assert_array_equal(motion.found.sum(axis=1), [1, 1])
+
+
+def test_a_family_of_one_link_is_moved_without_a_kernel() -> None:
+    lamps = lw.example("balanced-lamp").family({"O P": [300.0, 310.0]})
+    height = lamps.sweep()["P.y"]
+    angles = np.radians(np.ravel(lamps.sweep().inputs))
+    np.testing.assert_allclose(height, np.outer([300.0, 310.0], np.sin(angles)), atol=1e-9)

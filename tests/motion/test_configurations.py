@@ -38,7 +38,7 @@ def test_the_position_of_the_sketch_is_one_of_the_configurations(name: str) -> N
     mechanism = mechanism_of(name)
     position, found = mechanism.solve(throw=True), mechanism.configurations()
     assert found.completeness.complete is (name not in FREE)
-    gaps = [np.abs(np.exp(1j * p.q) - np.exp(1j * position.q)).max() for p in found]
+    gaps = [np.abs(np.exp(1j * p.q) - np.exp(1j * position.q)).max(initial=0.0) for p in found]
     scale = mechanism.loop_equations.length_scale
     for value in position.sliders.values():
         assert min(min(abs(p - value) for p in c.sliders.values()) for c in found) < 1e-9 * scale

@@ -19,9 +19,10 @@ TRIED = [
     "scissor-lift", "eccentric-cam", "stephenson-valve-gear",
 ]  # fmt: skip
 PER_INCH = {"mm": 25.4, "cm": 2.54, "m": 0.0254, "in": 1.0}
-#: With dimensions that no number depends on, units of unknown size, or equations of plain numbers.
+#: With dimensions that no number depends on, units of unknown size, formulas of loads, or equations
+#: of plain numbers.
 REFUSED = {
-    "ackermann-steering", "klann-leg", "newton-another-root", "newton-convergence",
+    "ackermann-steering", "crank-press", "klann-leg", "newton-another-root", "newton-convergence",
     "newton-extremum", "three-rpr", "trotbot-leg",
 }  # fmt: skip
 

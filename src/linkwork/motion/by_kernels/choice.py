@@ -22,10 +22,9 @@ _WORK = {"": 0}
 
 def are_served(model: Model) -> bool:
     """Whether kernels can solve a mechanism: loops and lines only, no redundant links."""
-    equations = model.equations
-    return bool(
-        not model.compiled.table.functions and not equations.redundant and len(equations.inputs)
-    )
+    equations, compiled = model.equations, model.compiled
+    plain = not compiled.table.functions and not equations.redundant
+    return bool(plain and len(equations.inputs) and compiled.solver.unknowns)
 
 
 def kernels_pay(model: Model, rows: int) -> bool:
