@@ -16,7 +16,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.operand import NotElementwise
 from linkwork.kernels.program.recorder import Recorder, Value
-from linkwork.motion.quantity_values import QuantityValues
+from linkwork.motion.quantity_values import QuantityValues, term_jet
 
 __all__ = ["RecordedQuantities"]
 
@@ -175,11 +175,6 @@ class RecordedQuantities(QuantityValues):
         mine = rows.phase_term == term
         for k, weight in zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True):
             turn = turn + self.variable(symbols[k]) * float(weight)
-        if mine.any():
-            c = c * (np.cos(turn.v) + 1j * np.sin(turn.v))
         length = int(rows.length[term])
         s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
-        first = s.d1 + 1j * (s.v * turn.d1)  # derivative of eq. (1)
-        # eq. (3) with a = b
-        second = s.d2 - s.v * (turn.d1 * turn.d1) + 1j * (2.0 * (s.d1 * turn.d1) + s.v * turn.d2)
-        return Jet(c * s.v, c * first, c * second)
+        return term_jet(c, s, turn if mine.any() else None)

@@ -27,6 +27,7 @@ __all__ = [
     "finite",
     "hypot",
     "is_fractional",
+    "is_steady",
     "is_structurally_nonzero",
     "largest",
     "leader_value",
@@ -34,8 +35,10 @@ __all__ = [
     "rect",
     "remainder",
     "remainders",
+    "replaced",
     "row_of",
     "smallest",
+    "snap",
     "sqrt",
     "uniform_value",
     "vector",
@@ -162,6 +165,16 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     return yes if condition else no
 
 
+def snap(near: bool, place: float, number: float) -> float:
+    """``place`` in lanes where the number is near it, else the number."""
+    return replaced(choose(near, place, number), number)
+
+
+def replaced(value: _Number, number: _Number) -> _Number:
+    """A value in the place of a number very near to it, whose derivatives it keeps."""
+    return number.arithmetic.carry(value, number) if is_batched(number) else value
+
+
 def everywhere(condition: bool) -> bool:
     """Whether a condition holds in all lanes that still agree; it excludes no lane."""
     truths: object = condition
@@ -211,6 +224,11 @@ def as_float(x: float) -> float:
 def leader_value(x: float) -> float:
     """The number in the leading lane."""
     return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
+
+
+def is_steady(x: float) -> bool:
+    """Whether a number has no derivatives; plain numbers have none."""
+    return x.arithmetic.is_steady(x) if is_batched(x) else True
 
 
 def uniform_value(x: float) -> float:
