@@ -109,6 +109,10 @@ class Tape(Consensus):
             raise NotElementwise
         return number.values[0].item()
 
+    def value_of(self, number: Any) -> Any:
+        """The value of a number."""
+        return number.values[0].item()
+
     def is_steady(self, number: Any) -> bool:
         """Whether no input changes a number."""
         if not isinstance(number, TapedNumber):

@@ -32,6 +32,7 @@ __all__ = [
     "largest",
     "leader_value",
     "phase",
+    "plain_value",
     "rect",
     "remainder",
     "remainders",
@@ -224,6 +225,11 @@ def as_float(x: float) -> float:
 def leader_value(x: float) -> float:
     """The number in the leading lane."""
     return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
+
+
+def plain_value(x: _Number) -> _Number:
+    """A number as a plain one where its derivatives do not matter; lanes are refused."""
+    return x.arithmetic.value_of(x) if is_batched(x) else x
 
 
 def is_steady(x: float) -> bool:

@@ -75,6 +75,10 @@ class Consensus(Arithmetic[Any]):
         """One of two plain numbers, lane by lane."""
         return self.lanes(np.where(truths.values, yes, no))
 
+    def value_of(self, number: Any) -> Any:
+        """The value of a number that starts an iteration or decides a rank; lanes have many."""
+        raise NotElementwise
+
     def is_steady(self, number: Any) -> bool:
         """Whether a number has no derivatives, in arithmetics that know them."""
         return True
