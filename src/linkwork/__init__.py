@@ -88,6 +88,10 @@ if TYPE_CHECKING:
         Position as Position,
     )
     from linkwork.results.reactions import ForceStatus as ForceStatus, Reactions as Reactions
+    from linkwork.results.sensitivity import (
+        Sensitivity as Sensitivity,
+        SensitivityStatus as SensitivityStatus,
+    )
     from linkwork.results.series import Series as Series
     from linkwork.results.table import Table as Table
 else:

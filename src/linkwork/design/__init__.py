@@ -1,1 +1,17 @@
 """Questions of designers about a mechanism: which dimension matters, and by how much."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.design.sensitivity import (
+        is_of_motion as is_of_motion,
+        sensitivity_of_motion as sensitivity_of_motion,
+        sensitivity_of_position as sensitivity_of_position,
+        sensitivity_of_rows as sensitivity_of_rows,
+    )
+else:
+    __getattr__ = loader(__name__)

@@ -107,16 +107,15 @@ def _of_rows(
     asked = model.quantities.find(of)
     _check(asked, of)
     asked.check_rate(model.speed)
-    numbers, refused = chosen_numbers(model, by)
+    numbers, refused = _fitting_numbers(model, rows, by)
     v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
         taped = DifferentiatedRows(model, group, v, asked.needs)
         with np.errstate(all="ignore"):
-            result = asked.values(taped, taped.speed)
-            rates = taped.tape.backward(result)
-        rates = np.broadcast_to(rates, (len(group), len(v))).copy()
-        rates[~np.isfinite(_fitting(taped, rates.shape))] = np.nan
+            rates = taped.tape.backward(asked.values(taped, taped.speed))
+        each = (len(group), len(v))
+        rates = np.broadcast_to(rates, each) + _fitting(taped, each)
         derivatives |= dict(zip((q.name for q in group), rates, strict=True))
     value = np.broadcast_to(np.atleast_1d(asked.values(rows.solved, model.speed)), len(v))
     status = np.full(len(v), SensitivityStatus.FOUND.code)
@@ -131,6 +130,31 @@ def _of_rows(
     return _result(model, of=asked.name, unit=asked.unit, inputs=inputs, value=value.reshape(shape),
         derivatives={name: rates.reshape(shape) for name, rates in derivatives.items()},
         numbers=numbers, statuses=SensitivityStatus.of_codes(status), refused=refused)  # fmt: skip
+
+
+def _fitting_numbers(
+    model: Model, rows: _Rows, by: Iterable[str] | None
+) -> tuple[tuple[VariedNumber, ...], Mapping[str, str]]:
+    """The numbers that can vary alone, in a position of redundant links too; why others cannot.
+
+    Raises
+    ------
+    InputError
+        For a number asked for after which a redundant link does not fit.
+    """
+    numbers, refused = chosen_numbers(model, by)
+    there = np.flatnonzero(rows.found & rows.regular)
+    if not model.equations.redundant or not len(there):
+        return numbers, refused
+    for group in groups_of(model.description, numbers):
+        taped = DifferentiatedRows(model, group, rows.v[there[:1]], 0)
+        fits = np.isfinite(_fitting(taped, (len(group), 1)))[:, 0]
+        why = "a redundant link does not fit any more"
+        refused |= {q.name: why for q, own in zip(group, fits, strict=True) if not own}
+    wrong = [q.name for q in numbers if q.name in refused]
+    if by is not None and wrong:
+        raise InputError(f'"{wrong[0]}" cannot vary alone: {refused[wrong[0]]}')
+    return tuple(q for q in numbers if q.name not in refused), refused
 
 
 def _check(asked: Asked, of: str) -> None:
@@ -184,7 +208,7 @@ def sensitivity_of_motion(
     UnknownNameError, InputError
         As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
     """
-    numbers, refused = chosen_numbers(model, by)
+    numbers, refused = _fitting_numbers(model, _rows_of(model, motion), by)
     if of.strip() in LIMITS:
         value, unit, parts = _limit(model, motion, of.strip())
     else:

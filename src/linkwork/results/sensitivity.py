@@ -17,6 +17,8 @@ from linkwork.results.table import Table
 
 __all__ = ["Sensitivity", "SensitivityStatus"]
 
+_ROUNDING = 1e-12  # of the largest derivative
+
 
 class SensitivityStatus(CodedEnum):
     """How a sensitivity ended in a row; the value is a sentence with a next step.
@@ -122,7 +124,9 @@ class Sensitivity:
     def effective(self) -> tuple[str, ...]:
         """The numbers that change the quantity, the largest derivative first."""
         sizes = {name: _size(rows) for name, rows in self.derivatives.items()}
-        return tuple(sorted((n for n in sizes if sizes[n] > 0.0), key=lambda n: -sizes[n]))
+        # in sums of terms that cancel only rounding is left
+        least = _ROUNDING * max((s for s in sizes.values() if np.isfinite(s)), default=0.0)
+        return tuple(sorted((n for n in sizes if sizes[n] > least), key=lambda n: -sizes[n]))
 
     def unit_by(self, name: str) -> str:
         """The unit of the derivative by a number."""
