@@ -94,5 +94,10 @@ if TYPE_CHECKING:
     )
     from linkwork.results.series import Series as Series
     from linkwork.results.table import Table as Table
+    from linkwork.results.tolerance import (
+        Contribution as Contribution,
+        Sampled as Sampled,
+        Tolerance as Tolerance,
+    )
 else:
     __getattr__ = loader(__name__)

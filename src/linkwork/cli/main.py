@@ -24,6 +24,8 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "forces",
+    "sensitivity",
+    "tolerance",
     "draw",
     "plot",
     "animate",

@@ -13,5 +13,9 @@ if TYPE_CHECKING:
         sensitivity_of_position as sensitivity_of_position,
         sensitivity_of_rows as sensitivity_of_rows,
     )
+    from linkwork.design.tolerance import (
+        deviations as deviations,
+        tolerance_of as tolerance_of,
+    )
 else:
     __getattr__ = loader(__name__)

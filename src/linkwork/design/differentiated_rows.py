@@ -9,19 +9,24 @@ once and twice.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from linkwork.batch.building import write_equations
-from linkwork.design.tape import Tape, TapedNumber
+from linkwork.design.tape import Tape
 from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.lanes import Lanes
+from linkwork.foundation.elementwise import vector
+from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
@@ -55,6 +60,8 @@ class DifferentiatedRows(QuantityValues):
         Solved variables, internal units; NaN where there is no position with a finite derivative.
     order : int
         How many derivatives by the leading input are differentiated too, 0 to 2.
+    plays : sequence of (link, point)
+        Points that move away from their pins, with two more numbers for each: x and y.
 
     Raises
     ------
@@ -62,16 +69,25 @@ class DifferentiatedRows(QuantityValues):
         If the form of the equations depends on a number.
     """
 
-    def __init__(self, model: Model, numbers: Sequence[VariedNumber], v: Array, order: int) -> None:
+    def __init__(
+        self,
+        model: Model,
+        numbers: Sequence[VariedNumber],
+        v: Array,
+        order: int,
+        plays: Sequence[tuple[str, str]] = (),
+    ) -> None:
         self.tape = Tape()
         description = model.description
         taped = {q: self.tape.number(float(q.of(description))) for q in numbers}
         self.tape.writing = True
         with np.errstate(all="ignore"):
             self.description = with_numbers(description, taped) if taped else description
+            if plays:
+                self.description = self._with_plays(plays)
             self.taped: LoopEquations = write_equations(self.description)
         self.tape.writing = False
-        lost: BoolArray = ~np.isfinite(v).all(axis=1)
+        lost: BoolArray = np.logical_not(np.isfinite(v).all(axis=1))
         still = np.where(lost, np.nan, 0.0)
         links: Any = _Column([angle.constant for angle in self.taped.links.values()])
         dimensions: Any = _Column(list(self.taped.dimensions.values()))
@@ -81,6 +97,18 @@ class DifferentiatedRows(QuantityValues):
         self.order = order if self.equations.inputs else 0
         self._symbols = [x.symbol for x in self.equations.variables]
         self._points: dict[str, Jet] = {}
+
+    def _with_plays(self, plays: Sequence[tuple[str, str]]) -> Description:
+        """A copy in which points of links lie x + iy away from the pins, in the links' frames."""
+        description = copy(self.description)
+        assert isinstance(description, Draft)
+        local = {link: dict(points) for link, points in description.shapes.local.items()}
+        for link, point in plays:
+            away = vector(self.tape.number(0.0), self.tape.number(0.0))
+            local[link][point] = local[link][point] + away
+        shapes = replace(description.shapes, local=local)
+        object.__setattr__(description, "shapes", shapes)
+        return description
 
     @cached_property
     def _rates(self) -> tuple[Array, Array]:
@@ -135,7 +163,7 @@ class DifferentiatedRows(QuantityValues):
         rows = [Jet(z.v.real, z.d1.real, z.d2.real) for z in loops]
         rows += [Jet(z.v.imag, z.d1.imag, z.d2.imag) for z in loops]
         for line in taped.linear:
-            total = Jet(line.constant, _ZERO, _ZERO)
+            total = _constant(line.constant)
             for symbol, weight in line.terms:
                 total = total + variables[symbol] * weight
             rows.append(total)
@@ -150,7 +178,7 @@ class DifferentiatedRows(QuantityValues):
         known = dict(variables)
         for used in {name.name for name in names_in(node)} - set(known):
             if used in self.taped.symbols:
-                known[used] = Jet(self.taped.symbols[used], _ZERO, _ZERO)
+                known[used] = _constant(self.taped.symbols[used])
         return evaluate(node, known, self.taped.angle)
 
     def _sum(self, terms: Sequence[Term], variables: Mapping[str, Jet]) -> Jet:
@@ -203,20 +231,25 @@ class DifferentiatedRows(QuantityValues):
         return self.variables[self._symbols[self.count + lead]].v
 
 
+def _constant(number: Any) -> Jet:
+    """A number, taped or not, that does not move."""
+    return Jet(number, _ZERO, _ZERO)
+
+
 def _law_jet(law: LawEquation, variables: Mapping[str, Jet]) -> Jet:
     """Σ a v + constant - f(Σ w v + offset), eq. (4)."""
     straight, inner = (
-        sum((variables[s] * weight for s, weight in terms), Jet(constant, _ZERO, _ZERO))
+        sum((variables[s] * weight for s, weight in terms), _constant(constant))
         for terms, constant in ((law.terms, law.constant), (law.inner, law.offset))
     )
-    x = inner.v.values if isinstance(inner.v, Lanes) else np.asarray(inner.v)
+    argument: Any = inner.v
+    x = argument.values if is_batched(argument) else np.asarray(argument)
     f, first, second = law.law.jet(x)
-    third = law.law.slope().jet(x)[2]
-    tape = next((p.arithmetic for p in (inner.v,) if isinstance(p, TapedNumber)), None)
-    if tape is None:
+    if not is_batched(argument):
         return straight - inner.chain(f, first, second)
+    third = law.law.slope().jet(x)[2]
     parts = (
-        tape.combine(value, [(slope, inner.v)])
+        argument.arithmetic.combine(value, [(slope, argument)])  # type: ignore[attr-defined]  # a tape
         for value, slope in ((f, first), (first, second), (second, third))
     )
     return straight - inner.chain(*parts)

@@ -25,7 +25,10 @@ from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
 
 __all__ = [
     "LIMITS",
+    "has_slopes",
     "is_of_motion",
+    "play_of_motion",
+    "play_of_position",
     "sensitivity_of_motion",
     "sensitivity_of_position",
     "sensitivity_of_rows",
@@ -42,6 +45,13 @@ def is_of_motion(of: str) -> bool:
     return "(" in of or of.strip() in LIMITS
 
 
+def has_slopes(model: Model, of: str) -> bool:
+    """Whether the derivatives of a number of a motion are known."""
+    if of.strip() in LIMITS:
+        return True
+    return model.quantities.find_of_motion(of).quantity.slopes is not None
+
+
 def sensitivity_of_position(
     model: Model, position: Position, of: str, by: Iterable[str] | None = None
 ) -> Sensitivity:
@@ -53,11 +63,47 @@ def sensitivity_of_position(
         For a name that is not known, or a number that cannot vary.
     """
     inputs = {name: np.asarray(value) for name, value in position.input.items()}
-    v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
-    found = np.array([position.status.ok])
-    return _of_rows(
-        model, _Rows(v, found, _rates_exist(model, position, 1), position), inputs, of, by, ()
-    )
+    return _of_rows(model, _row_of(model, position), inputs, of, by, ())
+
+
+def play_of_position(
+    model: Model, position: Position, of: str, pins: Sequence[tuple[str, str]]
+) -> Array:
+    """The derivatives of a quantity by the displacement of points of links from their pins.
+
+    Their size is the force in the pin for a unit load at the quantity with the input held, eq.
+    (88).
+
+    Parameters
+    ----------
+    pins : sequence of (link, point)
+
+    Returns
+    -------
+    array (pins, 1, 2)
+    """
+    asked, row = model.quantities.find(of), _row_of(model, position)
+    v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
+    taped = DifferentiatedRows(model, (), v, asked.needs, pins)
+    with np.errstate(all="ignore"):
+        # R of eq. (88)
+        rates = taped.tape.backward(asked.values(taped, taped.speed))
+    return np.broadcast_to(rates, (2 * len(pins), 1)).reshape(len(pins), 1, 2)
+
+
+def play_of_motion(model: Model, motion: Motion, of: str, pins: Sequence[tuple[str, str]]) -> Array:
+    """As :func:`play_of_position`, of a number of a motion, (pins, rows, 2).
+
+    A journal may lie differently in each row on which an extreme depends; where rates enter, such
+    as in the length of a path, it stays where it is in all rows.
+    """
+    _, _, parts = _asked_of_motion(model, motion, of)
+    found = []
+    for part in parts:
+        rates = part.rates(model, (), pins)
+        moved = rates.reshape(len(pins), 2, rates.shape[1]).swapaxes(1, 2)
+        found.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
+    return np.concatenate(found, axis=1) if found else np.zeros((len(pins), 0, 2))
 
 
 def sensitivity_of_rows(
@@ -68,6 +114,12 @@ def sensitivity_of_rows(
     """
     rows = _rows_of(model, motion)
     return _of_rows(model, rows, motion.inputs, of, by, (len(motion),))
+
+
+def _row_of(model: Model, position: Position) -> _Rows:
+    v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
+    found = np.array([position.status.ok])
+    return _Rows(v, found, _rates_exist(model, position, 1), position)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,10 +261,7 @@ def sensitivity_of_motion(
         As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
     """
     numbers, refused = _fitting_numbers(model, _rows_of(model, motion), by)
-    if of.strip() in LIMITS:
-        value, unit, parts = _limit(model, motion, of.strip())
-    else:
-        value, unit, parts = _number(model, motion, of)
+    value, unit, parts = _asked_of_motion(model, motion, of)
     rates = {q.name: np.zeros(()) for q in numbers}
     for part in parts:
         for group in groups_of(model.description, numbers):
@@ -227,6 +276,13 @@ def sensitivity_of_motion(
         derivatives=rates, numbers=numbers, statuses=(status,), refused=refused)  # fmt: skip
 
 
+def _asked_of_motion(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
+    """The number, its unit, and the rows on which it depends."""
+    if of.strip() in LIMITS:
+        return _limit(model, motion, of.strip())
+    return _number(model, motion, of)
+
+
 @dataclass(frozen=True, eq=False)
 class _Part:
     """What some rows add to a number of a motion: Σ weight · column of a quantity."""
@@ -236,11 +292,22 @@ class _Part:
     of: AskedOfMotion | None
     fold: bool
 
-    def rates(self, model: Model, numbers: Sequence[VariedNumber]) -> Array:
-        """The derivatives by numbers, row by row, (P, B)."""
+    @property
+    def depends_on_values(self) -> bool:
+        """Whether no rates enter."""
+        weights = self.weights
+        return not (np.any(weights.first != 0.0) or np.any(weights.second != 0.0))
+
+    def rates(
+        self,
+        model: Model,
+        numbers: Sequence[VariedNumber],
+        plays: Sequence[tuple[str, str]] = (),
+    ) -> Array:
+        """The derivatives by numbers, or by displacements in pins, row by row, (P, B)."""
         needs = 0 if self.of is None else self.of.needs
         kind = DifferentiatedFolds if self.fold else DifferentiatedRows
-        taped = kind(model, numbers, self.v, needs)
+        taped = kind(model, numbers, self.v, needs, plays)
         with np.errstate(all="ignore"):
             columns: Sequence[Any] = (
                 (taped.leading_input,) if self.of is None else self.of.columns(taped)
@@ -251,7 +318,7 @@ class _Part:
                 if np.any(weight != 0.0):
                     total = total + np.real(np.conj(weight) * column)
             rates = taped.tape.backward(total)
-        shape = (len(numbers), len(self.v))
+        shape = (len(taped.tape.inputs), len(self.v))
         return np.broadcast_to(rates, shape) + _fitting(taped, shape)
 
 

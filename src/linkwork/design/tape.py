@@ -266,7 +266,7 @@ class TapedNumber(Lanes):
 
     __slots__ = ("node",)
     arithmetic: Tape
-    __hash__ = object.__hash__
+    __hash__ = object.__hash__  # type: ignore[assignment]  # lanes are no keys; these are
 
     def __init__(self, values: AnyArray, tape: Tape, node: int) -> None:
         super().__init__(values, tape)

@@ -168,10 +168,11 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
 
 def snap(near: bool, place: float, number: float) -> float:
     """``place`` in lanes where the number is near it, else the number."""
-    return replaced(choose(near, place, number), number)
+    found: float = replaced(choose(near, place, number), number)
+    return found
 
 
-def replaced(value: _Number, number: _Number) -> _Number:
+def replaced(value: Any, number: Any) -> Any:
     """A value in the place of a number very near to it, whose derivatives it keeps."""
     return number.arithmetic.carry(value, number) if is_batched(number) else value
 

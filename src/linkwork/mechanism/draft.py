@@ -49,6 +49,7 @@ class Draft(JoinedBodies):
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
         set_(self, "masses", self.spelled_masses())
+        set_(self, "clearances", FrozenDict({same(p): c for p, c in self.clearances.items()}))
         for which in ("lengths", "angles"):
             table = getattr(self, which)
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}

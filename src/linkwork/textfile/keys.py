@@ -28,6 +28,7 @@ from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import HIDDEN
+from linkwork.mechanism.tolerances import CLEARANCES, TOLERANCES
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
@@ -188,6 +189,8 @@ LINKAGE = Form(
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
         *_MASSES,
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
+        TOLERANCES,
+        CLEARANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
@@ -225,6 +228,7 @@ LOOPS = Form(
         ),
         *_MASSES,
         Key("loads", Tables(Load.keys), Load.doc),
+        TOLERANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
@@ -245,6 +249,7 @@ EQUATIONS = Form(
         ),
         _GUESS,
         Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
+        TOLERANCES,
         _OUTPUTS,
         _QUESTIONS,
     ),
