@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -155,6 +155,30 @@ class DifferentiatedRows(QuantityValues):
                 columns[order][k] = self.tape.combine(known[order][:, k], terms)
         jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
         return dict(zip(self._symbols, jets, strict=True))
+
+    @cached_property
+    def by_input(self) -> list[Self]:
+        """The same rows with rates by each input alone instead of the leading one."""
+        return [self._moved_by(unit) for unit in np.eye(len(self.equations.inputs))]
+
+    def _moved_by(self, direction: Array) -> Self:
+        rates = self.model.compiled.solver.rates(self.solution, direction).first
+        first: list[Any] = [rates[:, k] for k in range(rates.shape[1])]
+        zero = np.zeros(len(rates))
+        values = [self.variables[symbol].v for symbol in self._symbols]
+
+        def jets() -> dict[str, Jet]:
+            parts = zip(self._symbols, values, first, strict=True)
+            return {symbol: Jet(value, rate, zero) for symbol, value, rate in parts}
+
+        parts = [row.d1 for row in self._residuals(jets())]
+        for k in range(self.count):
+            terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
+            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (84)
+        moved = copy(self)
+        moved._points = {}
+        moved.__dict__["variables"] = jets()
+        return moved
 
     def _residuals(self, variables: Mapping[str, Jet]) -> list[Jet]:
         """All equations in the order of the loop table, as jets."""

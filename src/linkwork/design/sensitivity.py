@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers, groups_of
 from linkwork.design.differentiated_folds import DifferentiatedFolds
+from linkwork.design.differentiated_forces import LoadedRows
 from linkwork.design.differentiated_rows import DifferentiatedRows
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.errors import InputError, UnknownNameError
@@ -84,7 +85,7 @@ def play_of_position(
     """
     asked, row = model.quantities.find(of), _row_of(model, position)
     v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
-    taped = DifferentiatedRows(model, (), v, asked.needs, pins)
+    taped = LoadedRows(model, (), v, asked.needs, pins)
     with np.errstate(all="ignore"):
         # R of eq. (88)
         rates = taped.tape.backward(asked.values(taped, taped.speed))
@@ -163,7 +164,7 @@ def _of_rows(
     v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
-        taped = DifferentiatedRows(model, group, v, asked.needs)
+        taped = LoadedRows(model, group, v, asked.needs)
         with np.errstate(all="ignore"):
             rates = taped.tape.backward(asked.values(taped, taped.speed))
         each = (len(group), len(v))
@@ -306,7 +307,7 @@ class _Part:
     ) -> Array:
         """The derivatives by numbers, or by displacements in pins, row by row, (P, B)."""
         needs = 0 if self.of is None else self.of.needs
-        kind = DifferentiatedFolds if self.fold else DifferentiatedRows
+        kind = DifferentiatedFolds if self.fold else LoadedRows
         taped = kind(model, numbers, self.v, needs, plays)
         with np.errstate(all="ignore"):
             columns: Sequence[Any] = (

@@ -290,6 +290,9 @@ class TapedNumber(Lanes):
         """The complex conjugate."""
         return self.conjugate()
 
+    def __len__(self) -> int:
+        return len(self.values)
+
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the values."""

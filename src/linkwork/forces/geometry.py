@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
@@ -46,6 +47,16 @@ class Geometry:
         return 1 if first is None else len(self.place(first).v)
 
     @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of values of all rows."""
+        return (self.rows,)
+
+    @property
+    def numbers(self) -> Numbers:
+        """Reads numbers and formulas of the file."""
+        return self.model.description.numbers
+
+    @property
     def points(self) -> tuple[str, ...]:
         """The points of the file."""
         return self.model.motion_quantities.names.points
@@ -78,7 +89,7 @@ class Geometry:
             span = self.place(points[1]) - self.place(points[0])
             return _times(span, 1.0 / np.abs(span.v))  # of constant length
         turn = self.angle(link)
-        unit = np.exp(1j * turn.v)
+        unit = np.cos(turn.v) + 1j * np.sin(turn.v)
         return Jet(unit, 1j * turn.d1 * unit, (1j * turn.d2 - turn.d1**2) * unit)
 
     def angle(self, link: str) -> Jet:

@@ -28,7 +28,7 @@ from linkwork.results.quantities.definition import Solved
 from linkwork.results.quantity import Kind
 from linkwork.results.reactions import ForceStatus
 
-__all__ = ["ForceRows", "ForceValue", "solve_forces"]
+__all__ = ["ForceRows", "ForceValue", "known_acts", "solve_forces", "totals"]
 
 _UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
 
@@ -105,7 +105,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             _add_reactions(found, bodies)
         drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
         _add_efforts(found, by_work, largest, drives)
-        _add_totals(found)
+        for name, kind, about, value in totals(geometry, applied):
+            found.add(name, kind, about, value)
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     status[lost] = ForceStatus.NO_POSITION.code
@@ -160,7 +161,7 @@ def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None
     return _free_bodies(linkage, own, applied)
 
 
-def _known_acts(bodies: FreeBodies) -> list[Act]:
+def known_acts(bodies: FreeBodies) -> list[Act]:
     """Everything that acts on the bodies and is known."""
     geometry, applied = bodies.geometry, bodies.applied
     acts = [
@@ -177,7 +178,7 @@ def _known_acts(bodies: FreeBodies) -> list[Act]:
 
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> None:
     """All readings, from the unknowns and the acts that follow from them."""
-    acts = _known_acts(bodies)
+    acts = known_acts(bodies)
     known = balance(bodies.matrix())
     r = known.solve(bodies.sums(acts))
     sizes, unsure = [], []
@@ -247,11 +248,10 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Seque
         found.add("power", Kind.POWER, "power of all inputs", power)
 
 
-def _add_totals(found: _Solution) -> None:
-    """The force and the moment on the ground, energies and powers."""
-    geometry, applied = found.geometry, found.applied
-    force: ComplexArray = np.zeros(geometry.rows, dtype=complex)
-    moment = np.zeros(geometry.rows)
+def totals(geometry: Geometry, applied: AppliedLoads) -> Iterator[tuple[str, Kind, str, Array]]:
+    """The force and the moment on the ground, energies and powers: name, kind, about, (B,)."""
+    force: ComplexArray = np.zeros(geometry.shape, dtype=complex)
+    moment = np.zeros(geometry.shape)
     pushes = [(geometry.place(point).v, own) for point, own, _ in applied.forces]
     # internal forces cancel: loads, weights and inertia alone reach the ground
     for place, own in [*pushes, *((body.place, body.force) for body in applied.masses)]:
@@ -260,21 +260,21 @@ def _add_totals(found: _Solution) -> None:
     for torque in [own for _, own in applied.torques] + [body.torque for body in applied.masses]:
         moment = moment + torque
     for point in dict.fromkeys(point for point, _, _ in applied.forces):
-        total = np.zeros(geometry.rows, dtype=complex)
+        total = np.zeros(geometry.shape, dtype=complex)
         for own in (own for name, own, _ in applied.forces if name == point):
-            total += own
+            total = total + own
         for axis, part in (("x", total.real), ("y", total.imag)):
-            found.add(f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part)
-    found.add("shaking.x", Kind.FORCE, "force on the ground", force.real)
-    found.add("shaking.y", Kind.FORCE, "force on the ground", force.imag)
-    found.add("shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment)
+            yield f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part
+    yield "shaking.x", Kind.FORCE, "force on the ground", force.real
+    yield "shaking.y", Kind.FORCE, "force on the ground", force.imag
+    yield "shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment
     about = {
         "kinetic_energy": "energy of all masses in motion",
         "stored_energy": "energy of springs and weights",
         "load_power": "power of loads and dampers on the mechanism",
         "energy_rate": "rate of the kinetic and stored energy",
     }
-    if applied.rate:
+    if applied.moves:
         for name, value in energies(applied).items():
             kind = Kind.POWER if name in ("load_power", "energy_rate") else Kind.ENERGY
-            found.add(name, kind, about[name], value)
+            yield name, kind, about[name], value

@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import plain_value
 from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["across_line", "along_line", "line_of", "side_of"]
@@ -24,7 +25,8 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
 def side_of(line: tuple[str, str], point: str, linkage: Linkage) -> float:
     """The side of a line on which a point is sketched: 1 for left, -1 for right."""
     start, end, place = map(linkage.sketched, (*line, point))
-    return math.copysign(1.0, ((place - start) * (end - start).conjugate()).imag)
+    across = plain_value(((place - start) * (end - start).conjugate()).imag)
+    return math.copysign(1.0, across)
 
 
 def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:

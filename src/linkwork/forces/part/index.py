@@ -14,14 +14,19 @@ from linkwork.forces.free_bodies import FreeBodies
 from linkwork.mechanism.part.index import part_module
 from linkwork.mechanism.part.part import Part
 
-__all__ = ["drive_part", "join_parts"]
+__all__ = ["drive_part", "join_part", "join_parts"]
 
 
 def join_parts(bodies: FreeBodies) -> None:
     """Add the reactions of all parts."""
     for part in bodies.parts:
-        write: Callable[[Part, FreeBodies], None] = _room(part).write
-        write(part, bodies)
+        join_part(part, bodies)
+
+
+def join_part(part: Part, bodies: FreeBodies) -> None:
+    """Add the reactions of one part, or its loads."""
+    write: Callable[[Part, FreeBodies], None] = _room(part).write
+    write(part, bodies)
 
 
 def drive_part(bodies: FreeBodies, name: str) -> int:
