@@ -31,6 +31,7 @@ _COMMANDS = (
     "view",
     "web",
     "link",
+    "code",
     "study",
     "compile",
     "examples",
