@@ -78,6 +78,13 @@ if TYPE_CHECKING:
         Remedy as Remedy,
     )
     from linkwork.results.force import Force as Force
+    from linkwork.results.machine_design import (
+        Counterweights as Counterweights,
+        Flywheel as Flywheel,
+        Harmonics as Harmonics,
+        InflectionCircle as InflectionCircle,
+        MotorCheck as MotorCheck,
+    )
     from linkwork.results.motion import (
         Limit as Limit,
         LimitKind as LimitKind,
