@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, is_dataclass
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -150,5 +150,5 @@ def _plain(entry: Any) -> Any:
     if isinstance(entry, np.ndarray):
         return entry.tolist()
     if isinstance(entry, tuple):
-        return [asdict(each) if is_dataclass(each) else each for each in entry]
+        return [vars(each) if is_dataclass(each) else each for each in entry]
     return dict(entry) if hasattr(entry, "items") else entry

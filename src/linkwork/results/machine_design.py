@@ -64,13 +64,15 @@ class Flywheel:
     @property
     def summary(self) -> Summary:
         """A title and rows of text."""
-        rows = [
-            (n, f"{getattr(self, n):.6g} {self.units[n]}") for n in ("mean", "energy", "inertia")
-        ]
-        rows += [
-            (n, f"at {getattr(self, n):.6g} {self.units['input']}") for n in ("slowest", "fastest")
-        ]
-        return Summary(f"Flywheel for a fluctuation of {self.fluctuation:g}", tuple(rows))
+        unit = self.units
+        rows = (
+            ("mean", f"{self.mean:.6g} {unit['mean']}"),
+            ("energy", f"{self.energy:.6g} {unit['energy']}"),
+            ("inertia", f"{self.inertia:.6g} {unit['inertia']}"),
+            ("slowest", f"at {self.slowest:.6g} {unit['input']}"),
+            ("fastest", f"at {self.fastest:.6g} {unit['input']}"),
+        )
+        return Summary(f"Flywheel for a fluctuation of {self.fluctuation:g}", rows)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
