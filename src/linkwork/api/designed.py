@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from linkwork import design
-from linkwork.api.loaded import LoadedMechanism
+from linkwork.api.dynamic import DynamicMechanism
 from linkwork.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["DesignedMechanism"]
 
 
-class DesignedMechanism(LoadedMechanism):
+class DesignedMechanism(DynamicMechanism):
     """The part of :class:`~linkwork.api.mechanism.Mechanism` that helps to choose its numbers."""
 
     def sensitivity(

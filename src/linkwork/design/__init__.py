@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.design.counterweights import (
+        balanced as balanced,
+        counterweights as counterweights,
+    )
+    from linkwork.design.flywheel import flywheel as flywheel
+    from linkwork.design.harmonic_analysis import harmonics as harmonics
+    from linkwork.design.inflection import inflection_circle as inflection_circle
+    from linkwork.design.motor_check import motor_check as motor_check
     from linkwork.design.sensitivity import (
         is_of_motion as is_of_motion,
         sensitivity_of_motion as sensitivity_of_motion,

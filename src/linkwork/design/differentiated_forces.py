@@ -1,12 +1,12 @@
 """Forces of differentiated rows: the same free bodies and virtual work, with taped numbers.
 
 The equilibrium W r + b = 0 is solved with plain numbers; one step from its solution,
-r - W⁻¹ (W r + b), then has the derivatives of the solution.
+r - W⁻¹ (W r + b), then has the derivatives of the solution, with those of friction and of all that
+follows from r.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cached_property
 from typing import Any
 
@@ -15,14 +15,14 @@ import numpy as np
 from linkwork.design.differentiated_rows import DifferentiatedRows
 from linkwork.design.tape import Tape
 from linkwork.forces.applied import AppliedLoads
-from linkwork.forces.drives import drive_inputs, effort_name
-from linkwork.forces.equilibrium import balance
+from linkwork.forces.drives import effort_name
 from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.geometry import Geometry
-from linkwork.forces.part.index import join_part, join_parts
+from linkwork.forces.joint_forces import joint_forces
+from linkwork.forces.part.index import join_part
 from linkwork.forces.part.load import apply_load
-from linkwork.forces.pins import join_pins, read_first_links
-from linkwork.forces.system import known_acts, totals
+from linkwork.forces.pins import read_first_links
+from linkwork.forces.system import free_bodies, free_bodies_of, known_acts, totals
 from linkwork.forces.virtual_work import work_terms
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
@@ -35,6 +35,7 @@ from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.part.spring import Spring
+from linkwork.motion.named_quantities import RowValues
 
 __all__ = ["LoadedRows"]
 
@@ -52,22 +53,24 @@ class TapedGeometry(Geometry):
         return self.taped.description.numbers
 
     def partial(self, point: str) -> Any:
-        """Derivatives of a point with respect to each input."""
+        """Derivatives of a point with respect to each input; (B,) of the only one."""
         if self.alone:
-            return [self.place(point).d1]
+            return self.place(point).d1
         return [moved.place(point).d1 for moved in self.taped.by_input]
 
     def turning(self, link: str) -> Any:
-        """Derivatives of a link's angle with respect to each input."""
+        """Derivatives of a link's angle with respect to each input; (B,) of the only one."""
+        if self.alone:
+            return self.angle(link).d1
         if link == GROUND:
             return [np.zeros(self.rows) for _ in self.model.equations.inputs]
-        if self.alone:
-            return [self.angle(link).d1]
         return [Geometry(self.model, moved).angle(link).d1 for moved in self.taped.by_input]
 
     def partial_local(self, link: str, place: Any) -> Any:
         """Derivatives of a point in the frame of a link with respect to each input."""
         arm = 1j * self.direction(link).v * place
+        if self.alone:
+            return self.partial(self.links[link][0]) + self.turning(link) * arm
         pairs = zip(self.partial(self.links[link][0]), self.turning(link), strict=True)
         return [moved + turned * arm for moved, turned in pairs]
 
@@ -99,8 +102,6 @@ class LoadedRows(DifferentiatedRows):
         geometry, description = TapedGeometry(self), self.description
         assert isinstance(description, LoadedBodies)
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
-        if getattr(description, "friction", None):
-            raise NotElementwise
         applied.weigh(description)
         if isinstance(description, Linkage):
             bodies = FreeBodies(description, geometry, applied)
@@ -117,9 +118,14 @@ class LoadedRows(DifferentiatedRows):
         """Efforts of all inputs by virtual work, and their power."""
         inputs = self.equations.inputs
         found: list[Any] = [np.zeros(len(self.solution)) for _ in inputs]
+        alone = self._loads.geometry.alone
         for load, moved in work_terms(self._loads):
-            for k, own in enumerate(moved):
+            for k, own in enumerate([moved] if alone else moved):
                 found[k] = found[k] - (np.conj(load) * own).real  # eq. (71)
+        if getattr(self.description, "friction", None):
+            if not alone:
+                raise NotElementwise
+            found[0] = found[0] + self._joints.friction_effort()
         named = {effort_name(x.name): own for x, own in zip(inputs, found, strict=True)}
         if self.speed is not None:
             rates = zip(self._input_rate, found, strict=True)
@@ -133,74 +139,116 @@ class LoadedRows(DifferentiatedRows):
         return {name: value for name, _, _, value in totals(applied.geometry, applied)}
 
     @cached_property
-    def _reactions(self) -> dict[str, Any]:
-        """Reactions of all joints of a linkage."""
+    def _joints(self) -> _Equilibrium:
+        """The equilibrium of a linkage."""
         description, geometry = self.description, TapedGeometry(self)
         if not isinstance(description, Linkage):
-            return {}
+            raise NotElementwise
+        there = np.logical_not(self.lost)
+        plain = RowValues(self.model, self.solution, *self._rates, there)
+        nominal = free_bodies_of(self.model, plain)
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
-        bodies = FreeBodies(description, geometry, applied)
-        join_pins(bodies)
-        join_parts(bodies)
-        drive_inputs(bodies)
-        return _Equilibrium(bodies, self.tape).readings()
+        taped = free_bodies(description, geometry, applied)
+        return _Equilibrium(taped, nominal, self.tape)
+
+    @cached_property
+    def _reactions(self) -> dict[str, Any]:
+        """Reactions of all joints."""
+        return self._joints.readings()
 
 
 class _Equilibrium:
-    """The equilibrium of free bodies whose acts are on a tape."""
+    """The equilibrium of free bodies whose acts are on a tape, solved with plain numbers."""
 
-    def __init__(self, bodies: FreeBodies, tape: Tape) -> None:
+    def __init__(self, bodies: FreeBodies, nominal: FreeBodies, tape: Tape) -> None:
         self.bodies, self.tape = bodies, tape
-        rows = bodies.geometry.rows
-        matrix = np.zeros((rows, bodies.equations, len(bodies.unknowns)))
-        #: Of every unknown: rows of W and what is there.
-        self.columns: list[list[tuple[int, Any]]] = []
-        for k, acts in enumerate(bodies.unknowns):
-            column = [entry for act in acts for entry in bodies.entries(act)]
-            for row, value in column:
-                matrix[:, row, k] += _bare(value)
-            self.columns.append(column)
-        self.balance = balance(matrix)
+        geometry, rate = nominal.geometry, nominal.applied.rate
+        way = geometry.table_direction if rate == 0.0 else np.sign(rate)
+        acts = known_acts(nominal)
+        self.solved = joint_forces(nominal, acts, np.broadcast_to(way, geometry.rows))
+        self.acts = known_acts(bodies)
+        self._solve()
 
-    def solve(self, acts: Iterable[Act]) -> list[Any]:
-        """The unknowns for known acts, (B,) each on the tape."""
-        geometry, bodies = self.bodies.geometry, self.bodies
-        loads = np.zeros((geometry.rows, bodies.equations))
-        rest: list[Any] = [np.zeros(geometry.rows) for _ in range(bodies.equations)]
-        for act in acts:
-            for row, value in bodies.entries(act):
-                loads[:, row] += _bare(value)
-                rest[row] = rest[row] + value
-        r = self.balance.solve(loads)
-        for k, column in enumerate(self.columns):
-            for row, value in column:
-                rest[row] = rest[row] + value * r[:, k]
-        inverse = self.balance.inverse
-        # eq. (90)
-        return [
-            self.tape.combine(r[:, k], [(-inverse[:, k, i], part) for i, part in enumerate(rest)])
+    def _solve(self) -> None:
+        """Unknowns and amounts of what follows from them, on the tape."""
+        bodies, solved, tape = self.bodies, self.solved, self.tape
+        r, amounts, inverse = solved.unknowns, solved.amounts, solved.balance.inverse
+        rest: list[Any] = [np.zeros(len(r)) for _ in range(bodies.equations)]
+        sums = [([act], 1.0) for act in self.acts]
+        sums += [(list(acts), r[:, k]) for k, acts in enumerate(bodies.unknowns)]
+        sums += [(list(own.acts), amounts[:, k]) for k, own in enumerate(bodies.following)]
+        for group, factor in sums:
+            for act in group:
+                for row, value in bodies.entries(act):
+                    rest[row] = rest[row] + value * factor
+        # eq. (90): the step that equilibrium takes, and that of the amounts with it
+        none = np.zeros(len(r))
+        step = [
+            tape.combine(none, [(-inverse[:, k, i], part) for i, part in enumerate(rest)])
             for k in range(r.shape[1])
         ]
+        changes = self._changes(step)
+        answers = solved.answers
+        self.unknowns = [
+            tape.combine(
+                r[:, k],
+                [
+                    (1.0, step[k]),
+                    *((own[:, k], c) for own, c in zip(answers, changes, strict=True)),
+                ],
+            )
+            for k in range(r.shape[1])
+        ]
+        self.amounts = [
+            tape.combine(amounts[:, k], [(1.0, change)]) for k, change in enumerate(changes)
+        ]
+
+    def _changes(self, step: list[Any]) -> list[Any]:
+        """The changes of all amounts, which depend on the unknowns that they change."""
+        bodies, solved, count = self.bodies, self.solved, len(self.bodies.following)
+        rows = len(solved.unknowns)
+        if not count:
+            return []
+        matrix = np.tile(np.eye(count), (rows, 1, 1))
+        sides: list[Any] = []
+        for k, follower in enumerate(bodies.following):
+            own = list(follower.size.unknowns)
+            u = solved.unknowns[:, own]
+            size: Any = follower.size.value(u)
+            sign = np.sign(solved.amounts[:, k]) * np.sign(_bare(size))
+            slope = sign[:, None] * solved.bodies.following[k].size.gradient(u)
+            side: Any = self.tape.combine(np.zeros(rows), [(sign, size)])
+            for place, j in enumerate(own):
+                side = side + slope[:, place] * step[j]
+                for other, answer in enumerate(solved.answers):
+                    matrix[:, k, other] -= slope[:, place] * answer[:, j]
+            sides.append(side)
+        inverse = np.linalg.inv(matrix)
+        return [
+            self.tape.combine(np.zeros(rows), [(inverse[:, k, j], x) for j, x in enumerate(sides)])
+            for k in range(count)
+        ]
+
+    def friction_effort(self) -> Any:
+        """What friction adds to the effort of the only input, (B,)."""
+        total: Any = 0.0
+        for amount, follower in zip(self.amounts, self.bodies.following, strict=True):
+            if follower.motion is not None:
+                total = total - amount * follower.motion
+        return total
 
     def readings(self) -> dict[str, Any]:
         """All named quantities."""
-        bodies = self.bodies
-        acts = known_acts(bodies)
-        r = self.solve(acts)
-        sizes = []
-        for k, size, follow in bodies.following:
-            amount: Any = size(r[k])
-            sizes.append(amount)
-            acts += [Act(a.on, a.place, a.force * amount, a.moment) for a in follow]
-        if sizes:
-            r = self.solve(acts)
+        bodies, found = self.bodies, dict[str, Any]()
+        acts = list(self.acts)
+        for amount, follower in zip(self.amounts, bodies.following, strict=True):
+            acts += [Act(a.on, a.place, a.force * amount, a.moment) for a in follower.acts]
         read_first_links(bodies, acts)
-        found: dict[str, Any] = {}
         for reading in bodies.readings:
-            value = reading.constant + sum((f * r[k] for k, f in reading.terms), 0.0)
+            value = reading.constant + sum((f * self.unknowns[k] for k, f in reading.terms), 0.0)
             if reading.follow is not None:
-                value = value + sizes[reading.follow]
+                value = value + self.amounts[reading.follow]
             found[reading.name] = value
         return found
 

@@ -92,8 +92,8 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
         raise UnknownNameError(f'"{link}" is not a link of {linkage.name} {known}')
     if link == GROUND:
         return linkage if which is None else replace(linkage, inputs=(which,))
-    nothing: FrozenDict[str, Any] = FrozenDict()
-    linkage = replace(linkage, masses=nothing, gravity=None, loads=(), tolerances=nothing)
+    none: FrozenDict[str, Any] = FrozenDict()
+    linkage = replace(linkage, masses=none, friction=none, gravity=None, loads=(), tolerances=none)
     _check_carried(linkage)
     return _Inverting(linkage, link, places).done(which)
 
