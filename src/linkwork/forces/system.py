@@ -227,7 +227,7 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Seque
     worst = np.zeros(geometry.rows)
     # the effort by virtual work replaces the other one, which only checks it
     power, checked = np.zeros(geometry.rows), False
-    for k, variable in enumerate(geometry.model.equations.inputs):
+    for k, variable in enumerate(geometry.driven.equations.inputs):
         name = effort_name(variable.name)
         if drives:  # of the linkage that loops read as, under the name of the loops' variable
             found.values[name] = found.values.pop(drives[k])
