@@ -368,9 +368,8 @@ class SolvableMechanism(DescribedMechanism):
             As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
-        # between dead points a motion is shown back and forth, along the circuit
         if motion.found.all() or not motion.found.any() or self.description.timed:
-            return motion
+            return motion  # time does not turn back
         return self.sweep(
             configuration=configuration, through=True, certify=certify, progress=progress
         )
