@@ -53,7 +53,7 @@ def test_sensitivities_of_rows_and_of_motions_are_written(run: Run, tmp_path: Pa
 
 def test_a_position_that_is_missing_ends_with_exit_code_1(run: Run, tmp_path: Path) -> None:
     file = tmp_path / "bar.toml"
-    text = example_text("four-bar").replace('"O2 A" = 40', '"O2 A" = 80')
+    text = example_text("four-bar").replace('"O2 A"  = 40', '"O2 A"  = 80')
     assert text != example_text("four-bar")
     file.write_text(text, encoding="utf-8")
     done = run("sensitivity", str(file), "--of", "rocker", "--at", "5")

@@ -150,7 +150,7 @@ class DifferentiatedRows(QuantityValues):
             rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
             parts = [(jet.v, jet.d1, jet.d2)[order] for jet in rows]
             for k in range(self.count):
-                # eq. (84)
+                # eq. (92)
                 terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
                 columns[order][k] = self.tape.combine(known[order][:, k], terms)
         jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
@@ -174,7 +174,7 @@ class DifferentiatedRows(QuantityValues):
         parts = [row.d1 for row in self._residuals(jets())]
         for k in range(self.count):
             terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (84)
+            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (92)
         moved = copy(self)
         moved._points = {}
         moved.__dict__["variables"] = jets()

@@ -201,7 +201,7 @@ class Tape(Consensus):
             total: Any = 0.0
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
                 x = rates[parent]
-                # eq. (85)
+                # eq. (93)
                 total = total + _product(a, x)
                 if b is not None:
                     total = total + _product(b, np.conj(x))
@@ -219,7 +219,7 @@ class Tape(Consensus):
             if own is None or not self._parents[node]:
                 continue
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
-                # eq. (86): the transpose of eq. (85)
+                # eq. (94): the transpose of eq. (93)
                 part = _product(np.conj(a), own)
                 if b is not None:
                     part = part + _product(b, np.conj(own))

@@ -26,10 +26,10 @@ def of_input(rates: AnyArray, which: IndexArray | None) -> AnyArray:
 
 
 def moving_most(rates: AnyArray) -> IndexArray | None:
-    """Which input moves something most in every row, (1, B); ``None`` for numbers on a tape, which
-    have one input.
+    """Which input moves something most in every row, (1, B); ``None`` for rates (B,) of one input, as
+    of numbers on a tape.
     """
-    if is_batched(rates):
+    if is_batched(rates) or rates.ndim == 1:
         return None
     found: IndexArray = np.argmax(np.nan_to_num(np.abs(rates)), axis=0)[None, :]
     return found

@@ -54,6 +54,9 @@ class MechanismNames:
         The leading input, the first one that changes from row to row; "" without an input.
     further : tuple of RowQuantity
         Quantities that this mechanism alone has, of no part: those of its forces.
+    series : callable, optional
+        From solved positions, the requested quantity and an order: its derivatives with respect to
+        the leading input from the first to this one, in radians and lengths, (order, B).
     """
 
     units: Units
@@ -68,6 +71,7 @@ class MechanismNames:
     by: str = ""
     lead: str = ""
     further: tuple[RowQuantity, ...] = ()
+    series: Callable[[Solved, Any, int], Array] | None = None
 
     @cached_property
     def dyads(self) -> tuple[Dyad, ...]:
