@@ -14,7 +14,7 @@ from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model, model_of
 from linkwork.motion.named_quantities import RowValues
 
-__all__ = ["changed_by", "extrapolated", "own_position", "values_at"]
+__all__ = ["changed_by", "extrapolated", "own_position", "values_of"]
 
 
 def extrapolated(
@@ -49,8 +49,8 @@ def own_position(model: Model, v: Array) -> Array:
     return found
 
 
-def values_at(
-    mechanism: lw.Mechanism, name: str, to: float, v: Array, wanted: list[str]
+def values_of(
+    mechanism: lw.Mechanism, name: str, v: Array, wanted: list[str], to: float
 ) -> dict[str, float]:
     """Quantities of a design with one other number, at the position next to a given one."""
     number = number_named(mechanism.description, name)

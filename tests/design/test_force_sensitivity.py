@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
+import numpy as np
 import pytest
 
 import linkwork as lw
@@ -112,7 +113,7 @@ def test_efforts_of_several_inputs_have_the_derivatives_of_differences() -> None
 
 def test_rows_of_a_table_have_the_sensitivities_of_positions() -> None:
     machine = lw.loads(MACHINE)
-    rows = machine.gradient("crank.effort", by=["A B"])["A B"]
+    rows = np.asarray(machine.gradient("crank.effort", by=["A B"])["A B"])
     assert rows[5] == pytest.approx(machine.sensitivity("crank.effort", at=50)["A B"], rel=1e-10)
 
 

@@ -6,6 +6,8 @@ import cmath
 import math
 import re
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ import linkwork as lw
 from linkwork.design.differentiable_numbers import chosen_numbers
 from linkwork.design.differentiated_forces import LoadedRows
 from linkwork.foundation.errors import InputError, UnknownNameError
-from tests.design.extrapolated import changed_by, extrapolated, own_position, values_at
+from tests.design.extrapolated import changed_by, extrapolated, own_position, values_of
 from tests.library_mechanisms import driven_examples, read_example
 from tests.thinned import thinned
 
@@ -68,8 +70,9 @@ def test_rows_of_a_table_have_the_derivatives_of_positions() -> None:
     mechanism = read_example("slider-crank")
     found = mechanism.gradient("d", by=NAMES)
     for row in (0, 60, 250):
-        wanted = complex_step(lambda *x, r=row: slide(*x, math.radians(r)), *AT)
-        assert [found[n][row] for n in NAMES] == pytest.approx(wanted, rel=1e-12, abs=1e-12)
+        wanted = complex_step(partial(slide, angle=math.radians(row)), *AT)
+        own = [np.asarray(found[n])[row] for n in NAMES]
+        assert own == pytest.approx(wanted, rel=1e-12, abs=1e-12)
 
 
 def test_a_dead_point_moves_as_its_closed_form() -> None:
@@ -156,18 +159,20 @@ def test_all_quantities_of_a_library_mechanism_have_the_derivatives_of_differenc
         at = float(number.of(model.description))
         step = 0.05 if number.table == "angles" else 5e-4 * size
         with np.errstate(all="ignore"):
-            here = values_at(mechanism, number.name, at, v, wanted)
+            here = values_of(mechanism, number.name, v, wanted, at)
             try:
                 other = extrapolated(
-                    lambda x, n=number.name: values_at(mechanism, n, x, v, wanted), at, step
+                    partial(values_of, mechanism, number.name, v, wanted), at, step
                 )
             except InputError:
                 continue  # two dimensions of ground agree to first order only
-        for own_name, rate in zip(wanted, rates, strict=True):
+        for own_name, slopes in zip(wanted, rates, strict=True):
             scale = max(abs(here[own_name]) / size, abs(other[own_name]))
             if math.isfinite(scale) and scale < 1e3 * max(1.0, 1.0 / size):
                 # six digits of differences whose steps lose half of the sixteen
-                assert rate[k] == pytest.approx(other[own_name], rel=1e-6, abs=1e-6 * scale + 1e-9)
+                assert slopes[k] == pytest.approx(
+                    other[own_name], rel=1e-6, abs=1e-6 * scale + 1e-9
+                )
                 compared += 1
     assert compared > 0
 
@@ -201,7 +206,7 @@ def test_a_gradient_needs_no_more_nodes_for_more_numbers() -> None:
     sizes = []
     for count in (1, len(numbers)):
         taped = LoadedRows(model, numbers[:count], v, 0)
-        result = model.quantities.find("F.x").values(taped, None)
+        result: Any = model.quantities.find("F.x").values(taped, None)
         written = len(taped.tape._needed([result.node]))
         sizes.append(written)
     assert len(numbers) > 20
@@ -219,7 +224,7 @@ def test_a_dead_point_has_no_finite_sensitivity() -> None:
     dead = [word == "dead point" for word in mechanism.sweep().limit]
     statuses = [status.name for status, row in zip(found.statuses, dead, strict=True) if row]
     assert statuses == ["DEAD_POINT", "DEAD_POINT"]
-    assert np.isnan(found["A B"][np.array(dead)]).all()
+    assert np.isnan(np.asarray(found["A B"])[dead]).all()
     assert {status.name for status in found.statuses} == {"FOUND", "DEAD_POINT", "NO_POSITION"}
     assert "limit.lower" in found.statuses[dead.index(True)].value
 

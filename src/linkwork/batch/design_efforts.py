@@ -6,8 +6,8 @@ that computes it for one mechanism, and runs lane by lane like the rates that it
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.drives import effort_name
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
-from linkwork.forces.part.index import join_part
+from linkwork.forces.part.index import join_loads
 from linkwork.forces.virtual_work import work_terms
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import canonical
@@ -32,8 +32,6 @@ from linkwork.kernels.march.rate_programs import PlaceProgram, quantity_program
 from linkwork.kernels.program.recorder import Recorder, Value
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.load import Load
-from linkwork.mechanism.part.spring import Spring
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 
@@ -63,9 +61,9 @@ def design_efforts(designs: Designs, rows: DesignRows, name: str, threads: int =
             program = _program(designs, reading, coefficients)
     except (NotElementwise, TypeError):
         return None
-    found = PlaceReading(
-        designs=designs, coefficients=coefficients, parts=reading.parts, zeros=reading.zeros
-    ).run(program, rows, threads)[0]
+    place = replace(reading, coefficients=coefficients)
+    found: Array = place.run(program, rows, threads)[0]
+    # at a dead point J is singular
     found[~np.isfinite(found)] = np.nan
     return found
 
@@ -110,6 +108,7 @@ def _program(
         parts: dict[str, Part] = {}
         for name, values in coefficients.items():
             one = float(values[fine[0]]) if len(fine) else 0.0
+            # what all designs share is a constant, which the recorder simplifies
             varies = bool((values[fine] != one).any())
             parts[name] = rec.input(name) if varies else one
         family = _FamilyParts(model, parts, leading_input(model.rows)[1])
@@ -141,7 +140,8 @@ class _RecordedRows(RecordedQuantities):
 
     def variable(self, symbol: str) -> Jet:
         """A variable by its symbol, internal units."""
-        k, make = self.number[symbol], self.recording.make
+        k = self.number[symbol]
+        make: Callable[..., Any] = self.recording.make
         first, second = self.derivatives
         return Jet(make(None, self.recorder.input(f"v{k}")), make(None, first[k]),
                    make(None, second[k]))  # fmt: skip
@@ -162,9 +162,9 @@ class _RecordedNumbers(Numbers):
     def __init__(self, solved: _RecordedRows) -> None:
         equations = solved.model.equations
         self.unit = solved.model.description.angle
+        columns: Any = solved.dimensions
         self.known = {
-            canonical(name): solved.dimensions[..., k]
-            for k, name in enumerate(equations.dimensions)
+            canonical(name): columns[..., k] for k, name in enumerate(equations.dimensions)
         }
 
     def __call__(self, number: Number) -> Any:
@@ -172,7 +172,8 @@ class _RecordedNumbers(Numbers):
         if not isinstance(number, str):
             return float(number)
         zero = np.zeros(())
-        names = {name: Jet(value, zero, zero) for name, value in self.known.items()}
+        known: dict[str, Any] = dict(self.known)
+        names = {name: Jet(value, zero, zero) for name, value in known.items()}
         return evaluate(parse(number), names, self.unit).v
 
 
@@ -210,9 +211,7 @@ def _effort(solved: _RecordedRows, rate: Part) -> Part:
     applied = AppliedLoads(geometry, solved.recorded(rate) if isinstance(rate, Value) else rate)
     applied.weigh(linkage)
     bodies = FreeBodies(linkage, geometry, applied)
-    for part in linkage.parts:
-        if isinstance(part, Load | Spring):
-            join_part(part, bodies)
+    join_loads(bodies)
     total: Any = solved.recorded(0.0)
     for load, moved in work_terms(applied):
         total = total - (np.conj(load) * moved).real

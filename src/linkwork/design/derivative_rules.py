@@ -69,6 +69,7 @@ def _where(_: Any, mask: Any, x: Any, y: Any) -> Sequence[Partial]:
 
 def _chosen(z: Any, x: Any, y: Any) -> Sequence[Partial]:
     first, second = np.equal(z, x), np.equal(z, y)
+    # of two equal numbers either may be the larger one after a change
     tie = np.where(first & second, np.nan, 1.0)
     return (np.where(first, tie, 0.0), None), (np.where(second, tie, 0.0), None)
 

@@ -28,6 +28,7 @@ class DifferentiatedFolds(DifferentiatedRows):
     def _null_vectors(self) -> tuple[Array, Array]:
         """w (B, n) and φ (B, N): φ is 0 for inputs."""
         jacobian = self.model.compiled.table.jacobian(self.solution)[:, :, : self.count]
+        # the last singular value is the one that vanishes
         u, _, vh = np.linalg.svd(jacobian)
         along = np.zeros_like(self.solution)
         along[:, : self.count] = vh[:, -1]
@@ -60,6 +61,7 @@ class DifferentiatedFolds(DifferentiatedRows):
         for k, rate in enumerate(self._input_rate, start=self.count):
             if k != self.lead:
                 values[k] = self.tape.combine(self.solution[:, k], [(rate, values[self.lead])])
+        # rates by the input are infinite at a dead point
         none = np.full(len(self.solution), np.nan)
         return {symbol: Jet(values[k], none, none) for k, symbol in enumerate(self._symbols)}
 

@@ -7,6 +7,7 @@ follows from r.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -19,7 +20,7 @@ from linkwork.forces.drives import effort_name
 from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.geometry import Geometry
 from linkwork.forces.joint_forces import joint_forces
-from linkwork.forces.part.index import join_part
+from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import read_first_links
 from linkwork.forces.system import free_bodies, free_bodies_of, known_acts, totals
@@ -33,8 +34,6 @@ from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
-from linkwork.mechanism.part.load import Load
-from linkwork.mechanism.part.spring import Spring
 from linkwork.motion.named_quantities import RowValues
 
 __all__ = ["LoadedRows"]
@@ -88,13 +87,18 @@ class LoadedRows(DifferentiatedRows):
         """
         try:
             with np.errstate(all="ignore"):
-                for table in ("_efforts", "_totals", "_reactions"):
-                    known: dict[str, Any] = getattr(self, table)
+                for known in self._tables():
                     if name in known:
                         return known[name]
         except (NotElementwise, TypeError, AttributeError):
             pass  # a part whose reactions take decisions row by row
         raise InputError(f'the derivatives of "{name}" are not known: sample its tolerance')
+
+    def _tables(self) -> Iterator[dict[str, Any]]:
+        """All quantities of forces; reactions last, for free bodies cost the most."""
+        yield self._efforts
+        yield self._totals
+        yield self._reactions
 
     @cached_property
     def _loads(self) -> AppliedLoads:
@@ -105,9 +109,7 @@ class LoadedRows(DifferentiatedRows):
         applied.weigh(description)
         if isinstance(description, Linkage):
             bodies = FreeBodies(description, geometry, applied)
-            for part in description.parts:
-                if isinstance(part, Load | Spring):
-                    join_part(part, bodies)
+            join_loads(bodies)
         elif isinstance(description, Loops):
             for load in description.loads:
                 apply_load(load, applied)
@@ -125,6 +127,7 @@ class LoadedRows(DifferentiatedRows):
         if getattr(self.description, "friction", None):
             if not alone:
                 raise NotElementwise
+            # rates of friction by each of several inputs are not on the tape
             found[0] = found[0] + self._joints.friction_effort()
         named = {effort_name(x.name): own for x, own in zip(inputs, found, strict=True)}
         if self.speed is not None:
@@ -166,6 +169,7 @@ class _Equilibrium:
         geometry, rate = nominal.geometry, nominal.applied.rate
         way = geometry.table_direction if rate == 0.0 else np.sign(rate)
         acts = known_acts(nominal)
+        # plain numbers decide about friction, self-stress and lift-off
         self.solved = joint_forces(nominal, acts, np.broadcast_to(way, geometry.rows))
         self.acts = known_acts(bodies)
         self._solve()
@@ -175,7 +179,7 @@ class _Equilibrium:
         bodies, solved, tape = self.bodies, self.solved, self.tape
         r, amounts, inverse = solved.unknowns, solved.amounts, solved.balance.inverse
         rest: list[Any] = [np.zeros(len(r)) for _ in range(bodies.equations)]
-        sums = [([act], 1.0) for act in self.acts]
+        sums: list[tuple[list[Act], Any]] = [([act], 1.0) for act in self.acts]
         sums += [(list(acts), r[:, k]) for k, acts in enumerate(bodies.unknowns)]
         sums += [(list(own.acts), amounts[:, k]) for k, own in enumerate(bodies.following)]
         for group, factor in sums:
@@ -216,6 +220,7 @@ class _Equilibrium:
             own = list(follower.size.unknowns)
             u = solved.unknowns[:, own]
             size: Any = follower.size.value(u)
+            # friction acts against the motion, whatever the tape says
             sign = np.sign(solved.amounts[:, k]) * np.sign(_bare(size))
             slope = sign[:, None] * solved.bodies.following[k].size.gradient(u)
             side: Any = self.tape.combine(np.zeros(rows), [(sign, size)])

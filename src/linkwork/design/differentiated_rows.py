@@ -80,6 +80,7 @@ class DifferentiatedRows(QuantityValues):
         self.tape = Tape()
         description = model.description
         taped = {q: self.tape.number(float(q.of(description))) for q in numbers}
+        # |x| in the builder shows x without its sign, which stands beside it
         self.tape.writing = True
         with np.errstate(all="ignore"):
             self.description = with_numbers(description, taped) if taped else description
@@ -94,12 +95,14 @@ class DifferentiatedRows(QuantityValues):
         super().__init__(model, lost, still, links, dimensions)
         self.count = len(self.equations.unknowns)
         self.solution = np.where(lost[:, None], np.nan, v)
+        # without an input nothing moves, and there are no rates
         self.order = order if self.equations.inputs else 0
         self._symbols = [x.symbol for x in self.equations.variables]
         self._points: dict[str, Jet] = {}
 
     def _with_plays(self, plays: Sequence[tuple[str, str]]) -> Description:
         """A copy in which points of links lie x + iy away from the pins, in the links' frames."""
+        # making a description anew would derive its shapes from lengths again
         description = copy(self.description)
         assert isinstance(description, Draft)
         local = {link: dict(points) for link, points in description.shapes.local.items()}
@@ -175,6 +178,7 @@ class DifferentiatedRows(QuantityValues):
         for k in range(self.count):
             terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
             first[k] = self.tape.combine(rates[:, k], terms)  # eq. (92)
+        # the copy shares all but variables and points
         moved = copy(self)
         moved._points = {}
         moved.__dict__["variables"] = jets()
@@ -200,6 +204,7 @@ class DifferentiatedRows(QuantityValues):
 
     def _formula(self, node: Any, variables: Mapping[str, Jet]) -> Jet:
         known = dict(variables)
+        # lengths and dimensions in plain equations are numbers on the tape too
         for used in {name.name for name in names_in(node)} - set(known):
             if used in self.taped.symbols:
                 known[used] = _constant(self.taped.symbols[used])
@@ -271,6 +276,7 @@ def _law_jet(law: LawEquation, variables: Mapping[str, Jet]) -> Jet:
     f, first, second = law.law.jet(x)
     if not is_batched(argument):
         return straight - inner.chain(f, first, second)
+    # the second derivative by the input needs the third of the law
     third = law.law.slope().jet(x)[2]
     parts = (
         argument.arithmetic.combine(value, [(slope, argument)])  # type: ignore[attr-defined]  # a tape

@@ -161,6 +161,7 @@ def _of_rows(
     _check(asked, of)
     asked.check_rate(model.speed)
     numbers, refused = _fitting_numbers(model, rows, by)
+    # rows without a derivative would spoil the inverses of the others
     v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
     derivatives: dict[str, Array] = {}
     for group in groups_of(model.description, numbers):
@@ -196,6 +197,7 @@ def _fitting_numbers(
         For a number asked for after which a redundant link does not fit.
     """
     numbers, refused = chosen_numbers(model, by)
+    # whether a redundant link follows is the same in all positions
     there = np.flatnonzero(rows.found & rows.regular)
     if not model.equations.redundant or not len(there):
         return numbers, refused
@@ -357,6 +359,7 @@ def _parts(rows: _Rows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterator[_Pa
     """Regular rows and dead points that a number depends on."""
     count = len(rows.v)
     weights = [np.broadcast_to(w, count) for w in (slopes.value, slopes.first, slopes.second)]
+    # most numbers depend on one or two rows: only these are differentiated
     used = np.any([weight != 0.0 for weight in weights], axis=0) & rows.found
     for fold in (False, True):
         which = np.flatnonzero(used & (rows.regular != fold))
@@ -382,6 +385,7 @@ def _limit(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Par
             f"the motion of {name} has no dead point {'below' if side < 0 else 'above'} its start: "
             f"{of} does not exist"
         )
+    # the branch ends at the first dead point on either side
     nearest = min(ends, key=lambda limit: side * limit.input)
     rows = _rows_of(model, motion)
     there = np.array([word == LimitKind.DEAD_POINT.word for word in motion.limit])

@@ -75,6 +75,7 @@ class Tape(Consensus):
         taped = [(factor, x) for factor, x in terms if isinstance(x, TapedNumber)]
         if not taped:
             return values
+        # one node for a whole sum keeps the tape short
         nodes = [x.node for _, x in taped]
         return self._node(np.asarray(values), nodes, [(factor, None) for factor, _ in taped])
 
@@ -82,9 +83,8 @@ class Tape(Consensus):
 
     def operand(self, number: object) -> Any:
         """A taped number, or a constant: a plain number or an array."""
-        if isinstance(number, Truths):
-            return number.values
-        return number
+        # NumPy broadcasts constants by itself
+        return number.values if isinstance(number, Truths) else number
 
     def plain(self, number: Any) -> Any:
         """A constant."""
@@ -102,6 +102,8 @@ class Tape(Consensus):
     def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
         """One of two plain numbers."""
         return yes if truths.values[0] else no
+
+    # A number that must not vary may still be written with numbers that do: 2 f / f
 
     def settle(self, number: TapedNumber) -> Any:
         """A number that must not vary, such as the ratio of wheels."""
@@ -216,6 +218,7 @@ class Tape(Consensus):
         adjoints: dict[int, Any] = {result.node: np.ones(np.shape(result.values))}
         for node in reversed(self._needed([result.node])):
             own = adjoints.get(node)
+            # an input keeps its adjoint; all others are given up once they are passed on
             if own is None or not self._parents[node]:
                 continue
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
@@ -280,11 +283,6 @@ class TapedNumber(Lanes):
         if function is np.broadcast_to or function is np.atleast_1d:
             return given[0]  # operations broadcast by themselves
         return self.arithmetic.apply(function, *given)
-
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **named: object) -> Any:
-        if method != "__call__" or named.get("out") is not None:
-            raise NotElementwise
-        return self.arithmetic.apply(ufunc, *inputs)
 
     def conj(self) -> Any:
         """The complex conjugate."""

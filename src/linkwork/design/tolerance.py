@@ -107,6 +107,7 @@ def tolerance_of(
     count, start = whole_number("samples", samples), whole_number("seed", seed)
     names = [number.name for number in given.numbers]
     pins = tuple((link, p) for p in given.clearances for link in pins_of(model.description)[p])
+    # a dwell has corners everywhere, but random designs have one each
     if isinstance(solved, Motion) and count and not has_slopes(model, of):
         return _only_sampled(model, solved, of, given, (count, start))
     if isinstance(solved, Motion):
@@ -215,6 +216,7 @@ def _sample(
         values = _of_designs(model, solved, of, plan)
     else:
         values = np.full(count, float(_nominal(model, solved, of)))
+    # another stream than that of the numbers
     generator = np.random.Generator(np.random.Philox(seed + 1))
     for point, size in given.clearances.items():
         for force in forces[point]:
@@ -249,6 +251,7 @@ def _of_designs(
         if of.strip() in LIMITS:
             return family_of(model, plan).reduced(())[of.strip()]
         return family_of(model, plan).reduced([of])[of]
+    # every design is followed from the position that all deviations start from
     one = _at_one_row(model, solved)
     found = family_of(one, plan).sweep(certify=False)
     return found[of][:, 0]

@@ -138,7 +138,7 @@ class AppliedLoads:
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=mass * (fall - bend) + 0j,
+                force=as_complex(mass * (fall - bend)),
                 torque=-inertia * turned,
                 weight_rate=falling,
                 kinetic_rate=mass * (velocity.conj() * bend).real + inertia * spin * turned,
@@ -147,6 +147,12 @@ class AppliedLoads:
         self.stored.append(-mass * (place.v * np.conj(fall)).real)
         self.stored_rates.append(-falling)
         self.kinetic.append(0.5 * (mass * np.abs(velocity) ** 2 + inertia * spin**2))
+
+
+def as_complex(force: Any) -> ComplexArray:
+    """A force that may be real where nothing moves."""
+    found: ComplexArray = force + 0j
+    return found
 
 
 def time_of(geometry: Geometry) -> Array:
@@ -161,4 +167,5 @@ def time_of(geometry: Geometry) -> Array:
 
 def _constant(value: Any) -> Jet:
     zero = np.zeros(())
-    return Jet(value if is_batched(value) else np.asarray(value), zero, zero)
+    number: Any = value if is_batched(value) else np.asarray(value)
+    return Jet(number, zero, zero)

@@ -127,7 +127,7 @@ class Geometry:
         second = (unit.d2 / unit.v).imag
         return Jet(np.unwrap(np.angle(unit.v)), first.imag, second)
 
-    def local(self, link: str, place: complex) -> Jet:
+    def local(self, link: str, place: complex | Array) -> Jet:
         """A point given in the frame of a link."""
         return self.place(self.links[link][0]) + _times(self.direction(link), place)
 
@@ -178,7 +178,7 @@ class Geometry:
         k = names.index(variable) if variable in names else symbols.index(variable)
         return self._partials[1][:, :, k]
 
-    def partial_local(self, link: str, place: complex) -> ComplexArray:
+    def partial_local(self, link: str, place: complex | Array) -> ComplexArray:
         """Derivatives of a point in the frame of a link with respect to each input, (p, B)."""
         arm = 1j * self.direction(link).v * place
         found: ComplexArray = self.partial(self.links[link][0]) + self.turning(link) * arm

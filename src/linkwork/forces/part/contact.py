@@ -26,8 +26,9 @@ def of_input(rates: AnyArray, which: IndexArray | None) -> AnyArray:
 
 
 def moving_most(rates: AnyArray) -> IndexArray | None:
-    """Which input moves something most in every row, (1, B); ``None`` for rates (B,) of one input, as
-    of numbers on a tape.
+    """Which input moves something most in every row, (1, B).
+
+    ``None`` for rates (B,) of one input, as of numbers on a tape.
     """
     if is_batched(rates) or rates.ndim == 1:
         return None

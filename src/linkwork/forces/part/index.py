@@ -14,12 +14,19 @@ from linkwork.forces.free_bodies import FreeBodies
 from linkwork.mechanism.part.index import part_module
 from linkwork.mechanism.part.part import Part
 
-__all__ = ["drive_part", "join_part", "join_parts"]
+__all__ = ["drive_part", "join_loads", "join_parts"]
 
 
 def join_parts(bodies: FreeBodies) -> None:
     """Add the reactions of all parts."""
     for part in bodies.parts:
+        join_part(part, bodies)
+
+
+def join_loads(bodies: FreeBodies) -> None:
+    """Add the parts that load the links without joining them."""
+    linkage = bodies.linkage
+    for part in (*linkage.loads, *linkage.springs):
         join_part(part, bodies)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Reading
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array
 from linkwork.mechanism.part.spring import Spring
 from linkwork.results.quantity import Kind
 
@@ -29,12 +31,13 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
     span = end - start
     length = np.abs(span.v)
     with np.errstate(all="ignore"):
-        along: ComplexArray = span.v / length
+        along: Any = span.v / length
         rate = (along.conj() * span.d1).real
     tension = _force(spring, bodies, length - numbers(spring.free), rate)
-    along = np.where(length == 0.0, 0.0, along)  # a spring of no length has no direction
-    applied.push(between[0], tension * along)
-    applied.push(between[1], -tension * along)
+    # a spring of no length has no direction
+    pull: Any = tension * np.where(length == 0.0, 0.0, along)
+    applied.push(between[0], pull)
+    applied.push(between[1], -pull)
     about = "tension of the spring and its damper"
     name = f"{spring.name}.tension"
     bodies.readings.append(
