@@ -32,6 +32,7 @@ _COMMANDS = (
     "view",
     "web",
     "link",
+    "code",
     "study",
     "compile",
     "examples",
