@@ -1,0 +1,1 @@
+"""Design: from a task to mechanisms that do it."""

@@ -1,0 +1,1 @@
+"""Solution paths of a homotopy in the lanes of compiled code."""
