@@ -10,7 +10,7 @@ import pytest
 from openpyxl.utils import FORMULAE
 
 import linkwork as lw
-from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.expression.grammar import parse
 from linkwork.expression.lane_functions import FUNCTIONS
 from linkwork.foundation.angles import AngleUnit

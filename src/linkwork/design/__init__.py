@@ -1,1 +1,1 @@
-"""Design: from a task to mechanisms that do it."""
+"""Questions of designers about a mechanism: which dimension matters, and by how much."""

@@ -96,10 +96,18 @@ def follow_all(path: ParameterPath, x: ComplexArray, tracker: Tracker) -> Comple
 
 def first_of_each(fingerprints: ComplexArray) -> IndexArray:
     """The rows of (B, K) without those that repeat an earlier one, within rounding."""
-    size = 1.0 + np.abs(fingerprints)
-    kept = list[int]()
-    for k, row in enumerate(fingerprints):
-        away = (np.abs(fingerprints[kept] - row) / size[k]).max(axis=1)
-        if away.min(initial=np.inf) > _SAME:
-            kept.append(k)
-    return np.array(kept, dtype=np.intp)
+    count = len(fingerprints)
+    # bounded numbers, whose differences are at most relative ones
+    small = fingerprints / (1.0 + np.abs(fingerprints))
+    # equal rows are near each other in the order of any combination of their numbers
+    mixed = small.real @ np.sin(np.arange(1.0, small.shape[1] + 1.0))
+    order = np.argsort(mixed, kind="stable")
+    repeats = np.zeros(count, dtype=bool)
+    for step in range(1, count):
+        one, other = order[:-step], order[step:]
+        near = np.abs(mixed[one] - mixed[other]) < _SAME * small.shape[1]
+        if not near.any():
+            break
+        same = near & (np.abs(small[one] - small[other]).max(axis=1, initial=0.0) < _SAME)
+        repeats[np.maximum(one, other)[same]] = True
+    return np.flatnonzero(~repeats)

@@ -104,14 +104,14 @@ class _Search:
             found, by_mirror, closed = self._close(found)
         by_detour = detours = 0
         while len(found) + settled < len(self.member.x) and detours < _DETOURS:
-            more = self._by_detour(rng)
+            more = self._new_ones(found, self._by_detour(rng))
             detours += 1
-            new = len(self._distinct(np.concatenate([found, more]))) - len(found)
-            by_detour += new
-            found = self._distinct(np.concatenate([found, more]))
-            if new and closed is not None:
-                found, more_mirrored, closed = self._close(found)
-                by_mirror += more_mirrored
+            by_detour += len(more)
+            if len(more):
+                found = np.concatenate([found, more])
+                if closed is not None:
+                    found, mirrored, closed = self._close(found)
+                    by_mirror += mirrored
         return ParameterRoots(
             x=found,
             singular=ends.x[ends.singular],
@@ -146,8 +146,8 @@ class _Search:
         """Ends of the paths by way of random parameters."""
         way = self.family.random_parameters(rng)
         path = ParameterPath(system=self.family, start=self.member.parameters, goal=way)
-        paths = self.tracker(path, self.member.x, SURE)
-        ends = self._follow(way, paths.w[paths.state == ARRIVED], SURE)
+        paths = self.tracker(path, self.member.x, QUICK)
+        ends = self._follow(way, paths.w[paths.state == ARRIVED], QUICK)
         return ends.x[ends.regular]
 
     def _follow(self, start: ComplexArray, x: ComplexArray, options: PathOptions) -> _Ends:
@@ -165,27 +165,31 @@ class _Search:
     def _close(self, found: ComplexArray) -> tuple[ComplexArray, int, bool]:
         """Solutions with their mirror images, how many those are, and whether all are there."""
         path = ParameterPath(system=self.family, start=self.goal, goal=self.goal)
-        images, good = polish_ends(path, self.family.mirrored(found))
-        both = self._distinct(np.concatenate([found, images[good]]))
-        return both, len(both) - len(found), bool(good.all())
+        images = self._new_ones(found, self.family.mirrored(found))
+        sharp, good = polish_ends(path, images)
+        new = self._new_ones(found, sharp[good])
+        return np.concatenate([found, new]), len(new), bool(good.all())
+
+    def _new_ones(self, found: ComplexArray, more: ComplexArray) -> ComplexArray:
+        """Solutions that are not among those found."""
+        both = np.concatenate([found, more])
+        kept = self._first_of_each(both)
+        return both[kept[kept >= len(found)]]
 
     def _meeting(self, ends: _Ends) -> BoolArray:
         """Paths that ended at the same regular solution: one of them has jumped."""
         place = np.flatnonzero(ends.regular)
-        met = np.zeros(len(ends.x), dtype=bool)
         prints = self.family.fingerprint(ends.x[place], self.goal)
-        kept = first_of_each(prints)
-        twice = np.setdiff1d(np.arange(len(place)), kept)
-        met[place[twice]] = True
-        for k in twice:
-            met[place[np.abs(prints - prints[k]).max(axis=1) <= 1e-6 * (1 + np.abs(prints[k]).max())]] = True
-        return met
+        met = np.ones(len(place), dtype=bool)
+        # alone in both directions
+        alone = np.intersect1d(first_of_each(prints), len(place) - 1 - first_of_each(prints[::-1]))
+        met[alone] = False
+        whole = np.zeros(len(ends.x), dtype=bool)
+        whole[place] = met
+        return whole
 
     def _first_of_each(self, x: ComplexArray) -> IndexArray:
         return first_of_each(self.family.fingerprint(x, self.goal))
-
-    def _distinct(self, x: ComplexArray) -> ComplexArray:
-        return x[self._first_of_each(x)]
 
 
 def roots_at(

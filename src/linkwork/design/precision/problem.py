@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.cognates import third_pivot
+from linkwork.design.precision.cognates import third_pivot
 from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.numerics.homotopy.parameter_path import Equations

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import LinearEquation, RealEquation, Redundant, Term
-from linkwork.export.workbook.cell_formula import CellFormula
-from linkwork.export.workbook.linear_form import LinearForm, cosine, sine
-from linkwork.export.workbook.traced_equations import TracedEquations, forms_of
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.linear_form import LinearForm, cosine, sine
+from linkwork.export.formulas.traced_equations import TracedEquations, forms_of
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.foundation.angles import AngleUnit

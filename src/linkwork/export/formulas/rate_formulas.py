@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import Term
-from linkwork.export.workbook.cell_formula import CellFormula
-from linkwork.export.workbook.closure_formulas import ClosureFormulas, NoFormula, check_length
-from linkwork.export.workbook.linear_form import LinearForm
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.closure_formulas import ClosureFormulas, NoFormula, check_length
+from linkwork.export.formulas.linear_form import LinearForm
 from linkwork.expression.derivative import derivative, product_of, sum_of
 from linkwork.expression.tree import Binary, Call, Name, Node, Number, names_in
 from linkwork.foundation.angles import AngleUnit

@@ -1,0 +1,1 @@
+"""All four-bars through precision points, and through points and poses."""
