@@ -15,11 +15,14 @@ from linkwork.kernels.paths.lane_elimination import solve_in_lanes
 from linkwork.kernels.paths.path_program import Layout
 from linkwork.kernels.program.compiling import compiled, compiled_for, named_tuple, types
 from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.kernel_cache import PATH_LOOP, say_that_it_compiles
 from linkwork.kernels.program.program import Code
 from linkwork.marching import solution_path
 from linkwork.marching.step_size import HALF
 
 __all__ = ["Care", "PathEnds", "follow_paths"]
+
+say_that_it_compiles(PATH_LOOP)
 
 _cubic_weights = compiled(solution_path.cubic_weights)
 _is_good = compiled(solution_path.is_good)
