@@ -7,6 +7,7 @@ with a number.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.numerics.homotopy.monodromy import Member, first_of_each
 from linkwork.numerics.homotopy.parameter_path import ParameterPath, polish_ends
 
-__all__ = ["SHIPPED", "SHIPPED_PROBLEMS", "as_arrays", "start_member"]
+__all__ = ["SHIPPED", "SHIPPED_PROBLEMS", "as_arrays", "member_of_arrays", "start_member"]
 
 SHIPPED = Path(__file__).with_name("start_linkages.npz")
 #: All families with a point; poses alone are solved by dyads.
@@ -50,11 +51,22 @@ def start_member(problem: PrecisionProblem) -> Member:
     """
     try:
         with np.load(SHIPPED) as stored:
-            parameters, x = (stored[f"{problem.name}.{field}"] for field in ("parameters", "x"))
+            return member_of_arrays(problem, stored)
     except (OSError, KeyError, ValueError):
-        raise InputError(f"{SHIPPED} cannot be read: install Linkwork again") from None
+        raise InputError(f"{SHIPPED} is damaged: install Linkwork again") from None
+
+
+def member_of_arrays(problem: PrecisionProblem, arrays: Mapping[str, AnyArray]) -> Member:
+    """The member of :func:`as_arrays`, its solutions polished.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If these are no arrays of a solved member.
+    """
+    parameters, x = (arrays[f"{problem.name}.{field}"] for field in ("parameters", "x"))
     path = ParameterPath(system=problem, start=parameters, goal=parameters)
     sharp, good = polish_ends(path, x.astype(complex))
     if not good.all() or len(first_of_each(problem.fingerprint(sharp, parameters))) < len(x):
-        raise InputError(f"{SHIPPED} has wrong numbers: install Linkwork again")
+        raise ValueError("some solutions are none, or equal")
     return Member(parameters=parameters, x=sharp)
