@@ -1,18 +1,17 @@
-"""The step control of a homotopy's solution paths, for numbers and for arrays of them.
+"""The step control of a homotopy's solution paths.
 
-The predictor is the cubic through the last two points and slopes, the corrector two steps of
-Newton's method; the first correction measures the predictor's error and sets the next step
-(Allgower & Georg, Numerical Continuation Methods, ch. 6).
+Compiled code calls these functions with numbers, NumPy with arrays of them. The predictor is the
+cubic through the last two points and slopes, the corrector two steps of Newton's method; the first
+correction measures the predictor's error and sets the next step (Allgower & Georg, Numerical
+Continuation Methods, ch. 6).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
-
-from linkwork.foundation.arrays import Array, BoolArray
 
 __all__ = [
     "ARRIVED",
@@ -38,9 +37,6 @@ _STUCK = 1e-6  # or may end if rounding lets it go no further
 _ARRIVAL = 1e-4  # largest second correction at the end of a path
 FIRST_STEP = 0.02
 _CAUTION, SMALLEST_CHANGE, _LARGEST_CHANGE = 0.85, 0.3, 2.5  # of the step
-
-_Numbers = TypeVar("_Numbers", float, Array)
-_Truths = TypeVar("_Truths", bool, BoolArray)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +72,7 @@ BOLD = PathOptions(error=1e-1)
 CAREFUL = PathOptions(error=1e-4, contraction=0.05)
 
 
-def cubic_weights(s: _Numbers) -> tuple[_Numbers, _Numbers, _Numbers, _Numbers]:
+def cubic_weights(s: Any) -> tuple[Any, Any, Any, Any]:
     """Weights of Hermite's cubic at ``s``, in units of the last step beyond its end.
 
     Of the last point, its slope times that step, the point before and its slope times that step.
@@ -87,9 +83,7 @@ def cubic_weights(s: _Numbers) -> tuple[_Numbers, _Numbers, _Numbers, _Numbers]:
     return 1.0 - back, slope_before - s * (1.0 + s), back, slope_before
 
 
-def is_good(
-    e1: _Numbers, e2: _Numbers, last: _Truths, error: float, contraction: float, rounding: float
-) -> _Truths:
+def is_good(e1: Any, e2: Any, last: Any, error: float, contraction: float, rounding: float) -> Any:
     """Whether an attempt is a step along the path, from the relative sizes of its corrections.
 
     ``last``: whether it ended at σ = 0. The other arguments are those of :class:`PathOptions`.
@@ -99,12 +93,12 @@ def is_good(
     return (e1 < 4.0 * error) & (e2 <= np.maximum(least, rounding))
 
 
-def step_factor(e1: _Numbers, error: float) -> _Numbers:
+def step_factor(e1: Any, error: float) -> Any:
     """The ratio of the next step to an attempt, by its first correction."""
     factor = _CAUTION * (error / np.maximum(e1, 1e-12)) ** 0.25  # eq. (50)
     return np.minimum(np.maximum(factor, SMALLEST_CHANGE), _LARGEST_CHANGE)
 
 
-def is_singular(stuck: _Truths, sigma: _Numbers) -> _Truths:
+def is_singular(stuck: Any, sigma: Any) -> Any:
     """Whether a path that has not arrived ends at a singular solution."""
     return (sigma < _END) | (stuck & (sigma < _STUCK))

@@ -2,7 +2,7 @@
 
 A linkage is x, x̄, a, ā, y, ȳ, b, b̄: moving pivots A, B and fixed pivots A0, B0 from the traced
 point, see :mod:`linkwork.design.precision.problem`. The third fixed pivot makes a triangle with A0
-and B0 that is similar to the coupler's (Roberts 1875; Dijksman 1976, Motion Geometry of Mechanisms).
+and B0 that is similar to the coupler's (E. A. Dijksman, Motion Geometry of Mechanisms, 1976).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ def third_pivot(linkage: ComplexArray) -> ComplexArray:
     """c and c̄ of linkages (B, 8), (B, 2)."""
     x, a, y, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
     with np.errstate(all="ignore"):
-        pivot: ComplexArray = a + x / (x - y) * (b - a)  # eq. (77)
+        pivot: ComplexArray = a + x / (x - y) * (b - a)  # eq. (93)
     return pivot
 
 

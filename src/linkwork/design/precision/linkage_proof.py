@@ -24,9 +24,9 @@ __all__ = ["ProvedLinkages", "prove_linkages"]
 
 _BITS = 320  # of a number of the size of the task, behind the point
 _ROUNDS = 12  # refinements at most
-_SETTLED = 1e-30  # relative: a correction that needs no further one
-_FLOOR = 1e-3  # least weight of an unknown, in units of the task's size
-_HALVINGS, _TERMS = 16, 24  # of an angle's series: 2^-16 to the 24th, over 24!, is below 2^-400
+_EXACT = 1e-30  # relative: a correction that needs no further one
+_LEAST_WEIGHT = 1e-3  # least weight of an unknown, in units of the task's size
+_HALVINGS, _SERIES = 16, 24  # of an angle's series: 2^-16 to the 24th, over 24!, is below 2^-400
 _TURN_ERROR = 1e-80  # of the series, with all its rounding
 
 
@@ -66,12 +66,12 @@ def prove_linkages(given: PrecisionPositions, linkage: ComplexArray) -> ProvedLi
             inverse = _inverses(jacobian)
             f = np.array([_rounded(equations.exact_residual(row), bits) for row in whole])
             correction = matrix_vector(inverse, f.reshape(count, -1))
-            scale = _FLOOR * given.size + np.abs(v[:, : equations.unknowns])
+            scale = _LEAST_WEIGHT * given.size + np.abs(v[:, : equations.unknowns])
             size = (np.abs(correction) / scale).max(axis=1, initial=0.0)
-            if not (size > _SETTLED).any():
+            if not (size > _EXACT).any():
                 break
             for row, step, moved in zip(whole, correction.tolist(), size, strict=True):
-                if _SETTLED < moved < 1.0:
+                if _EXACT < moved < 1.0:
                     for k, change in enumerate(step):
                         row[k] -= _whole(change, bits)
         holds, error = _prove(equations, v, jacobian, inverse, f, scale)
@@ -114,13 +114,9 @@ def _prove(
     return holds, (radius[:, None] * w).max(axis=1) + 2.0 * UNIT_ROUNDOFF * np.abs(v).max(axis=1)
 
 
-def _start(
-    given: PrecisionPositions, equations: PositionEquations, linkage: ComplexArray
-) -> Array:
+def _start(given: PrecisionPositions, equations: PositionEquations, linkage: ComplexArray) -> Array:
     """The unknowns (B, n) of computed linkages."""
-    x, a, y, b = (linkage[:, k] for k in (0, 2, 4, 6))
-    a, b = (0.5 * (linkage[:, k] + linkage[:, k + 1].conj()) for k in (2, 6))
-    x, y = (0.5 * (linkage[:, k] + linkage[:, k + 1].conj()) for k in (0, 4))
+    x, a, y, b = (0.5 * (linkage[:, k] + linkage[:, k + 1].conj()) for k in (0, 2, 4, 6))
     pivots = len(given.pivots)
     parts = [x, *([a] if pivots < 1 else []), y, *([b] if pivots < 2 else [])]
     turns = list(np.exp(1j * given.turns))
@@ -163,7 +159,7 @@ def _exact_turn(angle: float, bits: int) -> list[int]:
     """Cosine and sine of an angle [rad] as whole numbers: the series, squared again and again."""
     step = _whole(angle, bits) >> _HALVINGS
     real, imag, total = 1 << bits, 0, [1 << bits, 0]
-    for k in range(1, _TERMS):
+    for k in range(1, _SERIES):
         real, imag = -(imag * step >> bits) // k, (real * step >> bits) // k
         total = [total[0] + real, total[1] + imag]
     for _ in range(_HALVINGS):
@@ -189,7 +185,7 @@ def _rounded(f: list[int], bits: int) -> list[float]:
 def _inverses(matrices: Array) -> Array:
     """Approximate inverses (B, n, n); NaN where there is none."""
     try:
-        return np.linalg.inv(matrices)
+        return np.asarray(np.linalg.inv(matrices), dtype=float)
     except np.linalg.LinAlgError:
         found = np.full_like(matrices, np.nan)
         for k, matrix in enumerate(matrices):

@@ -30,6 +30,8 @@ class PrecisionPositions:
         Fixed pivots that are given: A0, or A0 and B0 [length].
     order : (1 + M + N,) int
         The number that every position has in the task: the start, poses, points.
+    wanted : int
+        How many of them belong to the task; others were drawn.
     """
 
     start: complex
@@ -38,6 +40,7 @@ class PrecisionPositions:
     points: ComplexArray
     pivots: ComplexArray
     order: IndexArray
+    wanted: int
 
     @classmethod
     def of(cls, points: ComplexArray, angles: Array, pivots: ComplexArray) -> PrecisionPositions:
@@ -59,6 +62,7 @@ class PrecisionPositions:
             points=others[count:],
             pivots=pivots,
             order=order,
+            wanted=len(order),
         )
 
     @property

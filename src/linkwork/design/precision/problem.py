@@ -94,8 +94,8 @@ class PrecisionProblem:
     def equations(self, z: Sequence[Any], c: Sequence[Any], rate: Sequence[Any]) -> Equations:
         """The equations, with operators alone."""
         first = 3 * self.poses + 2 * self.points
-        numbers = dict(zip(self.free, z, strict=True)) | dict(zip(self.given, c[first:], strict=True))
-        linkage = [numbers[k] for k in range(CONDITIONS)]
+        places, numbers = (*self.free, *self.given), (*z, *c[first:])
+        linkage = [number for _, number in sorted(zip(places, numbers, strict=True), key=_place)]
         rows = list[_Row]()
         for k in range(0, 3 * self.poses, 3):
             rows += _pose_rows(linkage, c[k : k + 3], rate[k : k + 3])
@@ -123,7 +123,8 @@ class PrecisionProblem:
         first, width = 3 * self.poses, 2 * (self.points + self.pivots)
         turns, moved = c[:first].reshape(-1, 3), c[first : first + width].reshape(-1, 2)
         pairs = np.concatenate([turns[:, 1:], moved])
-        return bool((pairs[:, 0] == pairs[:, 1].conj()).all() and np.allclose(np.abs(turns[:, 0]), 1.0))
+        turned = np.abs(turns[:, 0])
+        return bool((pairs[:, 0] == pairs[:, 1].conj()).all() and np.allclose(turned, 1.0))
 
     def mirrored(self, x: ComplexArray) -> ComplexArray:
         """The mirror images (B, n): x̄ in place of x, and so on."""
@@ -184,6 +185,10 @@ class PrecisionProblem:
         return np.concatenate([poses.ravel(), points.ravel(), pivots])
 
 
+def _place(pair: tuple[int, Any]) -> int:
+    return pair[0]
+
+
 #: The value of an equation, its derivatives by x, x̄, a, ā, y, ȳ, b, b̄, and its change.
 _Row = tuple[Any, list[Any], Any]
 
@@ -192,7 +197,7 @@ def _leg_numbers(leg: Sequence[Any], d: Any, d_bar: Any) -> tuple[Any, Any, Any]
     """p, q and r of a leg x, x̄, a, ā."""
     x, x_bar, a, a_bar = leg
     p, q = (a_bar - d_bar) * x, (a - d) * x_bar
-    return p, q, d * (a_bar - x_bar) + d_bar * (a - x) - d * d_bar
+    return p, q, d * (a_bar - x_bar) + d_bar * (a - x) - d * d_bar  # eq. (91)
 
 
 def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any]) -> list[_Row]:
@@ -213,7 +218,7 @@ def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any])
         change = change + (a_bar - x_bar - d_bar - x_bar * g_bar) * d_rate
         change = change + (a - x - d - x * g) * d_bar_rate
         slopes = [*own, *[0.0] * 4] if first == 0 else [*[0.0] * 4, *own]
-        rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (75)
+        rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (90)
     return rows
 
 
@@ -236,7 +241,7 @@ def _point_row(linkage: Sequence[Any], point: Sequence[Any], rate: Sequence[Any]
     ]  # fmt: skip
     by_d = fr * (a_bar - x_bar - d_bar) - fq * x_bar + fw * (b_bar - y_bar - d_bar) - fv * y_bar
     by_d_bar = fr * (a - x - d) - fp * x + fw * (b - y - d) - fu * y
-    return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (76)
+    return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (92)
 
 
 def _random_turns(rng: np.random.Generator, count: int) -> ComplexArray:
@@ -247,17 +252,16 @@ def _random_turns(rng: np.random.Generator, count: int) -> ComplexArray:
 
 def _positions_of(linkage: ComplexArray, turns: ComplexArray, start: ComplexArray) -> ComplexArray:
     """δ and δ̄, (2, J), in which a linkage (8,) has turned by ``turns`` (J,)."""
-    moved, turn = start.copy(), np.array([turns, 0.0 * turns, 0.0 * turns])
+    moved = start.copy()
     with np.errstate(all="ignore"):
         for _ in range(_TRIES):
-            turn[1:] = moved
             by_both = []
             for rate in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
-                rows = _pose_rows(linkage.tolist(), turn, rate)
+                rows = _pose_rows(linkage.tolist(), (turns, *moved), rate)
                 by_both.append([row[2] for row in rows])
             (a, b), (c, d) = by_both
             (f, _, _), (g, _, _) = rows
             moved = moved - np.array([d * f - c * g, a * g - b * f]) / (a * d - b * c)
-    turn[1:] = moved
-    left = np.abs([row[0] for row in _pose_rows(linkage.tolist(), turn, (0.0, 0.0, 0.0))]).max()
+    rows = _pose_rows(linkage.tolist(), (turns, *moved), (0.0, 0.0, 0.0))
+    left = np.abs([row[0] for row in rows]).max()
     return moved if left < _CLOSED else np.full_like(moved, np.nan)

@@ -11,7 +11,7 @@ from linkwork.design.precision.linkage_proof import prove_linkages
 from linkwork.design.precision.path_tracking import tracker_for
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.start_sets import start_member
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import ALMOST_REAL
 from linkwork.numerics.homotopy.parameter_path import Tracker
@@ -20,7 +20,7 @@ from linkwork.numerics.homotopy.parameter_roots import ParameterRoots, roots_at
 __all__ = ["PrecisionFourBars", "four_bars_through"]
 
 _SEED = 19_920_301  # of detours; every run gives the same answer
-_FLOOR = 0.1  # of the size of the positions: numbers are compared relative to at least this
+_LEAST_SIZE = 0.1  # of the size of the positions: numbers are compared relative to at least this
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,7 +53,7 @@ class PrecisionFourBars:
     guided: ComplexArray
     proved: BoolArray
     error: Array
-    triple: Array
+    triple: IndexArray
     real: int
     roots: ParameterRoots
 
@@ -88,7 +88,7 @@ def four_bars_through(
     goal, rng = given.parameters(size), np.random.default_rng(_SEED)
     tracker = tracker or tracker_for(len(member.x))
     roots = roots_at(problem, member, goal, tracker, rng)
-    apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_FLOOR + np.abs(roots.x))
+    apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
     real = problem.linkages(roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL], goal)
     count = len(real)
     triple = np.arange(count)
@@ -100,7 +100,7 @@ def four_bars_through(
     x, a, y, b = proofs.legs.T
     points = np.concatenate([[given.start], given.poses, given.points])
     moving = np.concatenate([np.stack([x, y], axis=1)[:, None], proofs.moving], axis=1)
-    places = np.argsort(given.order)
+    places = np.argsort(given.order)[: given.wanted]
     moving = (moving + points[:, None])[:, places]
     return PrecisionFourBars(
         fixed_a=given.start + a,

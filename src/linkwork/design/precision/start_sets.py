@@ -66,7 +66,9 @@ def member_of_arrays(problem: PrecisionProblem, arrays: Mapping[str, AnyArray]) 
     """
     parameters, x = (arrays[f"{problem.name}.{field}"] for field in ("parameters", "x"))
     path = ParameterPath(system=problem, start=parameters, goal=parameters)
-    sharp, good = polish_ends(path, x.astype(complex))
-    if not good.all() or len(first_of_each(problem.fingerprint(sharp, parameters))) < len(x):
+    sharp = polish_ends(path, x.astype(complex))
+    if not sharp.regular.all() or len(
+        first_of_each(problem.fingerprint(sharp.x, parameters))
+    ) < len(x):
         raise ValueError("some solutions are none, or equal")
-    return Member(parameters=parameters, x=sharp)
+    return Member(parameters=parameters, x=sharp.x)

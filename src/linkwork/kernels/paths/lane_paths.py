@@ -150,9 +150,7 @@ def _take_step(w: Array, at: Layout, lanes: PathLanes, i: int, ends: PathEnds) -
 
 
 @compiled
-def _judge(
-    w: Array, at: Layout, lanes: PathLanes, i: int, care: Care, ends: PathEnds
-) -> None:
+def _judge(w: Array, at: Layout, lanes: PathLanes, i: int, care: Care, ends: PathEnds) -> None:
     """Take a lane's step or shorten it."""
     e1, e2 = lanes.error[i], _relative_size(w, at, care.floor, i)
     goal = w[at.sigma, i]

@@ -46,25 +46,26 @@ class PathKernel:
             ARRIVED, SINGULAR or LOST, and the steps that were tried.
         """
         count, care = len(start), Care(*(float(x) for x in astuple(options)))
-        ends = [np.zeros((count, start.shape[1]), dtype=complex) for _ in range(2)]
+        w, near = (np.zeros_like(start, dtype=complex) for _ in range(2))
         state, attempts = np.full(count, LOST, dtype=np.int8), np.zeros(count, dtype=np.int64)
+        recorded = self.recorded
 
         def follow_part(part: slice) -> None:
-            given = start[part]
-            room = PathEnds(*(_as_real(w[part]) for w in ends), state[part].copy(), attempts[part].copy())
-            follow_paths(
-                self.recorded.program.code, self.recorded.layout, self._workspace(parameters),
-                _as_real(given), care,
-                room,
+            given = _as_real(start[part])
+            ends = PathEnds(
+                np.zeros_like(given), np.zeros_like(given),
+                np.full(given.shape[1], LOST, dtype=np.int8), np.zeros(given.shape[1], np.int64),
             )  # fmt: skip
-            for whole, found in zip(ends, room[:2], strict=True):
-                whole[part] = np.ascontiguousarray(found.T).view(complex)
-            state[part], attempts[part] = room.state, room.attempts
+            space = self._workspace(parameters)
+            follow_paths(recorded.program.code, recorded.layout, space, given, care, ends)
+            w[part], near[part] = _as_complex(ends.w), _as_complex(ends.near)
+            state[part], attempts[part] = ends.state, ends.attempts
 
-        # neighbours may be equally long: every part takes each so-many-th path
-        parts = max(1, min(threads, count // LANES))
-        share_out(follow_part, [slice(k, None, parts) for k in range(parts)] if count else [], threads)
-        return ends[0], ends[1], state, attempts
+        if count:
+            # neighbours may be equally long: every part takes each so-many-th path
+            parts = max(1, min(threads, count // LANES))
+            share_out(follow_part, [slice(k, None, parts) for k in range(parts)], threads)
+        return w, near, state, attempts
 
     def _workspace(self, parameters: ComplexArray) -> Array:
         recorded = self.recorded
@@ -76,3 +77,8 @@ class PathKernel:
 def _as_real(w: ComplexArray) -> Array:
     """Complex (B, n) as real (2n, B)."""
     return np.ascontiguousarray(np.ascontiguousarray(w).view(float).T)
+
+
+def _as_complex(w: Array) -> ComplexArray:
+    """The inverse of :func:`_as_real`."""
+    return np.ascontiguousarray(w.T).view(complex)

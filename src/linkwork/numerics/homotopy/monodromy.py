@@ -27,7 +27,7 @@ from linkwork.numerics.homotopy.parameter_path import (
 
 __all__ = ["Family", "Member", "first_of_each", "follow_all", "solve_by_monodromy"]
 
-_SAME = 1e-6  # relative: fingerprints of solutions that count as one
+_REPEATED = 1e-6  # relative: fingerprints of solutions that count as one
 _IDLE = 3  # closed paths without a new solution after which no more are tried
 _LOOPS = 100  # closed paths at most
 
@@ -90,8 +90,8 @@ def follow_all(path: ParameterPath, x: ComplexArray, tracker: Tracker) -> Comple
     w[lost] = again.w
     arrived = paths.state == ARRIVED
     arrived[lost] = again.state == ARRIVED
-    ends, good = polish_ends(path, w[arrived])
-    return ends[good]
+    ends = polish_ends(path, w[arrived])
+    return ends.x[ends.regular]
 
 
 def first_of_each(fingerprints: ComplexArray) -> IndexArray:
@@ -105,9 +105,9 @@ def first_of_each(fingerprints: ComplexArray) -> IndexArray:
     repeats = np.zeros(count, dtype=bool)
     for step in range(1, count):
         one, other = order[:-step], order[step:]
-        near = np.abs(mixed[one] - mixed[other]) < _SAME * small.shape[1]
+        near = np.abs(mixed[one] - mixed[other]) < _REPEATED * small.shape[1]
         if not near.any():
             break
-        same = near & (np.abs(small[one] - small[other]).max(axis=1, initial=0.0) < _SAME)
+        same = near & (np.abs(small[one] - small[other]).max(axis=1, initial=0.0) < _REPEATED)
         repeats[np.maximum(one, other)[same]] = True
     return np.flatnonzero(~repeats)

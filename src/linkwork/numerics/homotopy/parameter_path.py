@@ -26,6 +26,7 @@ __all__ = [
     "Equations",
     "ParameterPath",
     "ParametrizedSystem",
+    "PolishedEnds",
     "StraightHomotopy",
     "Tracker",
     "polish_ends",
@@ -40,6 +41,8 @@ SURE = PathOptions(
     error=1e-3, contraction=0.05, rounding=1e-6, floor=0.1, attempts=20_000, smallest=1e-11
 )
 _POLISH = 8  # steps of Newton's method
+_NOISE = 1e-10  # relative: smaller corrections may be rounding
+_LINEAR, _SLOW = 0.2, 4  # steps between 0.3 and 0.7 of the one before, so many: no quadratic method
 _SETTLED = 1e-6  # relative: the last correction of a solution, also of a nearly singular one
 
 #: F (n), ∂F/∂z (n rows of n) and the change of F with the parameters' rate (n).
@@ -126,6 +129,15 @@ def _as_batch(count: int, found: Equations) -> tuple[ComplexArray, ComplexArray,
     return f.T.copy(), jacobian.transpose(2, 0, 1).copy(), change.T.copy()
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PolishedEnds:
+    """Ends of paths x (B, n), and whether they are ``regular`` or ``multiple`` solutions, (B,)."""
+
+    x: ComplexArray
+    regular: BoolArray
+    multiple: BoolArray
+
+
 class Tracker(Protocol):
     """Follows many solution paths, in NumPy or compiled."""
 
@@ -138,16 +150,19 @@ def track_in_batches(path: ParameterPath, start: ComplexArray, options: PathOpti
     return track(path, start, options)
 
 
-def polish_ends(path: ParameterPath, x: ComplexArray) -> tuple[ComplexArray, BoolArray]:
-    """Newton's method at the goal until rounding is all that is left, and whether it is."""
-    last = np.full(len(x), np.inf)
+def polish_ends(path: ParameterPath, x: ComplexArray) -> PolishedEnds:
+    """Newton's method at the goal from x (B, n), until rounding is all that is left."""
+    last, slow = np.full(len(x), np.inf), np.zeros(len(x), dtype=np.int64)
     for _ in range(_POLISH):
         f, jacobian = path.residual_and_jacobian(x)
         change = solve_linear(jacobian, f[:, :, None])[:, :, 0]
         size = relative_size(change, x, QUICK.floor)
         better = size < last
-        x = np.where(better[:, None], x - change, x)
-        last = np.where(better, size, last)
         if not better.any():
             break
-    return x, last < _SETTLED
+        # a double solution halves the distance at every step
+        slow += better & (size > _NOISE) & (np.abs(size - 0.5 * last) < _LINEAR * last)
+        x = np.where(better[:, None], x - change, x)
+        last = np.where(better, size, last)
+    multiple = slow >= _SLOW
+    return PolishedEnds(x=x, regular=(last < _SETTLED) & ~multiple, multiple=multiple)

@@ -39,6 +39,7 @@ class MirroredFamily(Family, Protocol):
     def mirrored(self, x: ComplexArray) -> ComplexArray:
         """The mirror images of solutions (B, n) of a real member."""
 
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ParameterRoots:
     """Isolated solutions of a member, and the outcome of every path.
@@ -154,21 +155,24 @@ class _Search:
         path = ParameterPath(system=self.family, start=start, goal=self.goal)
         paths = self.tracker(path, x, options)
         arrived = np.flatnonzero(paths.state == ARRIVED)
-        w, regular = paths.w.copy(), np.zeros(len(x), dtype=bool)
-        w[arrived], regular[arrived] = polish_ends(path, w[arrived])
-        regular[arrived] &= self.family.proper(w[arrived], self.goal)
+        w, (regular, multiple) = paths.w.copy(), np.zeros((2, len(x)), dtype=bool)
+        polished = polish_ends(path, w[arrived])
+        proper = self.family.proper(polished.x, self.goal)
+        w[arrived], regular[arrived] = polished.x, polished.regular & proper
+        multiple[arrived] = polished.multiple & proper
         size, before = (np.abs(z).max(axis=1, initial=0.0) for z in (paths.w, paths.near))
         ended = paths.state == SINGULAR
         infinite = ended & ((size > _FAR * before) | (size > _VERY_FAR))
-        return _Ends(x=w, regular=regular, infinite=infinite, singular=ended & ~infinite)
+        singular = multiple | (ended & ~infinite)
+        return _Ends(x=w, regular=regular, infinite=infinite, singular=singular)
 
     def _close(self, found: ComplexArray) -> tuple[ComplexArray, int, bool]:
         """Solutions with their mirror images, how many those are, and whether all are there."""
         path = ParameterPath(system=self.family, start=self.goal, goal=self.goal)
         images = self._new_ones(found, self.family.mirrored(found))
-        sharp, good = polish_ends(path, images)
-        new = self._new_ones(found, sharp[good])
-        return np.concatenate([found, new]), len(new), bool(good.all())
+        sharp = polish_ends(path, images)
+        new = self._new_ones(found, sharp.x[sharp.regular])
+        return np.concatenate([found, new]), len(new), bool(sharp.regular.all())
 
     def _new_ones(self, found: ComplexArray, more: ComplexArray) -> ComplexArray:
         """Solutions that are not among those found."""
@@ -202,4 +206,3 @@ def roots_at(
     """All isolated solutions at the parameters ``goal`` (P,)."""
     with np.errstate(all="ignore"):
         return _Search(family, member, goal, tracker).run(rng)
-

@@ -101,7 +101,8 @@ class _Tracker:
         return guess
 
     def _advance(self) -> None:
-        evaluate, h, options = self.homotopy.evaluate, np.minimum(self.step, self.sigma), self.options
+        evaluate, options = self.homotopy.evaluate, self.options
+        h = np.minimum(self.step, self.sigma)
         # exactly 0: the last system is the one that was asked for
         goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
         guess = self._predict(h)

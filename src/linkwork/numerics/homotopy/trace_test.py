@@ -19,6 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.numerics.homotopy.monodromy import Member, follow_all
 from linkwork.numerics.homotopy.parameter_path import (
     Equations,
@@ -51,17 +52,15 @@ class _Moving:
     @property
     def parameters(self) -> int:
         last = self.system.last
-        return self.system.parameters + (last.stop - last.start) + 1
+        return self.system.parameters + len(range(last.start, last.stop)) + 1
 
     def equations(self, z: Sequence[Any], c: Sequence[Any], rate: Sequence[Any]) -> Equations:
         own, last = self.system.parameters, self.system.last
         given, rates, s, s_rate = list(c[:own]), list(rate[:own]), c[-1], rate[-1]
-        values, slopes, changes = (
-            list(part) for part in self.system.equations(z, given, rates)
-        )
+        values, slopes, changes = (list(part) for part in self.system.equations(z, given, rates))
         given[last], rates[last] = c[own:-1], rate[own:-1]
         chart = self.system.equations(z, given, rates)
-        values[-1] = values[-1] + s * chart[0][-1]
+        values[-1] = values[-1] + s * chart[0][-1]  # eq. (95)
         slopes[-1] = [a + s * b for a, b in zip(slopes[-1], chart[1][-1], strict=True)]
         changes[-1] = changes[-1] + s * chart[2][-1] + s_rate * chart[0][-1]
         return values, slopes, changes
@@ -81,7 +80,7 @@ def trace_defect(
     """Move the last equation of a solved member both ways and compare the three traces."""
     moving, c = _Moving(system), member.parameters
     width = system.last.stop - system.last.start
-    chart, probe = (rng.normal(size=(2, width)) @ [1.0, 1j] for _ in range(2))
+    chart, probe = normal_numbers(rng, 2, width)
     turn = np.exp(2j * np.pi * rng.uniform())
     traces, lost = list[complex](), 0
     for s in (-turn, 0.0, turn):
@@ -90,7 +89,8 @@ def trace_defect(
         if s:
             x = follow_all(path, x, tracker)
             lost += len(member.x) - len(x)
-        traces.append(complex((_last_value(system, x, c, probe) / _last_value(system, x, c, chart)).sum()))
+        values = [_last_value(system, x, c, own) for own in (probe, chart)]
+        traces.append(complex((values[0] / values[1]).sum()))
     bend, way = abs(traces[0] - 2.0 * traces[1] + traces[2]), abs(traces[2] - traces[0])
     return TraceDefect(relative=bend / way, lost=lost)
 
