@@ -81,6 +81,11 @@ def test_five_points_on_a_line_with_both_pivots_given() -> None:
     assert (roots.paths, len(roots.x), roots.at_infinity, roots.lost) == (36, 33, 3, 0)
     assert (found.real, len(found), int(found.proved.sum())) == (15, 15, 15)
     assert passes(found, LINE) < 1e-12
+    assert found.lengths[:, 0] == pytest.approx(np.ones(15))
+    assert repr(found).splitlines()[:2] == [
+        "Four-bars through 5 positions",
+        "  solutions    33   of 36 paths; 3 to infinity, 0 singular, 0 lost",
+    ]
 
 
 def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
@@ -99,7 +104,7 @@ def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
 def test_freedoms_that_positions_leave_are_drawn() -> None:
     _, _, points = four_bar_points(CRANK[:4])
     rng = np.random.default_rng(1)
-    drawn = list(positions_with_samples(points, np.full(4, NAN), np.zeros(0), 3, rng))
+    drawn = list(positions_with_samples(points, np.full(4, NAN), np.zeros(0, complex), 3, rng))
     assert [(len(p.pivots), len(p.points), p.wanted) for p in drawn] == [(2, 4, 4)] * 3
     total = 0
     for task in drawn:
@@ -109,7 +114,9 @@ def test_freedoms_that_positions_leave_are_drawn() -> None:
         assert passes(found, points) < 1e-10
     assert total > 0
     corners = np.array([10.0, 12.0 + 3.0j])
-    (inside,) = positions_with_samples(points, np.full(4, NAN), np.zeros(0), 1, rng, corners)
+    (inside,) = positions_with_samples(
+        points, np.full(4, NAN), np.zeros(0, complex), 1, rng, corners
+    )
     assert ((inside.pivots.real >= 10.0) & (inside.pivots.real <= 12.0)).all()
     assert ((inside.pivots.imag >= 0.0) & (inside.pivots.imag <= 3.0)).all()
 
@@ -152,7 +159,7 @@ def test_problem_3_of_wampler_morgan_sommese() -> None:
     assert found.completeness is Completeness.WITH_PROBABILITY_ONE
     assert passes(found, PROBLEM_3) < 1e-11
     sound = viable(found)
-    pivots = {"A0": [], "B0": []}
+    pivots: dict[str, list[tuple[complex, ...]]] = {"A0": [], "B0": []}
     for k, drive in sound:
         ends = (found.fixed_a[k], found.moving_a[k, 0], found.moving_b[k, 0], found.fixed_b[k])
         pivots[drive].append(ends)

@@ -12,6 +12,7 @@ from linkwork.design.precision import start_sets
 from linkwork.design.precision.cognates import cognates, exchange_legs
 from linkwork.design.precision.problem import PrecisionProblem
 from linkwork.design.precision.start_sets import SHIPPED_PROBLEMS, start_member
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.numerics.homotopy.parameter_path import ParameterPath
 
 #: Solutions of a random member: Brake, Hauenstein, Murray, Myszka, Wampler 2016 for all positions,
@@ -27,7 +28,7 @@ def test_derivatives_are_those_of_the_equations(problem: PrecisionProblem) -> No
     rng = np.random.default_rng(1)
     start, goal = problem.random_parameters(rng), problem.random_parameters(rng)
     path = ParameterPath(system=problem, start=start, goal=goal)
-    w = rng.normal(size=(2, problem.unknowns)) @ np.eye(problem.unknowns) + 0.3j
+    w = normal_numbers(rng, 2, problem.unknowns)
     sigma, step = np.array([0.3, 0.6]), 1e-6
     _, jacobian, change = path.evaluate(w, sigma)
     for k in range(problem.unknowns):

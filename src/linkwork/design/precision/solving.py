@@ -60,6 +60,24 @@ class PrecisionFourBars:
     def __len__(self) -> int:
         return len(self.fixed_a)
 
+    def __repr__(self) -> str:
+        roots = self.roots
+        return (
+            f"Four-bars through {self.guided.shape[1]} positions\n"
+            f"  solutions {len(roots.x):5}   of {roots.paths} paths; {roots.at_infinity} to "
+            f"infinity, {len(roots.singular)} singular, {roots.lost} lost\n"
+            f"  real      {self.real:5}\n"
+            f"  four-bars {len(self):5}   {int(self.proved.sum())} of them proved\n"
+            f"  {self.completeness.value}"
+        )
+
+    @property
+    def lengths(self) -> Array:
+        """Ground, crank at A0, coupler and rocker at B0, (D, 4) [length]."""
+        a, b = self.moving_a[:, 0], self.moving_b[:, 0]
+        ends = (self.fixed_b - self.fixed_a, a - self.fixed_a, b - a, b - self.fixed_b)
+        return np.abs(np.stack(ends, axis=1))
+
     @property
     def completeness(self) -> Completeness:
         """Whether all four-bars are listed."""
