@@ -44,7 +44,7 @@ class DifferentiatedFolds(DifferentiatedRows):
             for k, symbol in enumerate(self._symbols)
         }
         rows = self._residuals(jets)
-        # eq. (95)
+        # eq. (123)
         bend: Any = zero
         for k, row in enumerate(rows):
             bend = bend + row.d1 * left[:, k]

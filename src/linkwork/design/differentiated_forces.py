@@ -186,7 +186,7 @@ class _Equilibrium:
             for act in group:
                 for row, value in bodies.entries(act):
                     rest[row] = rest[row] + value * factor
-        # eq. (98): the step that equilibrium takes, and that of the amounts with it
+        # eq. (126): the step that equilibrium takes, and that of the amounts with it
         none = np.zeros(len(r))
         step = [
             tape.combine(none, [(-inverse[:, k, i], part) for i, part in enumerate(rest)])

@@ -153,7 +153,7 @@ class DifferentiatedRows(QuantityValues):
             rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
             parts = [(jet.v, jet.d1, jet.d2)[order] for jet in rows]
             for k in range(self.count):
-                # eq. (92)
+                # eq. (120)
                 terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
                 columns[order][k] = self.tape.combine(known[order][:, k], terms)
         jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
@@ -177,7 +177,7 @@ class DifferentiatedRows(QuantityValues):
         parts = [row.d1 for row in self._residuals(jets())]
         for k in range(self.count):
             terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
-            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (92)
+            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (120)
         # the copy shares all but variables and points
         moved = copy(self)
         moved._points = {}

@@ -73,7 +73,7 @@ def play_of_position(
     """The derivatives of a quantity by the displacement of points of links from their pins.
 
     Their size is the force in the pin for a unit load at the quantity with the input held, eq.
-    (96).
+    (124).
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def play_of_position(
     v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
     taped = LoadedRows(model, (), v, asked.needs, pins)
     with np.errstate(all="ignore"):
-        # R of eq. (96)
+        # R of eq. (124)
         rates = taped.tape.backward(asked.values(taped, taped.speed))
     return np.broadcast_to(rates, (2 * len(pins), 1)).reshape(len(pins), 1, 2)
 

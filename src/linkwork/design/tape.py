@@ -203,7 +203,7 @@ class Tape(Consensus):
             total: Any = 0.0
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
                 x = rates[parent]
-                # eq. (93)
+                # eq. (121)
                 total = total + _product(a, x)
                 if b is not None:
                     total = total + _product(b, np.conj(x))
@@ -222,7 +222,7 @@ class Tape(Consensus):
             if own is None or not self._parents[node]:
                 continue
             for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
-                # eq. (94): the transpose of eq. (93)
+                # eq. (122): the transpose of eq. (121)
                 part = _product(np.conj(a), own)
                 if b is not None:
                     part = part + _product(b, np.conj(own))

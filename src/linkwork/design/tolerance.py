@@ -185,7 +185,7 @@ def _contributions(
         )  # fmt: skip
     for point, size in given.clearances.items():
         force = float(forces[point].sum())
-        # eq. (97): c |R| cos ψ for all directions ψ alike
+        # eq. (125): c |R| cos ψ for all directions ψ alike
         standard = size * math.sqrt(0.5 * float((forces[point] ** 2).sum()))
         yield Contribution(
             name=point, kind="clearance", sensitivity=force, unit=per(found.unit, length),
