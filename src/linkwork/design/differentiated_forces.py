@@ -105,6 +105,9 @@ class LoadedRows(DifferentiatedRows):
         """All loads; those of a linkage are those of its free bodies."""
         geometry, description = TapedGeometry(self), self.description
         assert isinstance(description, LoadedBodies)
+        # where time drives the rows, inputs have rates and bends of their own
+        if self.model.untimed is not None:
+            raise NotElementwise
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
         if isinstance(description, Linkage):

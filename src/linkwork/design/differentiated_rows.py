@@ -22,7 +22,7 @@ from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.foundation.elementwise import vector
+from linkwork.foundation.elementwise import chained, vector
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.description import Description
@@ -243,7 +243,8 @@ class DifferentiatedRows(QuantityValues):
         if self.model.speed is None:
             return None
         speeds = leading_speeds(self.description, self.equations.inputs, self.model.rows)
-        return next(iter(speeds.values()))
+        # time itself, where it drives the rows, has a speed of its own
+        return next(iter(speeds.values()), self.model.speed)
 
     @cached_property
     def misfits(self) -> list[Any]:
@@ -274,12 +275,10 @@ def _law_jet(law: LawEquation, variables: Mapping[str, Jet]) -> Jet:
     argument: Any = inner.v
     x = argument.values if is_batched(argument) else np.asarray(argument)
     f, first, second = law.law.jet(x)
-    if not is_batched(argument):
-        return straight - inner.chain(f, first, second)
     # the second derivative by the input needs the third of the law
     third = law.law.slope().jet(x)[2]
     parts = (
-        argument.arithmetic.combine(value, [(slope, argument)])  # type: ignore[attr-defined]  # a tape
+        chained(value, slope, argument)
         for value, slope in ((f, first), (first, second), (second, third))
     )
     return straight - inner.chain(*parts)

@@ -215,6 +215,11 @@ def _fitting_numbers(
 def _check(asked: Asked, of: str) -> None:
     if asked.group is Group.EVIDENCE:
         raise InputError(f'"{of}" measures how a position was found: it has no sensitivity')
+    if asked.needs > 2:
+        raise InputError(
+            f'the derivatives of "{of}" are not known: those of positions, velocities and '
+            "accelerations are"
+        )
 
 
 def _fitting(taped: DifferentiatedRows, shape: tuple[int, ...]) -> Array:

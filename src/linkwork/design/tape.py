@@ -99,6 +99,10 @@ class Tape(Consensus):
         bare = value.values if isinstance(value, TapedNumber) else np.atleast_1d(value)
         return self.combine(bare, [(1.0, number)])
 
+    def chain(self, value: Any, slope: Any, number: Any) -> Any:
+        """A function's value at a number, which has this slope there."""
+        return self.combine(value, [(slope, number)])
+
     def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
         """One of two plain numbers."""
         return yes if truths.values[0] else no

@@ -17,6 +17,7 @@ from linkwork.foundation.lanes import Lanes, Truths, is_batched
 
 __all__ = [
     "as_float",
+    "chained",
     "choose",
     "cis",
     "copysign",
@@ -175,6 +176,11 @@ def snap(near: bool, place: float, number: float) -> float:
 def replaced(value: Any, number: Any) -> Any:
     """A value in the place of a number very near to it, whose derivatives it keeps."""
     return number.arithmetic.carry(value, number) if is_batched(number) else value
+
+
+def chained(value: Any, slope: Any, number: Any) -> Any:
+    """A function's value at a number, which has this slope there."""
+    return number.arithmetic.chain(value, slope, number) if is_batched(number) else value
 
 
 def everywhere(condition: bool) -> bool:

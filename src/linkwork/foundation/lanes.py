@@ -95,6 +95,10 @@ class Consensus(Arithmetic[Any]):
         """
         return value
 
+    def chain(self, value: Any, slope: Any, number: Any) -> Any:
+        """A function's value at a number, in arithmetics with derivatives."""
+        raise NotElementwise
+
     def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A NumPy function of plain numbers and lanes, lane by lane."""
         raise NotElementwise
