@@ -17,6 +17,7 @@ __all__ = ["as_latex", "comment_lines", "picture_scale", "tikz_picture"]
 _WIDEST = 150.0  # of a picture [mm]: a column of text
 _LEAST = 75.0  # a smaller picture is enlarged
 _POINT = 72.27 / 25.4  # TeX's points per millimetre
+_SMALLEST = 6.0  # font size [pt]
 _DIGITS = 3  # of coordinates, after the point [mm]
 _STEPS = (1, 2, 5)
 
@@ -26,7 +27,7 @@ _LATEX = {
     "°": r"$^\circ$", "·": r"$\cdot$", "−": "$-$", "²": "$^2$", "³": "$^3$", "′": "$'$",
     "µ": r"$\mu$", "≤": r"$\leq$", "≥": r"$\geq$", "±": r"$\pm$", "×": r"$\times$", "→": r"$\to$",
     "∞": r"$\infty$", "|": r"$|$", "<": "$<$", ">": "$>$", "–": "--", "…": r"\dots{}",
-    "\u0307": "",
+    "∠": r"$\angle$", "₋": "$_-$", "‖": r"$\|$",
     **{digit: f"$_{k}$" for k, digit in enumerate("₀₁₂₃₄₅₆₇₈₉")},
     **{letter: f"$\\{name}$" for letter, name in GREEK.items() if name not in ("omicron",)},
 }  # fmt: skip
@@ -177,7 +178,7 @@ class _Writer:
 
     def _text(self, primitive: Text) -> str:
         anchor = ("base west", "base", "base east")[primitive.align + 1]
-        size = primitive.height * self.scale * _POINT
+        size = max(_SMALLEST, primitive.height * self.scale * _POINT)
         options = [
             f"anchor={anchor}", "inner sep=0pt", f"text={self._colour(self.theme.fill(primitive))}",
             f"font=\\fontsize{{{size:.3g}}}{{{1.2 * size:.3g}}}\\selectfont",

@@ -65,9 +65,11 @@ def _panel(panel: Panel, shared: Axis, theme: ChartTheme, below: float) -> Itera
     """The axis of one panel."""
     across = panel.across or shared
     kind = "polaraxis" if panel.shape is Shape.POLAR else "axis"
+    tall = _HEIGHTS[panel.shape]
+    wide = tall if panel.shape is Shape.POLAR else _WIDTH
     options = [
         f"at={{(0mm,{-below:g}mm)}}", "anchor=north west", "scale only axis",
-        f"width={_WIDTH:g}mm", f"height={_HEIGHTS[panel.shape]:g}mm", "unbounded coords=jump",
+        f"width={wide:g}mm", f"height={tall:g}mm", "unbounded coords=jump",
         "legend cell align=left", "legend pos=outer north east", "grid=major",
         "grid style={lwrule}", "axis on top=false", f"title={{{as_latex(panel.title)}}}",
     ]  # fmt: skip
