@@ -150,3 +150,18 @@ def test_a_dead_point_has_a_tolerance_and_a_position_there_has_none() -> None:
     lost = bar.tolerance("rocker", at=5, deviations={"A B": 0.05}, samples=10)
     assert lost.status is lw.SensitivityStatus.NO_POSITION
     assert lost.sampled is None
+
+
+def test_results_are_short_in_a_terminal_and_tables_in_a_notebook() -> None:
+    crank = read_example("slider-crank")
+    slopes = crank.sensitivity("d", at=60, by=["B A"])
+    assert repr(slopes).splitlines() == [
+        "Sensitivity of d of Offset slider-crank at crank = 60 deg",
+        "  B A  1.1232",
+    ]
+    found = crank.tolerance("d", at=60, deviations=DEVIATIONS)
+    assert "  root sum square  0.0582292 mm" in repr(found)
+    for result in (slopes, found):
+        assert "<table" in result._repr_html_()
+        assert "Offset slider-crank" in result._repr_html_()
+    assert len(repr(crank.sensitivity("d", at=60, by=["A.x"])).splitlines()) == 1

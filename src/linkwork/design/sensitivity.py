@@ -12,7 +12,8 @@ from linkwork.design.differentiable_numbers import chosen_numbers, groups_of
 from linkwork.design.differentiated_folds import DifferentiatedFolds
 from linkwork.design.differentiated_forces import LoadedRows
 from linkwork.design.differentiated_rows import DifferentiatedRows
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray
+from linkwork.design.regular_rows import RegularRows, row_of, rows_of
+from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.leading_input import leading_input
@@ -20,7 +21,7 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import LimitKind, Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
-from linkwork.results.quantities.definition import MotionRows, RowSlopes, Solved
+from linkwork.results.quantities.definition import MotionRows, RowSlopes
 from linkwork.results.quantity import Kind
 from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
 
@@ -64,7 +65,7 @@ def sensitivity_of_position(
         For a name that is not known, or a number that cannot vary.
     """
     inputs = {name: np.asarray(value) for name, value in position.input.items()}
-    return _of_rows(model, _row_of(model, position), inputs, of, by, ())
+    return _of_rows(model, row_of(model, position), inputs, of, by, ())
 
 
 def play_of_position(
@@ -83,7 +84,7 @@ def play_of_position(
     -------
     array (pins, 1, 2)
     """
-    asked, row = model.quantities.find(of), _row_of(model, position)
+    asked, row = model.quantities.find(of), row_of(model, position)
     v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
     taped = LoadedRows(model, (), v, asked.needs, pins)
     with np.errstate(all="ignore"):
@@ -113,45 +114,13 @@ def sensitivity_of_rows(
     """The derivatives of a quantity in all rows of a motion; raises like
     :func:`sensitivity_of_position`.
     """
-    rows = _rows_of(model, motion)
+    rows = rows_of(model, motion)
     return _of_rows(model, rows, motion.inputs, of, by, (len(motion),))
-
-
-def _row_of(model: Model, position: Position) -> _Rows:
-    v = np.append(position.q, np.array([*position.input.values()]) * model.input_scale)[None, :]
-    found = np.array([position.status.ok])
-    return _Rows(v, found, _rates_exist(model, position, 1), position)
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Solved rows: variables (B, N), which exist, which have rates, and the rows themselves."""
-
-    v: Array
-    found: BoolArray
-    regular: BoolArray
-    solved: Solved
-
-
-def _rows_of(model: Model, motion: Motion) -> _Rows:
-    columns = [motion.inputs[x.name] * s for x, s in zip(
-        model.equations.inputs, model.input_scale, strict=True)]  # fmt: skip
-    v = np.concatenate([motion.q, np.stack(columns, axis=1)], axis=1)
-    return _Rows(v, motion.found, _rates_exist(model, motion, len(motion)), motion)
-
-
-def _rates_exist(model: Model, solved: Solved, count: int) -> BoolArray:
-    """Where the unknowns have derivatives by the input."""
-    found = np.ones(count, dtype=bool)
-    if model.equations.inputs:
-        for unknown in model.motion_quantities.names.unknowns:
-            found &= np.isfinite(np.atleast_1d(solved.own(unknown).d1))
-    return found
 
 
 def _of_rows(
     model: Model,
-    rows: _Rows,
+    rows: RegularRows,
     inputs: Mapping[str, AnyArray],
     of: str,
     by: Iterable[str] | None,
@@ -187,7 +156,7 @@ def _of_rows(
 
 
 def _fitting_numbers(
-    model: Model, rows: _Rows, by: Iterable[str] | None
+    model: Model, rows: RegularRows, by: Iterable[str] | None
 ) -> tuple[tuple[VariedNumber, ...], Mapping[str, str]]:
     """The numbers that can vary alone, in a position of redundant links too; why others cannot.
 
@@ -268,7 +237,7 @@ def sensitivity_of_motion(
     UnknownNameError, InputError
         As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
     """
-    numbers, refused = _fitting_numbers(model, _rows_of(model, motion), by)
+    numbers, refused = _fitting_numbers(model, rows_of(model, motion), by)
     value, unit, parts = _asked_of_motion(model, motion, of)
     rates = {q.name: np.zeros(()) for q in numbers}
     for part in parts:
@@ -342,7 +311,7 @@ def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Pa
         raise UnknownNameError(
             f'"{of}" has no sensitivity: ask for it by the input, such as "{asked.of.own.name}.d1"'
         )
-    value, rows = motion.value(of), _rows_of(model, motion)
+    value, rows = motion.value(of), rows_of(model, motion)
     if asked.follows:
         columns: tuple[Array, ...] = asked.columns(motion)
     else:
@@ -360,7 +329,7 @@ def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Pa
     return value, asked.unit, list(_parts(rows, slopes, asked))
 
 
-def _parts(rows: _Rows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterator[_Part]:
+def _parts(rows: RegularRows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterator[_Part]:
     """Regular rows and dead points that a number depends on."""
     count = len(rows.v)
     weights = [np.broadcast_to(w, count) for w in (slopes.value, slopes.first, slopes.second)]
@@ -392,7 +361,7 @@ def _limit(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Par
         )
     # the branch ends at the first dead point on either side
     nearest = min(ends, key=lambda limit: side * limit.input)
-    rows = _rows_of(model, motion)
+    rows = rows_of(model, motion)
     there = np.array([word == LimitKind.DEAD_POINT.word for word in motion.limit])
     away = np.where(there & motion.found, np.abs(motion.inputs[name] - nearest.input), np.inf)
     row = int(away.argmin())

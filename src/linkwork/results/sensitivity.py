@@ -12,10 +12,11 @@ from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
 from linkwork.foundation.names import find_spelling
+from linkwork.foundation.presenting import presenter
 from linkwork.results.summary import Summary, driven_text
 from linkwork.results.table import Table
 
-__all__ = ["Sensitivity", "SensitivityStatus"]
+__all__ = ["Sensitivity", "SensitivityStatus", "per", "sensitivity_summary"]
 
 _ROUNDING = 1e-12  # of the largest derivative
 
@@ -145,7 +146,11 @@ class Sensitivity:
         return Table(columns=columns, units=units, index=next(iter(columns)))
 
     def __repr__(self) -> str:
-        return str(summary_of(self))
+        return str(sensitivity_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A short table, for notebooks."""
+        return presenter(Sensitivity._repr_html_)(self)
 
 
 def _size(rows: Array) -> float:
@@ -165,12 +170,14 @@ def per(unit: str, other: str) -> str:
     return f"{unit or '1'}/{other}"
 
 
-def summary_of(found: Sensitivity) -> Summary:
+def sensitivity_summary(found: Sensitivity) -> Summary:
     """The derivatives, the largest first, for terminals."""
     rows = []
     if found.status is not SensitivityStatus.FOUND:
         rows.append(("status", found.status.value))
-    for name in found.effective:
+    # without a position there is nothing but the reason
+    names = found.effective if np.isfinite(found.value).any() else ()
+    for name in names:
         value, unit = found.derivatives[name], found.unit_by(name)
         most = value.item() if value.ndim == 0 else _size(value)
         rows.append((name, f"{'' if value.ndim == 0 else 'at most '}{most:.6g} {unit}".rstrip()))

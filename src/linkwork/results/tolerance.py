@@ -10,11 +10,12 @@ import numpy as np
 
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.presenting import presenter
 from linkwork.results.sensitivity import SensitivityStatus
 from linkwork.results.summary import Summary, driven_text
 from linkwork.results.table import Table
 
-__all__ = ["Contribution", "Sampled", "Tolerance"]
+__all__ = ["Contribution", "Sampled", "Tolerance", "tolerance_summary"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,10 +170,14 @@ class Tolerance:
         return Table(columns=columns, units=units, index="name")
 
     def __repr__(self) -> str:
-        return str(summary_of(self))
+        return str(tolerance_summary(self))
+
+    def _repr_html_(self) -> str:
+        """A short table, for notebooks."""
+        return presenter(Tolerance._repr_html_)(self)
 
 
-def summary_of(found: Tolerance) -> Summary:
+def tolerance_summary(found: Tolerance) -> Summary:
     """The tolerance and its largest contributions, for terminals."""
     at = f" at {found.where}" if found.where else ""
     head = f"Tolerance of {found.of} of {found.mechanism}{at}"
