@@ -7,17 +7,16 @@ from enum import Enum
 
 import numpy as np
 
-from linkwork.design.conic_pair import common_points
-from linkwork.design.dyad_equations import COORDINATES, NormalPoses, quadric_gradients
-from linkwork.design.dyad_proof import DyadProofs, prove_dyads
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, StatusArray
+from linkwork.design.synthesis.conic_pair import common_points
+from linkwork.design.synthesis.dyad_equations import COORDINATES, NormalPoses, quadric_gradients
+from linkwork.design.synthesis.dyad_proof import DyadProofs, prove_dyads
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray, StatusArray
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.rounding import RANK_TOLERANCE
 
-__all__ = ["FIVE", "DyadKind", "Dyads", "Refusal", "solve_five_poses"]
+__all__ = ["FIVE", "DyadKind", "Dyads", "Refusal", "solve_five_poses", "solve_on_lines"]
 
 FIVE = 5
-_SOLUTIONS = 4  # two conics meet in four points
 _PART = 1000  # tasks solved together: their matrices fit into the cache
 #: A pivot farther away than this many sizes of the task is a slider: rounding of the poses alone
 #: moves it that far.
@@ -60,7 +59,7 @@ class Dyads:
     Parameters
     ----------
     x : (N, 4, 8) complex
-        Solutions in the coordinates of :mod:`~linkwork.design.dyad_equations`, real where
+        Solutions in the coordinates of :mod:`~linkwork.design.synthesis.dyad_equations`, real where
         ``is_real``, for ``poses``.
     is_real : (N, 4)
         Whether the solution is a real dyad.
@@ -117,9 +116,37 @@ def solve_five_poses(points: ComplexArray, angles: Array) -> Dyads:
     >>> solve_five_poses(points, np.radians([[0, 20, 50, 80, 10]])).is_real.sum() % 2
     0
     """
+    return _solve_in_parts(points, angles, np.zeros((len(points), 0, COORDINATES)))
+
+
+def solve_on_lines(points: ComplexArray, angles: Array, lines: ComplexArray) -> Dyads:
+    """All dyads through four poses whose fixed pivot is on a line; one line for each of N tasks.
+
+    Parameters
+    ----------
+    points, angles : (N, 4)
+        As for :func:`solve_five_poses`.
+    lines : (N, 2) complex
+        A point of each line, and its unit direction [length].
+
+    Returns
+    -------
+    Dyads
+        Among them the RP dyad through the four poses, whatever the line.
+    """
+    poses = NormalPoses.of(points, angles)
+    at, along = (lines[:, 0] - poses.centre) / poses.size, lines[:, 1]
+    zero = np.zeros(len(points))
+    # Im(ū (G - a q)) = 0 for a pivot G/a on the line through q of direction u
+    row = [-(along.conj() * at).imag, zero, zero, -along.imag, along.real, zero, zero, zero]
+    return _solve_in_parts(points, angles, np.stack(row, axis=-1)[:, None])
+
+
+def _solve_in_parts(points: ComplexArray, angles: Array, further: Array) -> Dyads:
+    """Solve the equations of poses (N, K) and further linear rows (N, 5 - K, 8)."""
     parts = [
-        _solve_part(points[k : k + _PART], angles[k : k + _PART])
-        for k in range(0, len(points), _PART)
+        _solve_part(points[part], angles[part], further[part])
+        for part in (slice(k, k + _PART) for k in range(0, len(points), _PART))
     ]
     fields = ("x", "is_real", "refusal", "error", "condition", "complete")
     return Dyads(
@@ -128,23 +155,23 @@ def solve_five_poses(points: ComplexArray, angles: Array) -> Dyads:
     )
 
 
-def _solve_part(points: ComplexArray, angles: Array) -> Dyads:
+def _solve_part(points: ComplexArray, angles: Array, further: Array) -> Dyads:
     poses = NormalPoses.of(points, angles)
-    rows = poses.rows()
+    rows = np.concatenate([poses.rows(), further], axis=1)
     left, sizes, right = np.linalg.svd(rows)
     family = sizes[:, -1] < RANK_TOLERANCE * sizes[:, 0]
     null = right[:, FIVE:].transpose(0, 2, 1)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         inverse = right[:, :FIVE].transpose(0, 2, 1) / sizes[:, None] @ left.transpose(0, 2, 1)
-    basis = _Basis(rows=rows, null=null, inverse=inverse, poses=poses)
+    basis = _Basis(rows=rows, null=null, inverse=np.nan_to_num(inverse))
     proofs = _prove(basis, _VIEWS[0])
     for view in _VIEWS[1:]:
         again = np.flatnonzero(~proofs.complete & ~family)
         if not again.size:
             break
-        some = basis.take(again)
-        precise = some.poses.in_extended_precision(points[again], angles[again]).rows()
-        proofs = proofs.with_better(again, _prove(some, view, precise))
+        long = poses.take(again).in_extended_precision(points[again], angles[again]).rows()
+        precise = np.concatenate([long, further[again]], axis=1)
+        proofs = proofs.with_better(again, _prove(basis.take(again), view, precise))
     refusal = np.where(proofs.is_real, Refusal.NONE.code, Refusal.COMPLEX.code)
     refusal[~proofs.proved] = Refusal.COINCIDENT.code
     flat = np.abs(proofs.x[..., :5]).max(axis=2) * _FAR < np.abs(proofs.x).max(axis=2)
@@ -168,14 +195,12 @@ class _Basis:
     rows: Array
     null: Array
     inverse: Array
-    poses: NormalPoses
 
-    def take(self, index: Array) -> _Basis:
+    def take(self, index: IndexArray) -> _Basis:
         return _Basis(
             rows=self.rows[index],
             null=self.null[index],
             inverse=self.inverse[index],
-            poses=self.poses.take(index),
         )
 
 

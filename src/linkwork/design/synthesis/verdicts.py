@@ -7,11 +7,11 @@ from enum import Enum
 
 import numpy as np
 
-from linkwork.design.candidates import Candidates, Drive, LoopKind
-from linkwork.design.driven_loop import DrivenLoops, driven_loops
-from linkwork.design.obstacles import meets_obstacle
-from linkwork.design.travel import NOWHERE, Travel, travel_of
-from linkwork.design.wishes import Wishes
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.driven_loop import DrivenLoops, driven_loops
+from linkwork.design.synthesis.obstacles import meets_obstacle
+from linkwork.design.synthesis.travel import NOWHERE, Travel, travel_of
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array, BoolArray
 
 __all__ = ["DefectKind", "Verdicts", "judge"]

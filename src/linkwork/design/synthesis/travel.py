@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.driven_loop import DrivenLoops
+from linkwork.design.synthesis.driven_loop import DrivenLoops
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 

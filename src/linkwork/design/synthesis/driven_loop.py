@@ -21,7 +21,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from linkwork.design.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.candidates import Candidates, Drive, LoopKind
-from linkwork.design.driven_loop import DrivenLoops, dot
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.driven_loop import DrivenLoops, dot
 from linkwork.foundation.arrays import Array, ComplexArray
 
 __all__ = ["pivots_at"]

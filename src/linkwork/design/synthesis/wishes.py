@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.design.travel import Range
+from linkwork.design.synthesis.travel import Range
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 
 __all__ = ["Wishes", "distances_to_segments"]

@@ -7,8 +7,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from linkwork.design.candidates import Candidates, LoopKind
-from linkwork.design.dyads import DyadKind, Dyads, Refusal
+from linkwork.design.synthesis.candidates import Candidates, LoopKind
+from linkwork.design.synthesis.dyads import DyadKind, Dyads, Refusal
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
 __all__ = ["DyadSet", "PoseSet", "pair_dyads"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.candidates import Candidates, Drive, LoopKind
-from linkwork.design.driven_loop import DrivenLoops
-from linkwork.design.loop_positions import pivots_at
-from linkwork.design.travel import Travel
-from linkwork.design.wishes import Wishes, distances_to_segments
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.driven_loop import DrivenLoops
+from linkwork.design.synthesis.loop_positions import pivots_at
+from linkwork.design.synthesis.travel import Travel
+from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 
 __all__ = ["meets_obstacle"]
