@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from enum import Enum
+from typing import Any
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = ["Candidates", "Drive", "LoopKind"]
 
@@ -86,6 +88,19 @@ class Candidates:
             fixed_b=self.fixed_a,
             moving_a=self.moving_b,
             moving_b=self.moving_a,
+        )
+
+    def moved(self, shift: complex, factor: complex) -> Candidates:
+        """The same designs turned and enlarged by a factor about 0, then moved."""
+        places = ("fixed_a", "fixed_b", "moving_a", "moving_b", "guided")
+        changes: dict[str, Any] = {name: shift + factor * getattr(self, name) for name in places}
+        size = abs(factor)
+        rounding = 8.0 * UNIT_ROUNDOFF * (abs(shift) + size * np.abs(self.moving_b).max(axis=1))
+        return replace(
+            self,
+            direction=self.direction * (factor / size),
+            error=self.error * size + rounding,
+            **changes,
         )
 
     @classmethod

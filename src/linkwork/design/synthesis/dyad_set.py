@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -12,6 +12,10 @@ from linkwork.design.synthesis.dyads import DyadKind, Dyads, Refusal
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
 __all__ = ["DyadSet", "PoseSet", "pair_dyads"]
+
+
+#: Relative: pivots nearer to each other are one pivot.
+_SAME = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +64,21 @@ class DyadSet:
         return DyadSet(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
     @classmethod
+    def joined(cls, parts: Iterable[DyadSet]) -> DyadSet:
+        """The dyads of several sets, in their order."""
+        found = list(parts)
+        return cls(
+            **{
+                f.name: np.concatenate([getattr(part, f.name) for part in found])
+                for f in fields(cls)
+            }
+        )
+
+    def of_one_task(self) -> DyadSet:
+        """The dyads as those of a single task."""
+        return replace(self, task=np.zeros(len(self), dtype=np.intp))
+
+    @classmethod
     def of_solutions(cls, found: Dyads, poses: PoseSet) -> DyadSet:
         """The real solutions of five-pose tasks."""
         task, column = np.nonzero(found.is_real)
@@ -87,9 +106,9 @@ class DyadSet:
             error=error * size,
             refusal=found.refusal[task, column],
         )
-        return made.take(np.isfinite(moving) & np.isfinite(fixed))._with_misses(poses)
+        return made.take(np.isfinite(moving) & np.isfinite(fixed)).with_misses(poses)
 
-    def _with_misses(self, poses: PoseSet) -> DyadSet:
+    def with_misses(self, poses: PoseSet) -> DyadSet:
         """With the distances from lines in the errors: a slider fits to rounding only."""
         d, e = poses.points[self.task], poses.turns[self.task]
         pin = d + self.moving[:, None] * e - self.fixed[:, None]
@@ -97,8 +116,29 @@ class DyadSet:
             (self.kind == 1)[:, None], self.normal[:, None], self.normal[:, None] * e
         )
         miss = np.abs((normal.conj() * pin).real).max(axis=1)
-        values = {f.name: getattr(self, f.name) for f in fields(self)}
-        return DyadSet(**values | {"error": np.where(self.kind > 0, self.error + miss, self.error)})
+        return replace(self, error=np.where(self.kind > 0, self.error + miss, self.error))
+
+    @classmethod
+    def made(
+        cls,
+        kind: int,
+        moving: ComplexArray,
+        fixed: ComplexArray,
+        error: Array,
+        normal: ComplexArray | None = None,
+    ) -> DyadSet:
+        """Dyads of one kind and task, as far as their numbers are finite."""
+        good = np.isfinite(moving) & np.isfinite(fixed) & np.isfinite(error)
+        count = int(good.sum())
+        return cls(
+            task=np.zeros(count, dtype=np.intp),
+            kind=np.full(count, kind, dtype=np.int8),
+            moving=moving[good],
+            fixed=fixed[good],
+            normal=np.zeros(count, dtype=complex) if normal is None else normal[good],
+            error=error[good],
+            refusal=np.full(count, Refusal.NONE.code, dtype=np.int8),
+        )
 
     def dyads(self) -> Iterator[tuple[DyadKind, complex, complex, complex, float, Refusal]]:
         """Kind, moving, fixed, normal, error and refusal of each."""
@@ -114,22 +154,36 @@ class DyadSet:
             )
 
 
-def pair_dyads(dyads: DyadSet, poses: PoseSet) -> list[Candidates]:
+def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candidates]:
     """All four-bars and slider-cranks that pairs of dyads of one task make.
 
-    Pairs with another line are no mechanism of these kinds, and are left out.
+    Pairs with another line are no mechanism of these kinds, and pairs with a common pivot do not
+    move: both are left out. ``leading``: one of
+    the first so many dyads is in every pair, as its crank.
     """
     cranks = dyads.take(dyads.kind == 0)
     sliders = dyads.take(dyads.kind == 1)
     found = []
     first, second = _pairs(cranks.task, cranks.task)
-    later = first < second
+    later = (first < second) & (first < (leading or len(cranks)))
+    if leading:
+        later &= second >= leading
+    later &= _differ(cranks.moving, first, second) & _differ(cranks.fixed, first, second)
     if later.any():
         found.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
     first, second = _pairs(cranks.task, sliders.task)
-    if first.size:
-        found.append(_made(cranks.take(first), sliders.take(second), poses))
+    led = first < (leading or len(cranks))
+    led &= np.abs(cranks.moving[first] - sliders.moving[second]) > _SAME * np.abs(
+        cranks.moving[first]
+    )
+    if led.any():
+        found.append(_made(cranks.take(first[led]), sliders.take(second[led]), poses))
     return found
+
+
+def _differ(pivots: ComplexArray, first: IndexArray, second: IndexArray) -> BoolArray:
+    size = np.maximum(np.abs(pivots[first]), np.abs(pivots[second]))
+    return np.asarray(np.abs(pivots[first] - pivots[second]) > _SAME * size)
 
 
 def _pairs(tasks: IndexArray, others: IndexArray) -> tuple[IndexArray, IndexArray]:

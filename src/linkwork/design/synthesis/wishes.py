@@ -9,6 +9,8 @@ import numpy as np
 from linkwork.design.synthesis.travel import Range
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 
+_LEAST = 1e-300  # in place of 0, of which no multiple is large
+
 __all__ = ["Wishes", "distances_to_segments"]
 
 
@@ -46,7 +48,8 @@ class Wishes:
         return np.asarray(
             (shortest >= self.shortest)
             & (longest <= self.longest)
-            & (longest <= self.ratio * shortest)
+            # a ratio of infinity allows a length of zero
+            & ((longest <= self.ratio * np.maximum(shortest, _LEAST)))
         )
 
     def within_region(self, points: ComplexArray, error: Array) -> BoolArray:
