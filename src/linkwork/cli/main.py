@@ -31,6 +31,7 @@ _COMMANDS = (
     "view",
     "web",
     "link",
+    "synthesize",
     "study",
     "compile",
     "examples",

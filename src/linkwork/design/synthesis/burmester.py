@@ -20,7 +20,6 @@ from itertools import permutations
 
 import numpy as np
 
-from linkwork.design.synthesis.conic_pair import quartic_roots
 from linkwork.design.synthesis.dyad_equations import NormalPoses
 from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
 from linkwork.design.synthesis.dyads import solve_on_lines
@@ -75,7 +74,7 @@ class CentrePoints:
     differences: tuple[complex, complex, complex]
 
     def points(self, directions: Array) -> ComplexArray:
-        """The two points (K, 2) on lines of some directions (K,) [rad]; NaN where there are none."""
+        """The two points (K, 2) on lines of directions (K,) [rad]; NaN where there are none."""
         u = np.exp(1j * directions)
         a, b, c = (np.conj(z) for z in self.differences)
         alpha = (u * (b + c - a)).imag
@@ -161,7 +160,7 @@ def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool
     second, first, zeroth = coefficients
     # times 2 w²: c2 w⁴ + c1 w³ + 2 c0 w² + c̄1 w + c̄2
     polynomial = np.array([second, first, 2.0 * zeroth.real, np.conj(first), np.conj(second)])
-    w = np.roots(polynomial)
+    w = np.asarray(np.roots(polynomial), dtype=np.complex128)
     if len(w) < 4:
         return w, False, np.abs(np.abs(w) - 1.0) < _SAME
     powers = np.abs(w)[:, None] ** np.arange(4, -1, -1)
@@ -218,7 +217,8 @@ def sliding_dyad(points: ComplexArray, angles: Array) -> DyadSet:
     g, b, c = right[-1][0] + 1j * right[-1][1], right[-1][2] + 1j * right[-1][3], right[-1][4]
     size, centre = float(poses.size[0]), complex(poses.centre[0])
     if sizes[-1] < RANK_TOLERANCE * sizes[0] or abs(g) < RANK_TOLERANCE:
-        return DyadSet.made(1, *np.full((2, 1), np.nan + 0j), np.array([np.inf]))
+        nowhere = np.full(1, np.nan + 0j)
+        return DyadSet.made(1, nowhere, nowhere, np.array([np.inf]))
     normal = g / abs(g)
     # a singular vector moves by the roundings of the matrix over the smallest singular value
     error = size * _LOSS * sizes[0] / sizes[-1] * (1.0 + abs(b / g)) / abs(g)

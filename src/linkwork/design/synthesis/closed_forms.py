@@ -65,10 +65,12 @@ def solve_with_bound(matrix: Array, right: Array, doubt: Array) -> tuple[Array, 
     rest = right - (safe @ x[..., None])[..., 0]
     entries = doubt[:, None] * (1.0 + np.abs(x).sum(axis=1, keepdims=True))
     loss = (n + 2) * UNIT_ROUNDOFF
-    rest = np.abs(rest) + entries + loss * (np.abs(right) + (np.abs(safe) @ np.abs(x)[..., None])[..., 0])
-    away = np.abs(np.eye(n) - inverse @ safe) + size @ (
-        loss * np.abs(safe) + doubt[:, None, None]
+    rest = (
+        np.abs(rest)
+        + entries
+        + loss * (np.abs(right) + (np.abs(safe) @ np.abs(x)[..., None])[..., 0])
     )
+    away = np.abs(np.eye(n) - inverse @ safe) + size @ (loss * np.abs(safe) + doubt[:, None, None])
     norm = away.sum(axis=2).max(axis=1)
     with np.errstate(all="ignore"):
         # Rump 2010: |x - x*| ≤ |R rest| / (1 - ‖I - R A‖)

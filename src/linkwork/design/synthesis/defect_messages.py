@@ -9,7 +9,6 @@ import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.travel import NOWHERE
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 
 __all__ = ["Defect", "defects_of"]

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 
 __all__ = ["COORDINATES", "CURVATURE", "NormalPoses", "quadric_gradients", "quadrics"]
 
@@ -45,8 +45,8 @@ class NormalPoses:
         The largest distance of a point from it [length].
     """
 
-    points: ComplexArray
-    turns: ComplexArray
+    points: AnyArray
+    turns: AnyArray
     centre: ComplexArray
     size: Array
 
@@ -67,7 +67,7 @@ class NormalPoses:
         shifted = points.astype(np.clongdouble) - self.centre[:, None]
         return replace(
             self,
-            points=shifted / self.size[:, None],
+            points=np.asarray(shifted / self.size[:, None]),
             turns=np.exp(1j * angles.astype(np.longdouble)),
         )
 
@@ -101,13 +101,13 @@ class NormalPoses:
         )
 
 
-def quadrics(x: ComplexArray) -> ComplexArray:
+def quadrics(x: AnyArray) -> AnyArray:
     """Both quadrics, (…, 2), at x (…, 8), real or complex: a B - Ḡ A by real and imaginary part."""
     a, p, q, g, h, u, v, _ = np.moveaxis(x, -1, 0)
     return np.stack([a * u - (g * p + h * q), a * v - (g * q - h * p)], axis=-1)
 
 
-def quadric_gradients(x: ComplexArray) -> ComplexArray:
+def quadric_gradients(x: AnyArray) -> AnyArray:
     """Their derivatives, (…, 2, 8)."""
     a, p, q, g, h, u, v, _ = np.moveaxis(x, -1, 0)
     o = np.zeros_like(a)

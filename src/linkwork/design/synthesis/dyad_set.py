@@ -100,7 +100,7 @@ class DyadSet:
         made = cls(
             task=task,
             kind=kind,
-            moving=moving * size,
+            moving=np.asarray(moving * size, dtype=np.complex128),
             fixed=centre + fixed * size,
             normal=np.where(kind > 0, normal_of / length, 0.0),
             error=error * size,
@@ -112,9 +112,7 @@ class DyadSet:
         """With the distances from lines in the errors: a slider fits to rounding only."""
         d, e = poses.points[self.task], poses.turns[self.task]
         pin = d + self.moving[:, None] * e - self.fixed[:, None]
-        normal = np.where(
-            (self.kind == 1)[:, None], self.normal[:, None], self.normal[:, None] * e
-        )
+        normal = np.where((self.kind == 1)[:, None], self.normal[:, None], self.normal[:, None] * e)
         miss = np.abs((normal.conj() * pin).real).max(axis=1)
         return replace(self, error=np.where(self.kind > 0, self.error + miss, self.error))
 

@@ -10,7 +10,14 @@ import numpy as np
 from linkwork.design.synthesis.conic_pair import common_points
 from linkwork.design.synthesis.dyad_equations import COORDINATES, NormalPoses, quadric_gradients
 from linkwork.design.synthesis.dyad_proof import DyadProofs, prove_dyads
-from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray, StatusArray
+from linkwork.foundation.arrays import (
+    AnyArray,
+    Array,
+    BoolArray,
+    ComplexArray,
+    IndexArray,
+    StatusArray,
+)
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.rounding import RANK_TOLERANCE
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from linkwork.foundation.rounding import EPSILON
 
 __all__ = ["Errors", "least_squares_fit", "minimax_fit", "rocker_errors", "slider_errors"]
 
-#: Structural errors (K,) of parameters (n,), and their derivatives (K, n); NaN where no loop closes.
+#: Structural errors (K,) of parameters (n,), and their derivatives (K, n); NaN where a loop is open.
 Errors = Callable[[Array], tuple[Array, Array]]
 
 _MOST_STEPS = 100
@@ -123,7 +124,7 @@ def _alternating(e: Array, count: int) -> list[int] | None:
     ends = [0, *(np.flatnonzero(np.sign(e[1:]) != np.sign(e[:-1])) + 1), len(e)]
     places = [
         start + int(np.abs(e[start:end]).argmax())
-        for start, end in zip(ends[:-1], ends[1:], strict=True)
+        for start, end in pairwise(ends)
     ]
     while len(places) > count:
         # leave out the smaller end, so that signs alternate still

@@ -166,7 +166,9 @@ class FunctionGoal:
 
     def _outputs(self, x: Array) -> tuple[Array, Array]:
         """Inputs and outputs at numbers x, by the linear scales of the ranges."""
-        assert self.x is not None and self.input is not None and self.output is not None
+        assert self.x is not None
+        assert self.input is not None
+        assert self.output is not None
         f = np.array([self._evaluated(number) for number in x])
         f0, f1 = (self._evaluated(number) for number in self.x)
         (x0, x1), (u0, u1), (v0, v1) = self.x, self.input, self.output

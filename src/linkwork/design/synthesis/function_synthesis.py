@@ -22,7 +22,7 @@ from linkwork.design.synthesis.function_fit import (
 )
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task import Task
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
@@ -37,7 +37,7 @@ _FIVE, _FOUR = 5, 4
 def solve_function(task: Task) -> Found:
     """All designs, or a sample of the family, for a function task."""
     goal = task.function
-    assert goal is not None  # noqa: S101 - a task of this kind has one
+    assert goal is not None, "a task of functions has one"
     slides = task.mechanisms[0] == "slider-crank"
     if goal.fit:
         return _fitted(task, goal, slides)
@@ -134,7 +134,7 @@ def _sliders(u: Array, v: Array, a: Array, e: Array, error: Array) -> list[Candi
         Candidates(
             kind=LoopKind.SLIDER_CRANK,
             fixed_a=np.zeros(len(u), dtype=complex),
-            fixed_b=1j * e,
+            fixed_b=np.asarray(1j * e, dtype=np.complex128),
             direction=np.ones(len(u), dtype=complex),
             moving_a=moving,
             moving_b=v + 1j * e[:, None],
@@ -145,15 +145,15 @@ def _sliders(u: Array, v: Array, a: Array, e: Array, error: Array) -> list[Candi
     ]
 
 
-def relative_poses(u: Array, v: Array, slides: bool) -> tuple[Array, Array]:
+def _relative_poses(u: Array, v: Array, slides: bool) -> tuple[ComplexArray, Array]:
     """The output link as the crank's link sees it, (B, N) complex and (B, N) [rad].
 
-    A dyad of these poses is the coupler: its fixed pivot is A in the crank's frame, its moving pivot
-    B in the output's frame.
+    A dyad of these poses is the coupler: its fixed pivot is A in the crank's frame, its moving
+    pivot B in the output's frame.
     """
     if slides:
-        return np.exp(-1j * u) * v, -u
-    return np.exp(-1j * u), v - u
+        return np.asarray(np.exp(-1j * u) * v), -u
+    return np.asarray(np.exp(-1j * u)), v - u
 
 
 def _coupled(dyads: DyadSet, u: Array, v: Array, slides: bool) -> list[Candidates]:
@@ -179,7 +179,7 @@ def _coupled(dyads: DyadSet, u: Array, v: Array, slides: bool) -> list[Candidate
 
 
 def _through_five(task: Task, u: Array, v: Array, slides: bool) -> Found:
-    points, angles = relative_poses(u, v, slides)
+    points, angles = _relative_poses(u, v, slides)
     solved = solve_five_poses(points, angles)
     poses = PoseSet(points=points, turns=np.exp(1j * angles))
     made = _coupled(DyadSet.of_solutions(solved, poses), u, v, slides)
@@ -187,7 +187,7 @@ def _through_five(task: Task, u: Array, v: Array, slides: bool) -> Found:
 
 
 def _through_four(task: Task, u: Array, v: Array, slides: bool) -> Found:
-    points, angles = relative_poses(u, v, slides)
+    points, angles = _relative_poses(u, v, slides)
     dyads = sampled_dyads(points[0], angles[0])
     return _found(task, _coupled(dyads, u, v, slides), complete=0)
 
@@ -230,8 +230,9 @@ def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
             crank = made.moving_a[:, 0] * np.exp(-1j * u[index[0]])
             coupler = np.abs(made.moving_b[0, 0] - made.moving_a[0, 0])
             if slides:
-                yield np.array([crank[0].real, made.fixed_b[0].imag, coupler]), float(
-                    np.sign((made.moving_b[0, 0] - made.moving_a[0, 0]).real)
+                yield (
+                    np.array([crank[0].real, made.fixed_b[0].imag, coupler]),
+                    float(np.sign((made.moving_b[0, 0] - made.moving_a[0, 0]).real)),
                 )
                 continue
             rocker = made.moving_b[:, 0] - made.fixed_b
@@ -240,9 +241,7 @@ def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
             yield np.array([crank[0].real, signed, coupler]), float(np.sign(side[0]))
 
 
-def _fit_design(
-    u: Array, v: Array, lengths: Array, slides: bool, miss: float
-) -> list[Candidates]:
+def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -> list[Candidates]:
     a, second, _ = (np.array([x]) for x in lengths)
     # the loop closes to rounding at every point, whatever its structural error
     error = np.array([_LOSS * (1.0 + np.abs(lengths).max()) * (1.0 + np.abs(u).max())])

@@ -117,16 +117,14 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
     coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
     bars = [crank, *combinations(coupler, 2)]
-    links = {GROUND: ("A0", "B0"), "crank": crank, "coupler": coupler, "rocker": rocker}
+    links: dict[str, tuple[str, ...]] = {GROUND: ("A0", "B0"), "crank": crank, "coupler": coupler, "rocker": rocker}
     sliders: tuple[Slider, ...] = ()
     if design.kind is LoopKind.FOUR_BAR:
         bars.append(rocker)
     else:
         del links["rocker"]
         links |= {GROUND: ("A0", "S", "T"), "block": ("B",)}
-        sliders = (
-            Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),
-        )
+        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),)
     formula = ""
     if output and task.function is not None and design.drive is Drive.A0:
         formula = task.function.formula("crank", _GUIDE if sliders else output)
@@ -136,7 +134,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         length=task.length,
         angle=task.angle,
         points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
-        links={key: list(link) for key, link in links.items()},
+        links=links,
         lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
         sliders=sliders,
         inputs=(_input(design, task.angle),),

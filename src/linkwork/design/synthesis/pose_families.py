@@ -7,7 +7,7 @@ import numpy as np
 from linkwork.design.synthesis.closed_forms import circumcentres, solve_with_bound
 from linkwork.design.synthesis.dyad_set import DyadSet
 from linkwork.design.synthesis.wishes import Wishes
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = [
@@ -38,16 +38,18 @@ def spread_pivots(points: ComplexArray, wishes: Wishes, count: int) -> ComplexAr
     # Halton's sequence fills any box evenly; a polygon takes its share of it
     while inside < count and number < 64 * count:
         k = np.arange(number + 1, number + count + 1)
-        z = low + _halton(k, 2) * extent.real + 1j * _halton(k, 3) * extent.imag
+        z = np.zeros(count, dtype=complex) + low
+        z.real += _halton(k, 2) * extent.real
+        z.imag += _halton(k, 3) * extent.imag
         z = z[wishes.within_region(z, np.zeros(count))]
         found.append(z)
         number, inside = number + count, inside + len(z)
     return np.concatenate(found)[:count]
 
 
-def _halton(k: Array, base: int) -> Array:
+def _halton(k: CountArray, base: int) -> Array:
     """Numbers of Halton's sequence in (0, 1)."""
-    rest, share, total = k.astype(float), 1.0, np.zeros(len(k))
+    rest, share, total = np.asarray(k, dtype=float), 1.0, np.zeros(len(k))
     while (rest > 0).any():
         share /= base
         total += share * np.mod(rest, base)

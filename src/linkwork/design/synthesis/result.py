@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -23,7 +23,7 @@ __all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
 
 #: Defects that are wishes of the task, not properties of its positions.
 _WISHES = {
-    DefectKind.ORDER: 'order = "as given"',
+    DefectKind.ORDER: "the order as given",
     DefectKind.RANGE: "the driven range",
     DefectKind.TRANSMISSION: "the least transmission angle",
     DefectKind.PIVOTS: "the region of fixed pivots",
@@ -162,6 +162,14 @@ class SynthesizedDesign:
             ends = np.array([travel.first[k], travel.last[k]]) + loops.origin[k]
         return Design.of(group.given, k, group.drive, inputs, ends, group.zero)
 
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        value = self.design.inputs[0]
+        if self.drive is Drive.SLIDER:
+            return value
+        return self.group.task.angle.from_radians(value)
+
     @cached_property
     def linkage(self) -> Linkage:
         """The mechanism."""
@@ -173,7 +181,7 @@ class SynthesizedDesign:
         """Plain data, as in the command line's JSON."""
         return {
             "file": file,
-            "mechanism": self.design.kind.value,
+            "mechanism": self.group.given.kind.value,
             "points": {name: [z.real, z.imag] for name, z in self.design.points.items()},
             "drive": self.drive.value,
             "delivered": self.delivered,
@@ -224,7 +232,6 @@ class Synthesis:
     message: str
     dyads: tuple[Dyad, ...]
     designs: tuple[SynthesizedDesign, ...]
-    files: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def delivered(self) -> tuple[SynthesizedDesign, ...]:
@@ -269,8 +276,15 @@ class Synthesis:
         ]
         return str(Summary(f"Synthesis of {self.task.name}", tuple(rows)))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data, as in the command line's JSON."""
+    @property
+    def error_unit(self) -> str:
+        """The unit of the errors of designs."""
+        turns = any(design.group.output == "rocker" for design in self.designs[:1])
+        return self.task.angle.value if turns else self.task.length
+
+    def to_dict(self, files: Mapping[int, str] | None = None) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON; ``files`` of designs by their place."""
+        named = files or {}
         cost = self.costliest
         return {
             "task": self.task.name,
@@ -287,7 +301,5 @@ class Synthesis:
             "defects": {kind.name.lower(): count for kind, count in self.defects.items()},
             "costliest": None if cost is None else {"wish": cost[0], "designs": cost[1]},
             "dyads": [dyad.to_dict() for dyad in self.dyads],
-            "designs": [
-                design.to_dict(self.files.get(k)) for k, design in enumerate(self.designs)
-            ],
+            "designs": [design.to_dict(named.get(k)) for k, design in enumerate(self.designs)],
         }

@@ -10,8 +10,8 @@ from itertools import combinations
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_keys import KINDS
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import InputError, MechanismError, Problem
-from linkwork.foundation.plain_numbers import as_told, plain_number
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.plain_numbers import as_told
 
 __all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
 
@@ -242,25 +242,9 @@ class Task:
             return f"Its output follows {follows}; made for the task {self.name}."
         return f"Passes {count} positions; made for the task {self.name}."
 
-    @classmethod
-    def of_poses(cls, poses: Sequence[Sequence[float]], **more: object) -> Task:
-        """A motion task from poses (x, y, angle), in order of travel."""
-        return cls(kind="motion", positions=tuple(map(_pose, poses)), **more)  # type: ignore[arg-type]  # fields by name
-
     def in_radians(self, angle: float) -> float:
         """An angle of the file in radians."""
         return angle * self.angle.radians
-
-
-def _pose(given: Sequence[float]) -> PrecisionPosition:
-    try:
-        numbers = [plain_number(number) for number in given]
-    except TypeError:
-        numbers = []
-    if len(numbers) != 3 or any(n is None or not math.isfinite(n) for n in numbers):
-        raise InputError(f"a pose is three finite numbers, (x, y, angle), got {as_told(given)}")
-    x, y, angle = (number for number in numbers if number is not None)
-    return PrecisionPosition(point=(x, y), angle=angle)
 
 
 def _area(corners: Sequence[Point]) -> float:

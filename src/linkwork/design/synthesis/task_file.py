@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task import (
     MECHANISMS,
@@ -21,12 +23,14 @@ from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError
 from linkwork.foundation.paths import as_path
+from linkwork.textfile.keys import FORMAT
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import check_format, located_error
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
+from linkwork.textfile.writer import write_tables
 
-__all__ = ["located_task_error", "read_task", "read_task_text"]
+__all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
 
 
 def read_task(path: Path | str) -> Task:
@@ -62,6 +66,34 @@ def located_task_error(error: MechanismError, task: Task, name: str) -> Mechanis
     if not task.text:
         return error
     return located_error(error.problems, Lines.of(task.text), name)
+
+
+def task_of_tables(tables: Mapping[str, Any]) -> Task:
+    """The task of tables that have the keys of a file.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found, and its key.
+    """
+    data = {"format": FORMAT, **_plain(tables)}
+    structure = Structure(data, TASK)
+    if structure.problems:
+        raise MechanismError(structure.problems, "the task")
+    return _task(structure.content, write_tables(data), data.get("name", Task.name))
+
+
+def _plain(given: Any) -> Any:
+    """Tuples as lists, as a file has them, and numbers of other packages as Python's."""
+    match given:
+        case Mapping():
+            return {key: _plain(entry) for key, entry in given.items()}
+        case list() | tuple() | np.ndarray():
+            return [_plain(entry) for entry in given]
+        case np.generic():
+            return given.item()
+        case _:
+            return given
 
 
 def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:

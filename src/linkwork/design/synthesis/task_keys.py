@@ -47,9 +47,7 @@ _GIVEN = Key(
     "given",
     Table(
         (
-            Key(
-                "fixed_pivots", ListOf(_POINT, "pivot", 1, 2), "Fixed pivots: [[0, 0], [100, 0]]"
-            ),
+            Key("fixed_pivots", ListOf(_POINT, "pivot", 1, 2), "Fixed pivots: [[0, 0], [100, 0]]"),
             Key(
                 "moving_pivots",
                 ListOf(_POINT, "pivot", 1, 2),
@@ -104,7 +102,9 @@ _WANTED = Key(
         (
             Key(
                 "input",
-                Either(Text((TURNS_FULLY,)), _RANGE, f'"{TURNS_FULLY}" or {{ from = 20, to = 140 }}'),
+                Either(
+                    Text((TURNS_FULLY,)), _RANGE, f'"{TURNS_FULLY}" or {{ from = 20, to = 140 }}'
+                ),
                 "The driven range; default from the first position to the last",
             ),
             Key(
@@ -193,9 +193,7 @@ TASK = Form(
         Key("source", Text(), "Where the task comes from"),
         Key(
             "mechanism",
-            Either(
-                Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'
-            ),
+            Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
             'The kinds of mechanisms: "four-bar", "slider-crank"',
         ),
         _POSITIONS,

@@ -97,7 +97,7 @@ def _are_decided(loops: DrivenLoops, free: BoolArray, split: BoolArray) -> BoolA
     limits = np.minimum(np.abs(loops.upper), np.abs(loops.lower)) > loops.limit_error
     sides = np.abs(loops.side).min(axis=1) > loops.sign_error
     halves = np.abs(loops.half).min(axis=1) > loops.sign_error
-    return limits & sides & (halves | ~split)
+    return np.asarray(limits & sides & (halves | ~split))
 
 
 def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, BoolArray]:
@@ -109,9 +109,8 @@ def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, Bool
         around = np.where((loops.upper > 0), 0.0, -np.pi)[:, None]
         place = np.mod(place - around, FULL_TURN) + around
     steps = np.diff(place, axis=1)
-    up = (steps > 0).all(axis=1)
-    in_order = up | (steps < 0).all(axis=1)
-    certain = np.abs(steps).min(axis=1, initial=np.inf) > error
+    in_order: BoolArray = (steps > 0).all(axis=1) | (steps < 0).all(axis=1)
+    certain: BoolArray = np.abs(steps).min(axis=1, initial=np.inf) > error
     if not loops.turns:
         return place, in_order, certain
     # eq. (85): once around through all positions makes one turn, or all but one, if in order

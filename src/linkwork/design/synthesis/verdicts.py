@@ -48,8 +48,8 @@ class Verdicts:
     shortest : (D,)
         The shortest link [length].
     found : Mapping[DefectKind, (D,) bool]
-        Which designs have the defect; of circuit, branch, order and range only the first is noted,
-        and the others only of designs without one of these.
+        Which designs have the defect. Others than circuit and branch are noted of designs on one
+        branch only, obstacles of those with at most one defect.
     """
 
     loops: DrivenLoops
@@ -91,21 +91,22 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     for kind, wrong in (
         (DefectKind.CIRCUIT, travel.circuit != NOWHERE),
         (DefectKind.BRANCH, travel.branch != NOWHERE),
-        (DefectKind.ORDER, travel.out_of_order),
-        (DefectKind.RANGE, travel.unreached != NOWHERE),
     ):
         found[kind] = open_ & wrong
         open_ &= ~wrong
+    found[DefectKind.ORDER] = open_ & travel.out_of_order
+    found[DefectKind.RANGE] = open_ & (travel.unreached != NOWHERE)
     transmission = loops.least_transmission(travel.first, travel.last)
     lengths = _lengths(given)
     size, shortest = lengths.max(axis=1), lengths.min(axis=1)
     found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
     found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
     found[DefectKind.LENGTHS] = open_ & ~wishes.allows(shortest, size)
-    free = open_ & ~np.any(list(found.values()), axis=0)
+    # a design with one other defect tells what that wish costs, if nothing else is wrong
+    nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
     met = np.zeros(len(given), dtype=bool)
-    if wishes.obstacles.size and free.any():
-        index = np.flatnonzero(free)
+    if wishes.obstacles.size and nearly.any():
+        index = np.flatnonzero(nearly)
         met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
     found[DefectKind.OBSTACLE] = met
     found[DefectKind.NOT_PROVED] = ~travel.decided
@@ -132,4 +133,5 @@ def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
     pivots = [given.fixed_a]
     if given.kind is LoopKind.FOUR_BAR:
         pivots.append(given.fixed_b)
-    return np.all([wishes.within_region(pivot, given.error) for pivot in pivots], axis=0)
+    inside = [wishes.within_region(pivot, given.error) for pivot in pivots]
+    return np.asarray(np.all(inside, axis=0))

@@ -49,7 +49,7 @@ class Wishes:
             (shortest >= self.shortest)
             & (longest <= self.longest)
             # a ratio of infinity allows a length of zero
-            & ((longest <= self.ratio * np.maximum(shortest, _LEAST)))
+            & (longest <= self.ratio * np.maximum(shortest, _LEAST))
         )
 
     def within_region(self, points: ComplexArray, error: Array) -> BoolArray:
