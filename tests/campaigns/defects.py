@@ -61,7 +61,9 @@ def _random_design(kind: LoopKind, rng: np.random.Generator) -> Candidates:
         )
 
 
-def verdict_by_circuits(given: Candidates, drive: Drive, k: int, inputs: Array) -> DefectKind | None:
+def verdict_by_circuits(
+    given: Candidates, drive: Drive, k: int, inputs: Array
+) -> DefectKind | None:
     """The first of circuit and branch defects, by the circuits of the mechanism."""
     design = Design.of(given, k, drive, inputs, inputs[[0, -1]])
     position = PrecisionPosition(point=(0.0, 0.0))
@@ -72,7 +74,8 @@ def verdict_by_circuits(given: Candidates, drive: Drive, k: int, inputs: Array) 
     places = [
         {"A": given.moving_a[k, j], "B": given.moving_b[k, j]} for j in range(len(design.inputs))
     ]
-    branches = branches_of_positions(circuits, np.array(design.inputs) / scale, places)
+    inputs_there = [value / scale for value in design.inputs]
+    branches = branches_of_positions(circuits, inputs_there, places)
     if len({name.split(" branch")[0] for name in branches}) > 1:
         return DefectKind.CIRCUIT
     return DefectKind.BRANCH if len(set(branches)) > 1 else None

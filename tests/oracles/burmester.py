@@ -1,7 +1,7 @@
 """Dyads through five poses by loop closure: Sandor's and Erdman's compatibility equations.
 
-A dyad is a crank w and a vector z of the body: w (e^{iβj} - 1) + z (e^{iαj} - 1) = δj. Of poses 1, 2,
-3, j this has solutions if a1 + a2 x2 + a3 x3 + a4 xj = 0 with x = e^{iβ}. For j = 4 and 5 the unknown
+A dyad is a crank w and a vector z of the body: w (e^{iβj} - 1) + z (e^{iαj} - 1) = δj. Of poses 1,
+2, 3, j this has solutions if a1 + a2 x2 + a3 x3 + a4 xj = 0, x = e^{iβ}. For j = 4, 5 the unknown
 xj is eliminated by |xj| = 1, then x3 by a resultant. Its polynomial in x2, of degree six, has two
 trivial roots: β = 0 and β = α. It shares nothing with null spaces and conics.
 """

@@ -74,7 +74,7 @@ def write_designs(
     if options.csv:
         save_text(csv_text(designs_table(found, files)), root / "designs.csv")
     if options.html:
-        shown = [design for design in found.delivered[:_PICTURES]]
+        shown = found.delivered[:_PICTURES]
         scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
         save_text(designs_page(found, scenes, files), root / "index.html")
     return files
@@ -89,16 +89,20 @@ def prepare_folder(root: Path, options: FolderOptions) -> None:
         If it holds files, and these are not to be replaced or are none of a synthesis.
     """
     try:
-        for place in (root, root / _REFUSED):
-            for path in sorted(place.iterdir()) if place.is_dir() else ():
-                if path.name == _REFUSED and path.is_dir():
-                    continue
-                if not (options.fresh and path.is_file() and _OWN.fullmatch(path.name)):
-                    raise InputError(
-                        f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
-                        "folder, or replace earlier designs with --fresh"
-                    )
-                path.unlink()
+        there = [
+            path
+            for place in (root, root / _REFUSED)
+            for path in (sorted(place.iterdir()) if place.is_dir() else ())
+            if not (path.name == _REFUSED and path.is_dir())
+        ]
+        for path in there:
+            if not (options.fresh and path.is_file() and _OWN.fullmatch(path.name)):
+                raise InputError(
+                    f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
+                    "folder, or replace earlier designs with --fresh"
+                )
+        for path in there:
+            path.unlink()
         root.mkdir(parents=True, exist_ok=True)
         if options.refused:
             (root / _REFUSED).mkdir(exist_ok=True)

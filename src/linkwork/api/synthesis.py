@@ -169,7 +169,7 @@ class Synthesis(result.Synthesis):
     >>> len(found.defect_free), found.completeness.name
     (1, 'PROVED')
     >>> round(found.defect_free[0].solve(at=75)["rocker"], 2)
-    52.79
+    52.65
     """
 
     @property

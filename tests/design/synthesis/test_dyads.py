@@ -82,7 +82,7 @@ def test_loop_closure_misses_a_dyad_that_is_taken_away(monkeypatch: pytest.Monke
 
 
 def test_errors_bound_how_far_rounding_moves_pivots() -> None:
-    """Far from the origin the same poses are rounded anew; both bounds together cover the change."""
+    """Far away the same poses are rounded anew; both bounds together cover the change."""
     points, angles, _ = random_poses(60, 3)
     # multiples of 2⁻³⁰ are exact in both places
     points = np.round(points * 2.0**30) / 2.0**30
@@ -123,7 +123,8 @@ def test_poses_with_a_common_pole_leave_a_family() -> None:
 def test_close_poses_are_proved_up_to_a_condition_of_1e8() -> None:
     degrees = np.random.default_rng(2).uniform(0.0, 15.0, (40, 5)) + 30.0
     poses = [_coupler_poses(list(row)) for row in degrees]
-    points, angles = (np.array(part) for part in zip(*poses, strict=True))
+    points = np.array([pose[0] for pose in poses])
+    angles = np.array([pose[1] for pose in poses])
     solved = solve_five_poses(points, angles)
     hard = (solved.condition > 1e6) & (solved.condition < 1e8)
     assert hard.sum() > 20

@@ -9,8 +9,8 @@ through P13 of direction u = e^{iφ} this is quadratic in the distance t from P1
 
     Im(u (b̄ + c̄ - ā)) t² + ( Im(a (b̄ + c̄)) + Im(u² b̄ c̄) ) t + Im(u a b̄ c̄) = 0,
 
-a = P13 - P24, b = P13 - P23, c = P13 - P14. Its discriminant is a trigonometric polynomial of degree
-2 in 2φ. Between its roots, which are at most four, there are two points of the curve or none.
+a = P13 - P24, b = P13 - P23, c = P13 - P14. Its discriminant is a trigonometric polynomial of
+degree 2 in 2φ. Between its roots, at most four, there are two points of the curve or none.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from linkwork.foundation.rounding import RANK_TOLERANCE, UNIT_ROUNDOFF
 __all__ = ["Arc", "CentrePoints", "centre_points", "sampled_dyads", "sliding_dyad"]
 
 _SAMPLES = 48  # directions over all arcs
-_SAME = 1e-7  # of the size of the task: the pencil's own pole
+_OWN_POLE = 1e-7  # of the size of the task: the pencil's own pole
 #: Turns from pose to pose below this leave no finite pole.
 _SMALLEST_TURN = 1e-6
 # roundings of the discriminant's coefficients: products of four, sums of a few
@@ -77,6 +77,7 @@ class CentrePoints:
         """The two points (K, 2) on lines of directions (K,) [rad]; NaN where there are none."""
         u = np.exp(1j * directions)
         a, b, c = (np.conj(z) for z in self.differences)
+        # eq. (91)
         alpha = (u * (b + c - a)).imag
         beta = (np.conj(a) * (b + c)).imag + (u**2 * b * c).imag
         gamma = (u * np.conj(a) * b * c).imag
@@ -162,7 +163,7 @@ def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool
     polynomial = np.array([second, first, 2.0 * zeroth.real, np.conj(first), np.conj(second)])
     w = np.asarray(np.roots(polynomial), dtype=np.complex128)
     if len(w) < 4:
-        return w, False, np.abs(np.abs(w) - 1.0) < _SAME
+        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
     powers = np.abs(w)[:, None] ** np.arange(4, -1, -1)
     loss = 2.0 * error * powers.sum(axis=1) + 16.0 * UNIT_ROUNDOFF * (powers @ np.abs(polynomial))
     others = np.abs(w[:, None] - w[None]) + np.eye(4)
@@ -170,7 +171,7 @@ def _roots(coefficients: ComplexArray, error: float) -> tuple[ComplexArray, bool
     with np.errstate(all="ignore"):
         radius = 4.0 * (np.abs(np.polyval(polynomial, w)) + loss) / (divisor * others.prod(axis=1))
     if divisor <= 0 or not np.isfinite(radius).all():
-        return w, False, np.abs(np.abs(w) - 1.0) < _SAME
+        return w, False, np.abs(np.abs(w) - 1.0) < _OWN_POLE
     apart = others > 2.0 * (radius[:, None] + radius[None])
     np.fill_diagonal(apart, True)
     away = np.abs(np.abs(w) - 1.0) > 1.1 * radius
@@ -202,7 +203,7 @@ def sampled_dyads(points: ComplexArray, angles: Array, samples: int = _SAMPLES) 
     d, theta = np.tile(points, (many, 1)), np.tile(angles, (many, 1))
     solved = solve_on_lines(d, theta, lines)
     found = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
-    own = np.abs(found.fixed - vertex) > _SAME * float(np.abs(points - points.mean()).max())
+    own = np.abs(found.fixed - vertex) > _OWN_POLE * float(np.abs(points - points.mean()).max())
     pinned = found.take((found.kind == 0) & own)
     # every line finds the same RP dyad
     sliding = np.flatnonzero(found.kind == 2)[:1]

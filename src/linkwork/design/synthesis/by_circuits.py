@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -35,7 +36,7 @@ def defects_by_circuits(
         Places of points at the positions.
     """
     branches = branches_of_positions(circuits, inputs, places)
-    for number, (one, other) in enumerate(zip(branches, branches[1:], strict=False), start=1):
+    for number, (one, other) in enumerate(pairwise(branches), start=1):
         between = number, number + 1
         if _circuit(one) != _circuit(other):
             message = f"circuit changes between positions {number} and {number + 1}"

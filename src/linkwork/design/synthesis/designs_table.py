@@ -8,6 +8,7 @@ import numpy as np
 
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.foundation.arrays import AnyArray
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.table import Table
 
 __all__ = ["designs_table"]
@@ -30,7 +31,7 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
     units = dict.fromkeys(columns, "")
     numbers = {
         "score": ("", [design.score for design in designs]),
-        "transmission": (task.angle.value, [design.transmission for design in designs]),
+        TRANSMISSION_ANGLE.word: (task.angle.value, [design.transmission for design in designs]),
         "size": (task.length, [design.size for design in designs]),
         "error": (found.error_unit, [design.error for design in designs]),
     }

@@ -120,6 +120,7 @@ class DrivenLoops:
 
     def q(self, place: Array) -> Array:
         """q at places (D, K), measured from the origin."""
+        # eq. (84)
         if self.turns:
             return np.asarray(self.q0[:, None] + self.q1[:, None] * np.cos(place))
         return np.asarray(self.q0[:, None] + place**2)

@@ -75,6 +75,7 @@ class NormalPoses:
         """The linear rows, (N, K, 8)."""
         d, e = self.points, self.turns
         turned = e * d.conj()
+        # eq. (81)
         one = np.ones_like(d.real)
         parts = (
             d.real**2 + d.imag**2,

@@ -19,7 +19,12 @@ from linkwork.design.synthesis.dyad_equations import (
     quadrics,
 )
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
-from linkwork.foundation.rounding import ALMOST_REAL, PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.foundation.rounding import (
+    ALMOST_REAL,
+    EXTENDED_EPSILON,
+    PROOF_SLACK,
+    UNIT_ROUNDOFF,
+)
 
 __all__ = ["DyadProofs", "prove_dyads"]
 
@@ -67,7 +72,7 @@ def prove_dyads(
     provable condition grows from about 1e7 to 1e9.
     """
     precise = rows if precise is None else precise
-    unit = float(np.finfo(precise.dtype).eps) / 2.0
+    unit = UNIT_ROUNDOFF if precise.dtype == np.float64 else EXTENDED_EPSILON / 2.0
     x = _turned_real(y @ null.transpose(0, 2, 1))
     is_real = (x.imag == 0).all(axis=2)
     x = x.astype(np.result_type(precise, x))

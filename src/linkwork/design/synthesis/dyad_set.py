@@ -8,14 +8,14 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.dyads import DyadKind, Dyads, Refusal
+from linkwork.design.synthesis.dyads import KINDS, Dyads, Refusal
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
 __all__ = ["DyadSet", "PoseSet", "pair_dyads"]
 
 
 #: Relative: pivots nearer to each other are one pivot.
-_SAME = 1e-9
+_ONE_PIVOT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,7 +35,7 @@ class DyadSet:
     task : (K,)
         The task of each dyad.
     kind : (K,)
-        The place of its kind in :class:`DyadKind`.
+        The place of its kind in :data:`~linkwork.design.synthesis.dyads.KINDS`.
     moving : (K,) complex
         The moving pivot in the body's frame; of an RP dyad a point of its line [length].
     fixed : (K,) complex
@@ -138,12 +138,11 @@ class DyadSet:
             refusal=np.full(count, Refusal.NONE.code, dtype=np.int8),
         )
 
-    def dyads(self) -> Iterator[tuple[DyadKind, complex, complex, complex, float, Refusal]]:
+    def dyads(self) -> Iterator[tuple[str, complex, complex, complex, float, Refusal]]:
         """Kind, moving, fixed, normal, error and refusal of each."""
-        kinds = tuple(DyadKind)
         for k in range(len(self)):
             yield (
-                kinds[self.kind[k]],
+                KINDS[self.kind[k]],
                 complex(self.moving[k]),
                 complex(self.fixed[k]),
                 complex(self.normal[k]),
@@ -171,7 +170,7 @@ def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candida
         found.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
     first, second = _pairs(cranks.task, sliders.task)
     led = first < (leading or len(cranks))
-    led &= np.abs(cranks.moving[first] - sliders.moving[second]) > _SAME * np.abs(
+    led &= np.abs(cranks.moving[first] - sliders.moving[second]) > _ONE_PIVOT * np.abs(
         cranks.moving[first]
     )
     if led.any():
@@ -181,7 +180,7 @@ def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candida
 
 def _differ(pivots: ComplexArray, first: IndexArray, second: IndexArray) -> BoolArray:
     size = np.maximum(np.abs(pivots[first]), np.abs(pivots[second]))
-    return np.asarray(np.abs(pivots[first] - pivots[second]) > _SAME * size)
+    return np.asarray(np.abs(pivots[first] - pivots[second]) > _ONE_PIVOT * size)
 
 
 def _pairs(tasks: IndexArray, others: IndexArray) -> tuple[IndexArray, IndexArray]:

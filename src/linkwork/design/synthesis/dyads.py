@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from linkwork.foundation.arrays import (
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.rounding import RANK_TOLERANCE
 
-__all__ = ["FIVE", "DyadKind", "Dyads", "Refusal", "solve_five_poses", "solve_on_lines"]
+__all__ = ["FIVE", "KINDS", "Dyads", "Refusal", "solve_five_poses", "solve_on_lines"]
 
 FIVE = 5
 _PART = 1000  # tasks solved together: their matrices fit into the cache
@@ -34,13 +33,9 @@ _VIEWS = tuple(
 )
 
 
-class DyadKind(Enum):
-    """The joints of a dyad from ground to body: revolute or prismatic."""
-
-    RR = "RR"
-    PR = "PR"
-    RP = "RP"
-    PP = "PP"
+#: The joints of a dyad from ground to body, revolute or prismatic, by their numbers. A pair of
+#: guides, PP, carries a body through parallel poses only, whatever they are: it is no solution.
+KINDS = ("RR", "PR", "RP")
 
 
 class Refusal(CodedEnum):
@@ -91,7 +86,7 @@ class Dyads:
 
     @property
     def kinds(self) -> StatusArray:
-        """The kinds (N, 4): 0 RR, 1 PR, 2 RP, by the order of :class:`DyadKind`."""
+        """The kinds (N, 4): 0 RR, 1 PR, 2 RP, by the order of :data:`KINDS`."""
         size = np.abs(self.x[:, :, 1:7]).max(axis=2)
         flat = _FAR * np.abs(self.x[:, :, 0]) < size
         a, g = (np.abs(self.x[:, :, k : k + 2]).max(axis=2) for k in (1, 3))

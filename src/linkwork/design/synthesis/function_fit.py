@@ -13,7 +13,7 @@ from linkwork.foundation.rounding import EPSILON
 
 __all__ = ["Errors", "least_squares_fit", "minimax_fit", "rocker_errors", "slider_errors"]
 
-#: Structural errors (K,) of parameters (n,), and their derivatives (K, n); NaN where a loop is open.
+#: Structural errors (K,) of parameters (n,), and derivatives (K, n); NaN where a loop is open.
 Errors = Callable[[Array], tuple[Array, Array]]
 
 _MOST_STEPS = 100
@@ -122,10 +122,7 @@ def _alternating(e: Array, count: int) -> list[int] | None:
     if not np.isfinite(e).all():
         return None
     ends = [0, *(np.flatnonzero(np.sign(e[1:]) != np.sign(e[:-1])) + 1), len(e)]
-    places = [
-        start + int(np.abs(e[start:end]).argmax())
-        for start, end in pairwise(ends)
-    ]
+    places = [start + int(np.abs(e[start:end]).argmax()) for start, end in pairwise(ends)]
     while len(places) > count:
         # leave out the smaller end, so that signs alternate still
         del places[0 if abs(e[places[0]]) < abs(e[places[-1]]) else -1]

@@ -80,6 +80,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
     ----------
     F. Freudenstein: Approximate synthesis of four-bar linkages. Transactions of the ASME 77 (1955)
     """
+    # eq. (89)
     matrix = np.stack([np.cos(v), -np.cos(u), np.ones_like(u)], axis=-1)
     doubt = _LOSS * (1.0 + np.abs(u).max(axis=1) + np.abs(v).max(axis=1))
     return solve_with_bound(matrix, np.cos(u - v), doubt)
@@ -88,7 +89,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
 def _through_three(u: Array, v: Array, slides: bool) -> list[Candidates]:
     """Loops with given start angles, for B functions (B, 3)."""
     if slides:
-        # s² = 2a s cos φ + 2a e sin φ + c² - a² - e², eq. (90)
+        # eq. (90)
         matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
         far = 1.0 + np.abs(v).max(axis=1) ** 2
         k, error = solve_with_bound(matrix, v**2, _LOSS * far * (1.0 + np.abs(u).max(axis=1)))

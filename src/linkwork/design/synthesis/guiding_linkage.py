@@ -117,7 +117,12 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
     coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
     bars = [crank, *combinations(coupler, 2)]
-    links: dict[str, tuple[str, ...]] = {GROUND: ("A0", "B0"), "crank": crank, "coupler": coupler, "rocker": rocker}
+    links: dict[str, tuple[str, ...]] = {
+        GROUND: ("A0", "B0"),
+        "crank": crank,
+        "coupler": coupler,
+        "rocker": rocker,
+    }
     sliders: tuple[Slider, ...] = ()
     if design.kind is LoopKind.FOUR_BAR:
         bars.append(rocker)

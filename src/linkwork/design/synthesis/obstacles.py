@@ -52,6 +52,7 @@ def meets_obstacle(
         gap -= given.error[which]
         # NaN: no position, which cannot be within a driven range that is proved
         met[which[~(gap > 0)]] = True
+        # eq. (86)
         doubt = (gap <= speed[which] * half) & ~met[which]
         which, middle, half = which[doubt], middle[doubt], half[doubt] / 2
         if which.size > _MOST_PIECES:

@@ -17,6 +17,7 @@ from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.completeness import Completeness
 from linkwork.mechanism.linkage import Linkage
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.summary import Summary
 
 __all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
@@ -39,7 +40,7 @@ class Dyad:
     Parameters
     ----------
     kind : str
-        RR, PR, RP or PP: its joints from ground to body.
+        RR, PR or RP: its joints from ground to body.
     moving : (float, float)
         The moving pivot in the body's frame, whose origin is the guided point; for RP a point of
         the body's line [length].
@@ -185,7 +186,7 @@ class SynthesizedDesign:
             "points": {name: [z.real, z.imag] for name, z in self.design.points.items()},
             "drive": self.drive.value,
             "delivered": self.delivered,
-            "transmission": self.transmission,
+            TRANSMISSION_ANGLE.word: self.transmission,
             "size": self.size,
             "error": self.error,
             "score": self.score,

@@ -147,7 +147,7 @@ def _dyads(found: Found) -> Iterator[Dyad]:
     assert found.dyads is not None
     for kind, moving, fixed, normal, error, refusal in found.dyads.dyads():
         yield Dyad(
-            kind=kind.value,
+            kind=kind,
             moving=(moving.real, moving.imag),
             fixed=(fixed.real, fixed.imag),
             normal=(normal.real, normal.imag) if normal else None,

@@ -12,6 +12,7 @@ from linkwork.design.synthesis.task_keys import KINDS
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
 
@@ -200,7 +201,7 @@ class Task:
         right = self.angle.turn / 4
         if not 0 <= wanted.transmission < right:
             yield (
-                ("wanted", "transmission", "least"),
+                ("wanted", TRANSMISSION_ANGLE.word, "least"),
                 f"must be at least 0 and below {right:g}, got {wanted.transmission:g}",
             )
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:

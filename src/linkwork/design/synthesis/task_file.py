@@ -23,6 +23,7 @@ from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError
 from linkwork.foundation.paths import as_path
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import check_format, located_error
@@ -134,7 +135,7 @@ def _wanted(table: dict[str, Any]) -> Wanted:
     return Wanted(
         turns_fully=driven == TURNS_FULLY,
         range=(driven["from"], driven["to"]) if isinstance(driven, dict) else None,
-        transmission=table.get("transmission", {}).get("least", 0.0),
+        transmission=table.get(TRANSMISSION_ANGLE.word, {}).get("least", 0.0),
         ordered=table.get("order", "as given") == "as given",
         region=_points(table.get("fixed_pivots", {}).get("inside", [])),
         shortest=lengths.get("least", 0.0),
@@ -150,6 +151,6 @@ def _ranking(table: dict[str, Any]) -> Ranking:
     weights = table.get("by")
     given = {
         key: getattr(usual, key) if weights is None else weights.get(key, 0.0)
-        for key in ("transmission", "size", "error")
+        for key in (TRANSMISSION_ANGLE.word, "size", "error")
     }
     return Ranking(**given, deliver=table.get("deliver", usual.deliver))

@@ -15,6 +15,7 @@ from linkwork.foundation.file_keys import (
     Text,
     Whole,
 )
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT, Form
 
 __all__ = ["KINDS", "TASK", "TURNS_FULLY"]
@@ -108,7 +109,7 @@ _WANTED = Key(
                 "The driven range; default from the first position to the last",
             ),
             Key(
-                "transmission",
+                TRANSMISSION_ANGLE.word,
                 Table((Key("least", PlainNumber(), "The smallest allowed", required=True),)),
                 "The transmission angle over the driven range",
             ),
@@ -150,7 +151,11 @@ _RANK = Key(
                 "by",
                 Table(
                     (
-                        Key("transmission", PlainNumber(), "Weight of the transmission angle"),
+                        Key(
+                            TRANSMISSION_ANGLE.word,
+                            PlainNumber(),
+                            "Weight of its least value",
+                        ),
                         Key("size", PlainNumber(), "Weight of smallness"),
                         Key("error", PlainNumber(), "Weight of exactness"),
                     )

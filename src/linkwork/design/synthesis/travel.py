@@ -109,8 +109,8 @@ def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, Bool
         around = np.where((loops.upper > 0), 0.0, -np.pi)[:, None]
         place = np.mod(place - around, FULL_TURN) + around
     steps = np.diff(place, axis=1)
-    in_order: BoolArray = (steps > 0).all(axis=1) | (steps < 0).all(axis=1)
-    certain: BoolArray = np.abs(steps).min(axis=1, initial=np.inf) > error
+    in_order = np.asarray((steps > 0).all(axis=1) | (steps < 0).all(axis=1))
+    certain = np.asarray(np.abs(steps).min(axis=1, initial=np.inf) > error)
     if not loops.turns:
         return place, in_order, certain
     # eq. (85): once around through all positions makes one turn, or all but one, if in order

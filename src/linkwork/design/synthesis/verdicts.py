@@ -28,7 +28,6 @@ class DefectKind(Enum):
     PIVOTS = "fixed pivot outside its region"
     LENGTHS = "length out of bounds"
     OBSTACLE = "meets an obstacle"
-    TOLERANCE = "misses a position"
     NOT_PROVED = "not proved"
 
 
