@@ -64,7 +64,7 @@ def solve_function(task: Task) -> Found:
 
 
 def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
-    """K of cos(φ - ψ) = K1 cos ψ - K2 cos φ + K3, (B, 3), with bounds of the errors, eq. (89).
+    """K of cos(φ - ψ) = K1 cos ψ - K2 cos φ + K3, (B, 3), with bounds of the errors, eq. (129).
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
     ----------
     F. Freudenstein: Approximate synthesis of four-bar linkages. Transactions of the ASME 77 (1955)
     """
-    # eq. (89)
+    # eq. (129)
     matrix = np.stack([np.cos(v), -np.cos(u), np.ones_like(u)], axis=-1)
     doubt = _LOSS * (1.0 + np.abs(u).max(axis=1) + np.abs(v).max(axis=1))
     return solve_with_bound(matrix, np.cos(u - v), doubt)
@@ -89,7 +89,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
 def _through_three(u: Array, v: Array, slides: bool) -> list[Candidates]:
     """Loops with given start angles, for B functions (B, 3)."""
     if slides:
-        # eq. (90)
+        # eq. (130)
         matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
         far = 1.0 + np.abs(v).max(axis=1) ** 2
         k, error = solve_with_bound(matrix, v**2, _LOSS * far * (1.0 + np.abs(u).max(axis=1)))

@@ -15,6 +15,7 @@ from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
 from linkwork.design.synthesis.motion_synthesis import solve_motion
+from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.task import Task, Wanted
 from linkwork.design.synthesis.travel import Range
@@ -31,6 +32,8 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
+    "path": solve_path,
+    "mixed": solve_path,
     "function": lambda task, wishes, progress: solve_function(task),
 }
 _RIGHT = math.pi / 2.0

@@ -149,6 +149,8 @@ class Task:
             if name not in MECHANISMS and self.kind != "improve":
                 known = " or ".join(f'"{known}"' for known in MECHANISMS)
                 yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
+        if self.kind in ("path", "mixed") and "four-bar" not in self.mechanisms:
+            yield ("mechanism",), 'points are solved for the "four-bar" only'
         if self.kind == "function":
             if self.function is None:
                 yield ("function",), "is missing: what the output should follow"
