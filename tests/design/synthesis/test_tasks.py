@@ -74,6 +74,14 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [10, 9]]\n", 4, "function.pairs[3]",
          "has the input 10 of pair 2"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),
+        (_MOTION + "[given]\nfixed_pivots = [[0, 0]]\n", 18, "given",
+         "leaves no freedom for 5 poses"),
+        (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "tolerance = 1\n"), 11,
+         "positions[3].tolerance", "has no effect on points"),
+        (_MOTION + "[curve]\nfile = 'foot.csv'\n", 18, "curve",
+         'has no effect on task = "motion"'),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\n[given]\nfixed_pivots = [[0, 0]]\n", 6,
+         "given.fixed_pivots", "must be two pivots on a level line"),
     ],
 )  # fmt: skip
 def test_a_bad_task_is_refused_with_its_place(

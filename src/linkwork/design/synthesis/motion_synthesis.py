@@ -178,14 +178,6 @@ def _through_four(
             "fixed pivots on the centre-point curve, or leave out a pose",
             "moving_pivots",
         )
-    if task.positions[0].input is not None:
-        raise _refused(
-            task,
-            "positions",
-            "four poses leave no freedom to time the crank: time at most three",
-            0,
-            "input",
-        )
     curve = centre_points(points, angles)
     dyads = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
     if fixed.size and curve is not None:

@@ -16,6 +16,8 @@ from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
 
+_MOST_FREE = 4  # poses that leave pivots to choose
+_MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
 MECHANISMS = ("four-bar", "slider-crank")
 
@@ -158,6 +160,7 @@ class Task:
                 yield from self.function.problems()
         elif self.kind != "improve":
             yield from self._position_problems()
+        yield from self._given_problems()
         yield from self._wish_problems()
 
     def _position_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
@@ -188,6 +191,35 @@ class Task:
         if 0 < timed < count:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
+
+    def _given_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Pivots and timing that the kind of task cannot use."""
+        fixed, moving = self.given.fixed_pivots, self.given.moving_pivots
+        count, timed = len(self.positions), any(p.input is not None for p in self.positions)
+        if self.kind == "motion" and count > _MOST_FREE and (fixed or moving):
+            yield ("given",), f"leaves no freedom for {count} poses, which determine all pivots"
+        if len(fixed) + len(moving) > 2:
+            yield ("given",), "fixes more than two pivots: two determine the four-bar"
+        if moving and (self.kind != "motion" or timed):
+            yield ("given", "moving_pivots"), "belongs to poses without timing: leave it out"
+        if self.kind == "motion" and timed and count > _MOST_TIMED:
+            yield (
+                ("positions", 0, "input"),
+                f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}",
+            )
+        if self.kind in ("path", "mixed"):
+            for k, position in enumerate(self.positions):
+                for name in ("input", "tolerance", "angle_tolerance"):
+                    if getattr(position, name):
+                        yield ("positions", k, name), "has no effect on points: leave it out"
+        if self.kind == "function" and fixed:
+            level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
+            if not level:
+                yield (
+                    ("given", "fixed_pivots"),
+                    "must be two pivots on a level line, A0 to the left of B0: angles are measured "
+                    "from it",
+                )
 
     def _repeated_positions(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         turn = self.angle.turn

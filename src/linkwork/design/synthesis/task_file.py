@@ -21,7 +21,7 @@ from linkwork.design.synthesis.task import (
 )
 from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import MechanismError
+from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.paths import as_path
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
@@ -98,6 +98,7 @@ def _plain(given: Any) -> Any:
 
 
 def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
+    _check_tables(content)
     mechanism = content.get("mechanism", MECHANISMS)
     return Task(
         kind=content["task"],
@@ -112,6 +113,29 @@ def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
         rank=_ranking(content.get("rank", {})),
         text=text,
     )
+
+
+#: The tables that each kind of task uses, besides those of all kinds.
+_USED = {
+    "motion": {"positions", "given"},
+    "path": {"positions", "given"},
+    "mixed": {"positions", "given"},
+    "function": {"function", "given"},
+    "improve": {"positions", "function", "curve", "improve"},
+}
+
+
+def _check_tables(content: Mapping[str, Any]) -> None:
+    """Refuse tables without effect."""
+    every = set().union(*_USED.values())
+    kind = content["task"]
+    problems = [
+        Problem(key=(table,), message=f'has no effect on task = "{kind}": leave it out')
+        for table in content
+        if table in every - _USED[kind]
+    ]
+    if problems:
+        raise MechanismError(problems, "the task")
 
 
 def _points(listed: list[list[float]]) -> tuple[Any, ...]:
