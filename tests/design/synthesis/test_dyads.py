@@ -110,7 +110,8 @@ def test_equal_turns_and_translations_commute_with_the_solution() -> None:
 
 def test_poses_with_a_common_pole_leave_a_family() -> None:
     angles = np.radians([0.0, 20.0, 50.0, 70.0, 110.0])
-    solved = solve_five_poses((2.0 * np.exp(1j * angles) + 1)[None], angles[None])
+    points: ComplexArray = np.asarray(2.0 * np.exp(1j * angles) + 1)
+    solved = solve_five_poses(points[None], angles[None])
     assert not solved.is_real.any()
     assert not solved.complete[0]
     assert {Refusal.of_code(int(code)) for code in solved.refusal[0]} <= {
@@ -123,7 +124,7 @@ def test_poses_with_a_common_pole_leave_a_family() -> None:
 def test_close_poses_are_proved_up_to_a_condition_of_1e8() -> None:
     degrees = np.random.default_rng(2).uniform(0.0, 15.0, (40, 5)) + 30.0
     poses = [_coupler_poses(list(row)) for row in degrees]
-    points = np.array([pose[0] for pose in poses])
+    points: ComplexArray = np.array([pose[0] for pose in poses])
     angles = np.array([pose[1] for pose in poses])
     solved = solve_five_poses(points, angles)
     hard = (solved.condition > 1e6) & (solved.condition < 1e8)
