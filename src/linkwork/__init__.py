@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd

@@ -34,6 +34,7 @@ _COMMANDS = (
     "view",
     "web",
     "link",
+    "synthesize",
     "code",
     "study",
     "compile",
