@@ -24,6 +24,8 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "forces",
+    "sensitivity",
+    "tolerance",
     "design",
     "draw",
     "plot",

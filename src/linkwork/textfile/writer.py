@@ -147,6 +147,10 @@ def _tables(description: Description) -> _Tables:
             found |= _inputs(description)
         case _:
             raise TypeError(f"a {type(description).__name__} has no file format")
+    deviations = description.tolerances.items()
+    found["tolerances"] = {name: {"deviation": number} for name, number in deviations}
+    if isinstance(description, Linkage):
+        found["clearances"] = dict(description.clearances)
     found["trace"] = {"points": description.trace} if description.trace else {}
     found["outputs"] = dict(description.outputs)
     found["questions"] = [_given(question) for question in description.questions]

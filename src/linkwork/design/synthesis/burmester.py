@@ -5,7 +5,7 @@ A fixed pivot p sees the body turn through four poses on a circle if
     Im( k13 (p - P13) k24 (p - P24) conj( k23 (p - P23) k14 (p - P14) ) ) = 0,
 
 with the poles Pjk, about which the body turns from pose j to pose k (Burmester 1888). On the line
-through P13 of direction u = e^{iφ} this is quadratic in the distance t from P13, eq. (131):
+through P13 of direction u = e^{iφ} this is quadratic in the distance t from P13, eq. (151):
 
     Im(u (b̄ + c̄ - ā)) t² + ( Im(a (b̄ + c̄)) + Im(u² b̄ c̄) ) t + Im(u a b̄ c̄) = 0,
 
@@ -77,7 +77,7 @@ class CentrePoints:
         """The two points (K, 2) on lines of directions (K,) [rad]; NaN where there are none."""
         u = np.exp(1j * directions)
         a, b, c = (np.conj(z) for z in self.differences)
-        # eq. (131)
+        # eq. (151)
         alpha = (u * (b + c - a)).imag
         beta = (np.conj(a) * (b + c)).imag + (u**2 * b * c).imag
         gamma = (u * np.conj(a) * b * c).imag

@@ -31,7 +31,7 @@ def circumcentres(points: ComplexArray, far: Array) -> tuple[ComplexArray, Array
     area = 2.0 * (v.real * w.imag - v.imag * w.real)
     longest = np.maximum(np.abs(v), np.abs(w))
     doubt = _LOSS * UNIT_ROUNDOFF * (far + longest)
-    # eq. (128): c (v × w) 2 = i (|w|² v - |v|² w)
+    # eq. (148): c (v × w) 2 = i (|w|² v - |v|² w)
     numerator = 1j * (np.abs(w) ** 2 * v - np.abs(v) ** 2 * w)
     with np.errstate(all="ignore"):
         centre = numerator / area

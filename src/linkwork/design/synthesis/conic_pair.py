@@ -31,7 +31,7 @@ def common_points(first: Array, second: Array) -> ComplexArray:
     """
     a1, b1, c1 = _in_last_but_one(first)
     a2, b2, c2 = _in_last_but_one(second)
-    # eq. (122): the resultant of two quadratics in t, whose coefficients are polynomials in s
+    # eq. (142): the resultant of two quadratics in t, whose coefficients are polynomials in s
     ab, ac = a1 * b2 - a2 * b1, a1 * c2 - a2 * c1
     bc = _times(b1, c2) - _times(b2, c1)
     s = quartic_roots(_times(ac, ac) - _times(ab, bc))
@@ -100,7 +100,7 @@ def _improved(y: ComplexArray, first: Array, second: Array) -> ComplexArray:
     """One Newton step (B, 4, 3) on both conics, across y."""
     p, q = (first @ y[..., None])[..., 0], (second @ y[..., None])[..., 0]
     f = np.sum(y * p, axis=-1), np.sum(y * q, axis=-1)
-    # eq. (123): the change z with 2 p·z = -f0, 2 q·z = -f1, ȳ·z = 0, by Cramer's rule
+    # eq. (143): the change z with 2 p·z = -f0, 2 q·z = -f1, ȳ·z = 0, by Cramer's rule
     n = y.conj()
     pq = np.cross(p, q)
     with np.errstate(all="ignore"):

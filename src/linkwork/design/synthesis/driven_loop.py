@@ -2,7 +2,7 @@
 
 With the input φ (an angle) or s (a slider's displacement) the loop closes where
 
-    low ≤ q ≤ high,    q = q0 + q1 cos(φ - φ0)  or  q = q0 + s²,                         eq. (124)
+    low ≤ q ≤ high,    q = q0 + q1 cos(φ - φ0)  or  q = q0 + s²,                         eq. (144)
 
 | loop | q | low, high | the side of the loop: sign of |
 |---|---|---|---|
@@ -120,7 +120,7 @@ class DrivenLoops:
 
     def q(self, place: Array) -> Array:
         """q at places (D, K), measured from the origin."""
-        # eq. (124)
+        # eq. (144)
         if self.turns:
             return np.asarray(self.q0[:, None] + self.q1[:, None] * np.cos(place))
         return np.asarray(self.q0[:, None] + place**2)

@@ -3,7 +3,7 @@
 A body has the pose (d, θ): a point of it is at d, and it is turned by θ. A dyad joins it to
 ground: RR by a bar between a moving pivot m (in the body's frame) and a fixed pivot p, PR by a
 moving pivot on a fixed line, RP by a line of the body through a fixed pivot, PP by two guides. For
-all of them, eq. (121),
+all of them, eq. (141),
 
     a |d|² + 2 Re(A e^{iθ} d̄) - 2 Re(Ḡ d) - 2 Re(B e^{iθ}) + C = 0,    a B = Ḡ A,
 
@@ -75,7 +75,7 @@ class NormalPoses:
         """The linear rows, (N, K, 8)."""
         d, e = self.points, self.turns
         turned = e * d.conj()
-        # eq. (121)
+        # eq. (141)
         one = np.ones_like(d.real)
         parts = (
             d.real**2 + d.imag**2,

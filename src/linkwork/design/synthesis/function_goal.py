@@ -184,7 +184,7 @@ class FunctionGoal:
         start, stop = self.x
         if spacing == "even":
             return np.linspace(start, stop, count)
-        # eq. (127)
+        # eq. (147)
         k = np.arange(1, count + 1)
         share = 0.5 - 0.5 * np.cos((2 * k - 1) * np.pi / (2 * count))
         return np.asarray(start + share * (stop - start))

@@ -65,7 +65,7 @@ def solve_function(task: Task) -> Found:
 
 
 def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
-    """K of cos(φ - ψ) = K1 cos ψ - K2 cos φ + K3, (B, 3), with bounds of the errors, eq. (129).
+    """K of cos(φ - ψ) = K1 cos ψ - K2 cos φ + K3, (B, 3), with bounds of the errors, eq. (149).
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
     ----------
     F. Freudenstein: Approximate synthesis of four-bar linkages. Transactions of the ASME 77 (1955)
     """
-    # eq. (129)
+    # eq. (149)
     matrix = np.stack([np.cos(v), -np.cos(u), np.ones_like(u)], axis=-1)
     doubt = _LOSS * (1.0 + np.abs(u).max(axis=1) + np.abs(v).max(axis=1))
     return solve_with_bound(matrix, np.cos(u - v), doubt)
@@ -92,7 +92,7 @@ def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], 
     only in complex numbers.
     """
     if slides:
-        # eq. (130)
+        # eq. (150)
         matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
         far = 1.0 + np.abs(v).max(axis=1) ** 2
         k, error = solve_with_bound(matrix, v**2, _LOSS * far * (1.0 + np.abs(u).max(axis=1)))

@@ -29,7 +29,7 @@ def meets_obstacle(
     """Whether a link of each design comes into a circle, or nearer than can be excluded.
 
     A piece of the range is clear if at its middle every link is farther from the circle than any of
-    its points can move within half the piece, eq. (126). Other pieces are halved.
+    its points can move within half the piece, eq. (146). Other pieces are halved.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def meets_obstacle(
         gap -= given.error[which]
         # NaN: no position, which cannot be within a driven range that is proved
         met[which[~(gap > 0)]] = True
-        # eq. (126)
+        # eq. (146)
         doubt = (gap <= speed[which] * half) & ~met[which]
         which, middle, half = which[doubt], middle[doubt], half[doubt] / 2
         if which.size > _MOST_PIECES:

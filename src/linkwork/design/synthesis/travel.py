@@ -113,7 +113,7 @@ def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, Bool
     certain = np.asarray(np.abs(steps).min(axis=1, initial=np.inf) > error)
     if not loops.turns:
         return place, in_order, certain
-    # eq. (125): once around through all positions makes one turn, or all but one, if in order
+    # eq. (145): once around through all positions makes one turn, or all but one, if in order
     gaps = np.mod(np.diff(place, axis=1, append=place[:, :1]), FULL_TURN)
     count = np.rint(gaps.sum(axis=1) / FULL_TURN)
     forward = count == 1
