@@ -125,6 +125,14 @@ def test_a_fit_without_alternating_errors_is_not_called_minimal() -> None:
     assert not minimax_fit(rocker_errors(u, v, 1.0), start)[1]
 
 
+def test_a_function_that_no_single_four_bar_is_determined_by_says_so() -> None:
+    """Equal angles: any parallelogram has them, and the equations are singular."""
+    same = {"x": (0, 1), "input": (0, 90), "output": (0, 90), "mechanism": "four-bar"}
+    found = lw.Task.function("x", **same).solve()
+    assert found.completeness is lw.Completeness.NOT_PROVED
+    assert not found.designs
+
+
 def test_given_pivots_set_the_scale() -> None:
     pivots = {"fixed_pivots": [(10, 20), (110, 20)]}
     (design,) = _designs(lw.Task.function("log10(x)", given=pivots, **_LOGARITHM))

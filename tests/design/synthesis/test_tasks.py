@@ -73,6 +73,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "function.positions", "5 precision points leave no four-bar with given start angles"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [10, 9]]\n", 4, "function.pairs[3]",
          "has the input 10 of pair 2"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\nfit = 'minimax'\n", None,
+         "function.input", "is missing: a fit needs the start angles"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),
         (_MOTION + "[given]\nfixed_pivots = [[0, 0]]\n", 18, "given",
          "leaves no freedom for 5 poses"),
@@ -116,8 +118,11 @@ def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
     with pytest.raises(lw.MechanismError, match="two guides"):
         lw.Task.motion(translated).solve()
     turned = [(1, 2, angle) for angle in (0, 10, 30, 50, 90)]
-    with pytest.raises(lw.MechanismError, match="all have the same point"):
+    with pytest.raises(lw.MechanismError, match=r"a rotation about \[1, 2\]"):
         lw.Task.motion(turned).solve()
+    rolled = [(0, 0, 0), (1, 0, 90), (1, 1, 180), (0, 1, 270)]
+    with pytest.raises(lw.MechanismError, match=r"a rotation about \[0.5, 0.5\]"):
+        lw.Task.motion(rolled).solve()
 
 
 def test_a_kind_without_a_solver_says_so() -> None:

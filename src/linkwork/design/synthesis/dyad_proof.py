@@ -97,7 +97,8 @@ def prove_dyads(
         [np.broadcast_to(rows[:, None], (*x.shape[:2], *rows.shape[1:])), gradients], axis=2
     )
     holds, error = _kantorovich(answer, jacobian, f, near, unit)
-    condition = _row_sums(answer) * _row_sums(jacobian)
+    with np.errstate(all="ignore"):
+        condition = _row_sums(answer) * _row_sums(jacobian)
     # x is rounded to double precision in the end
     x, error = near, error + (2.0 * UNIT_ROUNDOFF if unit < UNIT_ROUNDOFF else 0.0)
     length = _LENGTH * error
@@ -148,17 +149,18 @@ def _kantorovich(
     uncertain = _LOSS * entries
     uncertain[:, :, :_ROWS] += NormalPoses.doubt(entries[:, :, :_ROWS])
     of_f = unit * _matrix_vector(uncertain, np.abs(x))
-    # eq. (25)
-    y = np.abs(_matrix_vector(answer, f.astype(np.complex128)))
-    y += _matrix_vector(size, of_f + 2.0 * _LOSS * UNIT_ROUNDOFF * np.abs(f).astype(float))
-    z = np.abs(np.eye(COORDINATES) - answer @ jacobian)
-    z += UNIT_ROUNDOFF * (size @ (uncertain + _LOSS * entries))
-    y0 = y.max(axis=2) * PROOF_SLACK
-    z0 = z.sum(axis=3).max(axis=2) * PROOF_SLACK
-    omega = CURVATURE * size[..., _ROWS + 1 :].sum(axis=3).max(axis=2) * PROOF_SLACK
-    rest = (1.0 - z0) ** 2 - 2.0 * omega * y0
-    holds = (z0 < 1.0) & (rest > 0)
-    with np.errstate(invalid="ignore", divide="ignore"):
+    # singular Jacobians have answers without bounds, and no proof
+    with np.errstate(all="ignore"):
+        # eq. (25)
+        y = np.abs(_matrix_vector(answer, f.astype(np.complex128)))
+        y += _matrix_vector(size, of_f + 2.0 * _LOSS * UNIT_ROUNDOFF * np.abs(f).astype(float))
+        z = np.abs(np.eye(COORDINATES) - answer @ jacobian)
+        z += UNIT_ROUNDOFF * (size @ (uncertain + _LOSS * entries))
+        y0 = y.max(axis=2) * PROOF_SLACK
+        z0 = z.sum(axis=3).max(axis=2) * PROOF_SLACK
+        omega = CURVATURE * size[..., _ROWS + 1 :].sum(axis=3).max(axis=2) * PROOF_SLACK
+        rest = (1.0 - z0) ** 2 - 2.0 * omega * y0
+        holds = (z0 < 1.0) & (rest > 0)
         radius = 2.0 * y0 / (1.0 - z0 + np.sqrt(np.maximum(rest, 0.0))) * PROOF_SLACK
     return holds, np.where(holds, radius, np.inf)
 

@@ -36,7 +36,7 @@ def rocker_errors(inputs: Array, outputs: Array, side: float) -> Errors:
         base = 1.0 - a * crank
         square = np.abs(base) ** 2
         along = 0.5 * (square + c**2 - b**2)
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", divide="ignore"):
             across = np.sqrt(square * c**2 - along**2)
             coupler = base * (along + 1j * side * across) / square
             # B - B0 = A + coupler - 1, divided by a signed length

@@ -103,6 +103,8 @@ class FunctionGoal:
 
     def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.pairs)
+        if self.fit and not self.starts_fixed:
+            yield ("function", "input"), "is missing: a fit needs the start angles of both links"
         if count < _FIXED:
             yield ("function", "pairs"), f"{count} given: give three or more"
         fixed = self.starts_fixed

@@ -22,13 +22,14 @@ from linkwork.design.synthesis.function_fit import (
 )
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task import Task
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = ["freudenstein", "solve_function"]
 
 _LOSS = 16.0 * UNIT_ROUNDOFF  # of angles, their sines, and sums of few of them
+_SMALL = 0.05  # relative errors up to which a quotient's error is at most 1.1 times its first order
 _STARTS = 24  # start angles in each direction, where two are free
 _TRIVIAL = 1e-6  # relative: both moving pivots at the fixed ones move in every function
 _FIVE, _FOUR = 5, 4
@@ -45,9 +46,9 @@ def solve_function(task: Task) -> Found:
     u = np.array([inputs * task.angle.radians])
     v = np.array([outputs * (1.0 if slides else task.angle.radians)])
     if goal.starts_fixed:
-        made = _through_three(u, v, slides)
-        zero = None if slides else (float(u[0, 0]), float(v[0, 0]))
-        return _found(task, made, complete=1, zero=(float(u[0, 0]), zero[1] if zero else 0.0))
+        made, determined = _through_three(u, v, slides)
+        zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
+        return _found(task, made, complete=1 if determined.all() else -1, zero=zero)
     u, v = u - u[:, :1], v - v[:, :1]
     if u.shape[1] == _FIVE:
         return _through_five(task, u, v, slides)
@@ -59,7 +60,7 @@ def solve_function(task: Task) -> Found:
     if slides:
         # displacements may begin anywhere within twice their range
         second = (second * (2.0 / np.pi) - 1.0) * 2.0 * np.ptp(v)
-    made = _through_three(u + first[:, None], v + second[:, None], slides)
+    made, _ = _through_three(u + first[:, None], v + second[:, None], slides)
     return _found(task, made, complete=0)
 
 
@@ -86,8 +87,10 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
     return solve_with_bound(matrix, np.cos(u - v), doubt)
 
 
-def _through_three(u: Array, v: Array, slides: bool) -> list[Candidates]:
-    """Loops with given start angles, for B functions (B, 3)."""
+def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], BoolArray]:
+    """Loops with given start angles, for B functions (B, 3), and which of these determine one, if
+    only in complex numbers.
+    """
     if slides:
         # eq. (150)
         matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
@@ -96,16 +99,18 @@ def _through_three(u: Array, v: Array, slides: bool) -> list[Candidates]:
         with np.errstate(all="ignore"):
             a, e = k[:, 0], k[:, 1] / k[:, 0]
             square = k[:, 2] + a**2 + e**2
-            doubt = error[:, 0] * (1.0 + np.abs(e)) / np.abs(a)
-        good = (square > 0) & np.isfinite(doubt)
-        return _sliders(u[good], v[good], a[good], e[good], doubt[good])
+            doubt = 1.1 * error[:, 0] * (1.0 + np.abs(e)) / np.abs(a)
+        determined = error[:, 0] < _SMALL * np.abs(k[:, 0])
+        good = (square > 0) & determined
+        return _sliders(u[good], v[good], a[good], e[good], doubt[good]), determined
     k, error = freudenstein(u, v)
     with np.errstate(all="ignore"):
         a, b = 1.0 / k[:, 0], 1.0 / k[:, 1]
         square = a**2 + b**2 + 1.0 - 2.0 * a * b * k[:, 2]
-        doubt = error[:, 0] * np.maximum(a**2, b**2) * 1.1
-    good = (square > 0) & np.isfinite(doubt) & np.isfinite(a * b)
-    return _rockers(u[good], v[good], a[good], b[good], doubt[good])
+        doubt = 1.1 * error[:, 0] * np.maximum(a**2, b**2)
+    determined = np.asarray((error[:, :2] < _SMALL * np.abs(k[:, :2])).all(axis=1))
+    good = (square > 0) & determined
+    return _rockers(u[good], v[good], a[good], b[good], doubt[good]), determined
 
 
 def _rockers(u: Array, v: Array, a: Array, b: Array, error: Array) -> list[Candidates]:
@@ -227,7 +232,7 @@ def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
     for share in (0.067, 0.15, 0.25, 0.0):
         places = np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)
         index = places.round().astype(int)
-        for made in _through_three(u[None, index], v[None, index], slides):
+        for made in _through_three(u[None, index], v[None, index], slides)[0]:
             crank = made.moving_a[:, 0] * np.exp(-1j * u[index[0]])
             coupler = np.abs(made.moving_b[0, 0] - made.moving_a[0, 0])
             if slides:
@@ -269,7 +274,7 @@ def _found(
         message = "all solutions: the equations have no others"
     elif complete < 0:
         grade = Completeness.NOT_PROVED
-        message = "not proved: two solutions of the equations nearly coincide"
+        message = "not proved: to rounding, the equations are singular"
     goal = task.function
     if goal is not None and goal.fit:
         message = f"the best {goal.fit} fit that was found; others may be better"

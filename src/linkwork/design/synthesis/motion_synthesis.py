@@ -36,6 +36,7 @@ __all__ = ["poses_of", "solve_motion"]
 _PIVOTS = {2: 12, 3: 60}  # of a family through so many poses; two leave further freedom
 _ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centre-point curve
 _CURVE_SAMPLES = 400
+_MOST_PARALLEL = 4  # three parallel poses still have parallelograms
 _PARALLEL = 1e-12  # angles that differ by less are equal to rounding
 
 
@@ -49,10 +50,7 @@ def poses_of(task: Task) -> tuple[ComplexArray, Array]:
 def solve_motion(task: Task, wishes: Wishes) -> Found:
     """All designs through five poses, or a sample of the family through fewer."""
     points, angles = poses_of(task)
-    if np.ptp(points) == 0:
-        raise _refused(
-            task, "positions", "all have the same point: a fixed pin there lets the body turn"
-        )
+    _check_motion(task, points, angles)
     if len(points) >= FIVE:
         return _through_five(task, points, angles)
     family = _family(task, wishes, points, angles)
@@ -71,6 +69,39 @@ def solve_motion(task: Task, wishes: Wishes) -> Found:
     )
 
 
+def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
+    """Refuse poses for which one joint is enough, and no linkage is determined.
+
+    Raises
+    ------
+    MechanismError
+    """
+    turns = np.exp(1j * (angles - angles[0]))
+    # the pole of the first pose and the one turned most from it
+    k = int(np.abs(turns - 1.0).argmax())
+    if abs(turns[k] - 1.0) < _PARALLEL:
+        if len(points) >= _MOST_PARALLEL:
+            raise _refused(
+                task,
+                "positions",
+                "all have the same angle: the body only translates, and two guides (a PP dyad) "
+                "carry it through any such poses; no dyad with a pivot is determined",
+            )
+        return
+    if len(points) == 2 and points[0] != points[1]:
+        return
+    # not -0
+    pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
+    size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
+    if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size:
+        raise _refused(
+            task,
+            "positions",
+            f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
+            "carries the body, and no linkage is determined",
+        )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Family:
     """Dyads, of which the first ``leading`` are the cranks if that is not 0."""
@@ -87,13 +118,6 @@ def _wanted(task: Task, made: list[Candidates]) -> list[Candidates]:
 
 
 def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
-    if np.abs(np.exp(1j * (angles - angles[0])) - 1.0).max() < _PARALLEL:
-        raise _refused(
-            task,
-            "positions",
-            "all have the same angle: the body only translates, and two guides (a PP dyad) carry "
-            "it through any such poses; no dyad with a pivot is determined",
-        )
     tasks = near_tasks(task, points, angles)
     solved = solve_five_poses(tasks.points, tasks.angles)
     chosen = PoseSet(points=tasks.points, turns=np.exp(1j * tasks.angles))
