@@ -83,10 +83,7 @@ def mirror_numbers(edits: TextEdits, points: set[str]) -> None:
 
 
 def _copy_dimensions(edits: TextEdits, table: str, new: Mapping[str, str], mirrored: bool) -> None:
-    links = [
-        set(map(canonical, edits.names(("links", link))))
-        for link in edits.keys(("links",))
-    ]
+    links = [set(map(canonical, edits.names(("links", link)))) for link in edits.keys(("links",))]
     for key in edits.keys((table,)):
         words = key.split()
         copied = [new.get(canonical(word), word) for word in words]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from importlib.metadata import version
 
 import numpy as np
 
@@ -39,7 +38,7 @@ from linkwork.viewer.page_questions import answers_of, questions_of
 from linkwork.viewer.page_shapes import shapes_of
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["FORMAT", "MARGIN", "Loops", "drawn_page", "motion_page", "page_version", "themes"]
+__all__ = ["FORMAT", "MARGIN", "Loops", "drawn_page", "motion_page", "themes"]
 
 #: Gives the loop equations over a motion.
 Loops = Callable[[Motion], Sequence[MovingLoop]]
@@ -122,7 +121,6 @@ def drawn_page(
     light, dark = themes()
     return PageData(
         format=FORMAT,
-        version=page_version(),
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
@@ -148,12 +146,6 @@ def drawn_page(
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
         questions=tuple(questions_of(first)),
     )
-
-
-@lru_cache
-def page_version() -> str:
-    """The version of this package."""
-    return version("linkwork")
 
 
 def _motion(

@@ -270,7 +270,6 @@ class PageData:
     """The complete data of a page. ``view`` is left, bottom, right, top of the drawing."""
 
     format: int
-    version: str
     title: str
     length_unit: str
     derivative_unit: str
