@@ -68,7 +68,9 @@ class Monkey:
         quiet = f"() => {_of_page('quiet')}()"
         try:
             self.page.wait_for_function(quiet, timeout=_PATIENCE)
-        except TimeoutError:
+        except Exception as error:
+            if type(error).__name__ != "TimeoutError":  # that of Playwright
+                raise
             waiting = self.page.evaluate("() => [...window.seen.pending.values()]")
             raise AssertionError(f"not answered: {waiting}") from None
 

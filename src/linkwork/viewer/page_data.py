@@ -168,7 +168,7 @@ class RowEvidence:
 
     found: PackedColumn
     status: PackedColumn
-    status_texts: tuple[str, ...]
+    status_texts: tuple[str, ...]  # noqa: V107
     certification: PackedColumn
     certification_texts: tuple[str, ...]
     certified: PackedColumn
