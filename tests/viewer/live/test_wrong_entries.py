@@ -17,6 +17,7 @@ WRONG = {
     "a trace": '[trace]\npoints = 5\n[links]\ncrank = ["O2", "A"]',
     "a part": 'sliders = [1]\n[links]\ncrank = ["O2", "A"]',
     "a mass": '[masses]\ncrank = 1\n[links]\ncrank = ["O2", "A"]',
+    "a friction": '[friction]\nA = 1\n[links]\ncrank = ["O2", "A"]',
     "an angle": '[angles]\n"O2 A B" = []\n[links]\ncrank = ["O2", "A"]',
     "a name": 'purpose = {x = 1}\n[links]\ncrank = ["O2", "A"]',
     "a missing point": '[links]\ncrank = ["O2", "A", "Q"]',
