@@ -246,7 +246,7 @@ def _without(
     wrong = {problem.key[:2] for problem in problems}
     kept = {key: entry for key, entry in content.items() if key not in lost}
     for key in lost & content.keys():
-        if isinstance(content[key], dict):
+        if isinstance(content[key], dict) and (key,) not in wrong:
             named = content[key].items()
             kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
     return kept
