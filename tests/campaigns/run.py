@@ -21,6 +21,7 @@ from tests.campaigns.defects import defect_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
+from tests.campaigns.gradients import EVERY, gradient_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.links import link_campaign
@@ -35,8 +36,8 @@ from tests.campaigns.workbooks import workbook_campaign
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
-# every length of train is a part; tasks of poses are solved many at a time
-_OWN_PART = {"parallel-trains": 1, "poses": 1000}
+# every length of train and every mechanism is a part; tasks of poses are solved many at a time
+_OWN_PART = {"gradients": 1, "parallel-trains": 1, "poses": 1000}
 
 
 @dataclass(frozen=True)
@@ -128,6 +129,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "forces": (_forces, 2_000),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
+    "gradients": (gradient_campaign, EVERY),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -1,0 +1,244 @@
+"""Gradients of every quantity of the library by every number, against extrapolated differences.
+
+The reference differentiates solved positions: it shares formulas of quantities with the tape, but
+neither its rules of derivatives nor the implicit function theorem.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+import linkwork as lw
+from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.differentiated_forces import LoadedRows
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.errors import InputError, LinkworkError
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.varied_number import VariedNumber, with_numbers
+from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model, model_of
+from linkwork.motion.named_quantities import RowValues
+from linkwork.results.quantity import Kind
+from tests.design.extrapolated import own_position
+from tests.forces.random_loads import loaded
+from tests.library_mechanisms import driven_examples, read_example
+
+__all__ = ["EVERY", "gradient_campaign"]
+
+#: All driven mechanisms of the library, then the same with random loads.
+EVERY = 2 * len(driven_examples())
+
+_AGREE = 1e-9  # of the scale of a derivative
+_DECIDED = 1e-10  # the reference must be known ten times better
+_BINS = (1e-13, 1e-12, 1e-11, 1e-10, 1e-9)
+_RATES = ("", ".d1", ".d2", ".velocity", ".acceleration")
+_PLACES = (0.31, 0.73)  # of the table; the inputs lie between its rows
+_BETWEEN = 0.37
+_MOST_CONDITION = 1e4
+_POLE = 1e12  # of the size of a quantity: beyond, it is infinite but for rounding
+_STEP = 1.5e-3  # of the size of a number
+#: Multiples of the step; three rules of the order twelve, each twice as wide as the one before.
+_NODES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
+_RULES = ((1, 2, 3, 4, 6, 8), (2, 4, 6, 8, 12, 16), (4, 8, 12, 16, 24, 32))
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Well-conditioned rows of a mechanism, and the quantities to compare in them."""
+
+    model: Model
+    v: Array
+    wanted: tuple[str, ...]
+
+    def values(self, model: Model) -> Array:
+        """The quantities of another design at the positions next to these, (Q, B)."""
+        here = own_position(model, self.v)
+        rates = model.compiled.solver.rates(here, leading_input(model.rows)[1])
+        found = np.ones(len(here), dtype=bool)
+        rows = RowValues(model, here, rates.first, rates.second, found)
+        values = [model.quantities.find(name).values(rows, model.speed) for name in self.wanted]
+        return np.stack([np.broadcast_to(x, len(here)) for x in values])
+
+    def varied(self, number: VariedNumber, to: float) -> Array:
+        """The quantities with another value of one number."""
+        return self.values(model_of(with_numbers(self.model.description, {number: to})))
+
+
+def gradient_campaign(part: int) -> tuple[Counter[str], list[str]]:
+    """Counts and false claims of one mechanism."""
+    counts: Counter[str] = Counter()
+    names = driven_examples()
+    mechanism, forced = read_example(names[part % len(names)]), part >= len(names)
+    if forced:
+        if not isinstance(mechanism.description, Linkage):
+            return counts, []
+        mechanism = loaded(mechanism, seed=part)
+    with np.errstate(all="ignore"):
+        rows = _rows(mechanism, forced)
+        if rows is None:
+            counts["open: no well-conditioned row"] += 1
+            return counts, []
+        own, numbers = _gradients(rows)
+        counts["mechanisms"] += 1
+        counts["rows"] += len(rows.v)
+        counts["numbers"] += len(numbers)
+        counts["quantities"] += len(rows.wanted)
+        false = list(_compare(rows, numbers, own, counts))
+    return counts, [f"{mechanism.name}{' with loads' if forced else ''}: {x}" for x in false]
+
+
+def _rows(mechanism: lw.Mechanism, forced: bool) -> _Rows | None:
+    model = mechanism.model
+    motion = mechanism.sweep(certify=False)
+    inputs = np.stack([motion.inputs[x.name] for x in model.equations.inputs], axis=1)
+    table = np.hstack([motion.q, inputs * model.input_scale])
+    fine = np.flatnonzero(motion.found & (motion.condition <= _MOST_CONDITION))
+    if not len(fine):
+        return None
+    which = sorted({int(fine[int(place * len(fine))]) for place in _PLACES})
+    v = table[which]
+    known = len(model.equations.unknowns)
+    if len(table) > 1:
+        ahead = np.minimum(np.array(which) + 1, len(table) - 1)
+        v[:, known:] += _BETWEEN * (table[ahead] - v)[:, known:]
+    v = own_position(model, v)
+    v = v[np.isfinite(v).all(axis=1)]
+    return _Rows(model, v, tuple(_wanted(model, forced))) if len(v) else None
+
+
+def _wanted(model: Model, forced: bool) -> Iterator[str]:
+    """Every quantity with its rates; ``forced``: only those of forces."""
+    known, of_forces = model.quantities, set(model.quantities.names.further)
+    plain = [own.name for own in known.own.values() if not forced]
+    plain += [own.name for own in known.derived.values() if own.row in of_forces or not forced]
+    for name in plain:
+        for rate in _RATES:
+            try:
+                asked = known.find(f"{name}{rate}")
+                asked.check_rate(model.speed)
+            except LinkworkError:
+                continue
+            if asked.needs <= 2:
+                yield asked.name
+
+
+def _gradients(rows: _Rows) -> tuple[Array, tuple[VariedNumber, ...]]:
+    """The derivatives of the product, (Q, P, B): NaN for quantities whose are not known."""
+    model = rows.model
+    numbers, _ = chosen_numbers(model, None)
+    taped = LoadedRows(model, numbers, rows.v, 2)
+    fits = np.ones(len(numbers), dtype=bool)
+    for rates in taped.tape.forward(taped.misfits):
+        fits &= (np.abs(rates) < _AGREE).all(axis=1)
+    found = np.full((len(rows.wanted), len(numbers), len(rows.v)), np.nan)
+    for k, name in enumerate(rows.wanted):
+        try:
+            result = model.quantities.find(name).values(taped, taped.speed)
+        except InputError:
+            continue
+        found[k] = taped.tape.backward(result)
+    kept = tuple(q for q, fit in zip(numbers, fits, strict=True) if fit)
+    return found[:, fits], kept
+
+
+def _compare(
+    rows: _Rows, numbers: tuple[VariedNumber, ...], own: Array, counts: Counter[str]
+) -> Iterator[str]:
+    here = rows.values(rows.model)
+    sizes = [_size(rows.model, number) for number in numbers]
+    references, errors = np.full_like(own, np.nan), np.full_like(own, np.nan)
+    refused = np.zeros(len(numbers), dtype=bool)
+    for k, (number, size) in enumerate(zip(numbers, sizes, strict=True)):
+        try:
+            references[:, k], errors[:, k] = _reference(rows, number, size)
+        except InputError:
+            refused[k] = True  # dimensions of ground agree to first order only
+    scale = _scale(rows, here, own, references, np.array(sizes))
+    apart = np.abs(own - references) / scale
+    decided = errors <= _DECIDED * scale
+    infinite = np.abs(here) > _POLE * _floor(rows, here)[:, None]
+    poles = dict(zip(rows.wanted, infinite, strict=True))
+    for k, name in enumerate(rows.wanted):
+        infinite[k] |= poles.get(name.rpartition(".")[0], False)  # rates at a pole
+    for place in np.ndindex(own.shape):
+        q, k, _ = place
+        if refused[k]:
+            counts["open: changed designs are refused"] += 1
+        elif not np.isfinite(here[q, place[2]]):
+            counts["no value in the row"] += 1
+        elif infinite[q, place[2]]:
+            counts["open: infinite but for rounding"] += 1
+        elif not np.isfinite(own[place]):
+            counts["open: no derivative"] += 1
+        elif not decided[place]:
+            counts["open: reference"] += 1
+            counts["of these equal to 1e-6"] += int(apart[place] <= 1e-6)
+        else:
+            counts["compared"] += 1
+            worst = next((edge for edge in _BINS if apart[place] <= edge), None)
+            counts["differ more" if worst is None else f"equal to {worst:.0e}"] += 1
+            if worst is None:
+                yield (
+                    f"d {rows.wanted[q]} / d {numbers[k].name}: {own[place]!r}, "
+                    f"differences {references[place]!r}, apart {apart[place]:.1e}"
+                )
+
+
+def _reference(rows: _Rows, number: VariedNumber, size: float) -> tuple[Array, Array]:
+    """The derivative by differences, and how far the two rules that agree best lie apart."""
+    at, step = float(number.of(rows.model.description)), _STEP * size
+    slopes: dict[int, Array] = {}
+    for node in _NODES:
+        up, down = at + node * step, at - node * step
+        slopes[node] = (rows.varied(number, up) - rows.varied(number, down)) / (up - down)
+    small, middle, wide = (_extrapolated(slopes, rule) for rule in _RULES)
+    return middle, np.fmin(np.abs(small - middle), np.abs(wide - middle))
+
+
+def _extrapolated(slopes: Mapping[int, Array], rule: tuple[int, ...]) -> Array:
+    """Central differences at several steps as a polynomial of their squares, at 0."""
+    total: Array = np.zeros(())
+    for a in rule:
+        weight = np.prod([b * b / (b * b - a * a) for b in rule if b != a])
+        total = total + weight * slopes[a]
+    return total
+
+
+def _size(model: Model, number: VariedNumber) -> float:
+    """How far a number can change before the mechanism is another one."""
+    kinds = {x.name: x.kind for x in model.equations.variables}
+    unit = number.unit(model.description, kinds)
+    if number.table == "dimensions":
+        return abs(float(number.of(model.description))) or 1.0
+    if unit == model.description.angle.value:
+        return 1.0 / model.units.scale(Kind.ANGLE)
+    return model.equations.length_scale
+
+
+def _scale(rows: _Rows, here: Array, own: Array, references: Array, sizes: Array) -> Array:
+    """The largest change of each quantity by any number, or itself, per size of each number."""
+    changes = np.fmax(np.abs(own), np.where(np.isfinite(own), np.abs(references), 0.0))
+    changes = changes * sizes[:, None]
+    largest = np.nanmax(changes, axis=1, initial=0.0)
+    whole = np.fmax(np.fmax(largest, np.abs(here)), _floor(rows, here)[:, None])
+    return np.asarray(whole[:, None] / sizes[:, None])
+
+
+def _floor(rows: _Rows, here: Array) -> Array:
+    """The size of a quantity that vanishes: that of a link, a radian, the largest of its kind."""
+    model, found = rows.model, np.zeros(len(here))
+    asked = [model.quantities.find(name) for name in rows.wanted]
+    size = model.equations.length_scale
+    plain = {Kind.LENGTH: size, Kind.PER_LENGTH: 1.0 / size, Kind.NUMBER: 1.0}
+    for k, one in enumerate(asked):
+        same: BoolArray = np.array([other.unit == one.unit for other in asked])
+        rate = abs(model.speed or 1.0) ** one.rate.order if one.rate else 1.0
+        unit = 1.0 if one.rate else 1.0 / model.units.scale(one.own.kind)
+        alike = np.nanmax(np.abs(here[same]), initial=0.0)
+        found[k] = plain.get(one.own.kind, unit) * rate if one.own.kind in (
+            *plain, Kind.ANGLE) else alike  # fmt: skip
+    return found
