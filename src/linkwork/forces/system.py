@@ -39,7 +39,8 @@ class ForceValue:
     """A quantity of forces in B rows.
 
     ``undetermined``: where a self-stress changes it; ``lifted``: where a joint that can only push
-    would have to pull; ``slipping``: where a rolling wheel would need more adhesion.
+    would have to pull; ``slipping``: where a rolling wheel would need more adhesion. ``pin``: of a
+    force on a point this point, the link on which it acts and the one that exerts it.
     """
 
     kind: Kind
@@ -48,6 +49,7 @@ class ForceValue:
     undetermined: BoolArray
     lifted: BoolArray
     slipping: BoolArray
+    pin: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -79,7 +81,7 @@ class _Solution:
 
     def add(
         self, name: str, kind: Kind, about: str, value: Array,
-        undetermined: BoolArray | None = None, *, pushes: bool = False,
+        undetermined: BoolArray | None = None, *, pushes: bool = False, pin: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
         none = np.zeros(self.geometry.rows, dtype=bool)
         unknown = none if undetermined is None else undetermined & self.regular
@@ -88,7 +90,13 @@ class _Solution:
         # rounding of a contact without force is no lift-off
         lifted = value < -1e-9 * size if pushes else none
         self.values[name] = ForceValue(
-            kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted, slipping=none
+            kind=kind,
+            about=about,
+            value=value,
+            undetermined=unknown,
+            lifted=lifted,
+            slipping=none,
+            pin=pin,
         )
 
 
@@ -195,6 +203,7 @@ def _known_acts(bodies: FreeBodies) -> list[Act]:
 
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     """All readings, from the unknowns and what follows from them."""
+    # the same acts serve both ways
     acts = _known_acts(bodies)
     direction = _direction(found)
     forces = joint_forces(bodies, acts, direction)
@@ -207,7 +216,10 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     read_first_links(bodies, [*acts, *forces.acts()])
     for reading in bodies.readings:
         value, doubt = forces.read(reading)
-        found.add(reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes)
+        found.add(
+            reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes,
+            pin=reading.pin,
+        )  # fmt: skip
         if reading.adhesion is not None:
             normal, mu = reading.adhesion
             found.slips(reading.name, np.abs(value) > mu * np.abs(forces.unknowns[:, normal]))
@@ -298,7 +310,9 @@ def _add_totals(found: _Solution) -> None:
         for own in (own for name, own, _ in applied.forces if name == point):
             total += own
         for axis, part in (("x", total.real), ("y", total.imag)):
-            found.add(f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part)
+            about_load = f"loads and springs on {point}"
+            name = f"{point}.load.{axis}"
+            found.add(name, Kind.FORCE, about_load, part, pin=(point, "", ""))
     found.add("shaking.x", Kind.FORCE, "force on the ground", force.real)
     found.add("shaking.y", Kind.FORCE, "force on the ground", force.imag)
     found.add("shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment)
