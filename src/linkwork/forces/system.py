@@ -144,8 +144,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
         for name, kind, about, value in totals(geometry, applied):
-            point, load, _ = name.partition(".load.")
-            found.add(name, kind, about, value, pin=(point, "", "") if load else ())
+            point, pushed, _ = name.partition(".load.")
+            found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     status[lost] = ForceStatus.NO_POSITION.code

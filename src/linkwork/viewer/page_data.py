@@ -157,8 +157,8 @@ class ForceData:
 
 @dataclass(frozen=True, kw_only=True)
 class ReactionData:
-    """A force on a point, given by index, of the link ``by`` on the link ``on``, "" for loads; ``x``
-    and ``y`` name the columns of its components.
+    """A force on a point, given by index, of the link ``by`` on the link ``on``, "" for loads;
+    ``x`` and ``y`` name the columns of its components.
     """
 
     point: int
