@@ -51,6 +51,7 @@ def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
             needs=2,
             of=_Whole(force.kind),
             evaluate=_Evaluation(solved, name),
+            pin=force.pin,
         )
         for name, force in solve_forces(model, guess).values.items()
     )
