@@ -730,6 +730,17 @@ def test_a_file_that_is_no_mechanism_is_opened_and_mended(
     assert only(bench.handle(ask.SetText(text=FOUR_BAR)), tell.FileState).lacks == ()
 
 
+def test_entries_of_a_text_that_is_not_toml_cannot_be_edited(tmp_path: Path) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_text("format = 1\n[points]\nA = [0; 0]\n", encoding="utf-8")
+    bench = Workbench(MechanismFile(file), lw.loads)
+    point = ask.AddPoint(name="B", x=0.0, y=1.0)
+    for edit in (point, ask.Mirror(places={}), ask.Together(edits=(point,))):
+        (problem,) = only(bench.handle(edit), tell.ProblemsFound).problems
+        assert problem.message.startswith("is not TOML: unclosed array (column 7)")
+        assert problem.line == 3
+
+
 @pytest.mark.parametrize("content", [None, "", " \n"])
 def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path: Path) -> None:
     path = tmp_path / "new.toml"
