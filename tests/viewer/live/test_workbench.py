@@ -736,9 +736,8 @@ def test_entries_of_a_text_that_is_not_toml_cannot_be_edited(tmp_path: Path) -> 
     bench = Workbench(MechanismFile(file), lw.loads)
     point = ask.AddPoint(name="B", x=0.0, y=1.0)
     for edit in (point, ask.Mirror(places={}), ask.Together(edits=(point,))):
-        (problem,) = only(bench.handle(edit), tell.ProblemsFound).problems
-        assert problem.message.startswith("is not TOML: unclosed array (column 7)")
-        assert problem.line == 3
+        message = only(bench.handle(edit), tell.Refused).message
+        assert message.startswith("correct the text first: line 3 is not TOML: unclosed array")
 
 
 @pytest.mark.parametrize("content", [None, "", " \n"])

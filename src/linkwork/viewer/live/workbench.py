@@ -156,7 +156,12 @@ class Workbench:
     def _text_edits(self) -> TextEdits:
         """The text, for edits of its entries."""
         if not self.cycle.subject.readable:
-            data_of(self.text, self._file.name)  # raises an error at a text that is not TOML
+            try:
+                data_of(self.text, self._file.name)
+            except MechanismError as error:
+                (problem,) = error.problems
+                place = f"line {problem.line} " if problem.line else "it "
+                raise InputError(f"correct the text first: {place}{problem.message}") from None
         return TextEdits(self.text)
 
     def _after_refusal(self, request: ask.Request) -> Events:
