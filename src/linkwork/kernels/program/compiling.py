@@ -34,6 +34,8 @@ __all__ = [
     "carray",
     "compiled",
     "compiled_for",
+    "compiled_within",
+    "inlined",
     "memcpy",
     "named_tuple",
     "njit_no_refcount",
@@ -94,14 +96,24 @@ def compiled_for(signature: object) -> Compiling:
     """Compiled when the module is loaded, for arrays of the signature; ``None``: at the first
     call, for the arrays that are met.
     """
-    return _compiling(signature)
+    return _compiling(signature, no_cfunc_wrapper=True)
 
 
 compiled = compiled_for(None)
 
+# to compile the way in from Python takes longer than to compile most functions
+_WITHIN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: The same for functions that only compiled ones call.
+compiled_within: Compiling = _compiling(None, **_WITHIN)
+
 #: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.
-njit_no_refcount: Compiling = _compiling(None, _nrt=False)
+njit_no_refcount: Compiling = _compiling(None, _nrt=False, **_WITHIN)
+
+#: The same for functions that become part of those that call them, before these are compiled: for
+#: short ones, and those that would be compiled for every constant argument.
+inlined: Compiling = _compiling(None, _nrt=False, inline="always")
 say_that_it_compiles()
 
 
