@@ -13,7 +13,7 @@ from linkwork.kernels.march.step_trial import (
     Topology,
 )
 from linkwork.kernels.march.work_arrays import InputTable, MarchResult
-from linkwork.kernels.program.compiling import compiled_within, njit_no_refcount
+from linkwork.kernels.program.compiling import compiled, njit_no_refcount
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.program import ROLES
 
@@ -111,7 +111,7 @@ def _joins_start(
     return bool(w[topology.noted[GOOD], 0] > 0.5)
 
 
-@compiled_within
+@compiled
 def prove_rows(
     topology: Topology,
     w: Array,

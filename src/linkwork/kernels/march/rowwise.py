@@ -32,6 +32,7 @@ from linkwork.kernels.march.step_trial import (
 )
 from linkwork.kernels.march.work_arrays import INPUT_TABLE, MARCH_RESULT, InputTable, MarchResult
 from linkwork.kernels.program.compiling import (
+    compiled,
     compiled_for,
     compiled_within,
     njit_no_refcount,
@@ -142,7 +143,7 @@ def _find_nodes(
     return turn, known
 
 
-@njit_no_refcount
+@compiled
 def _is_smooth(
     topology: Topology,
     turn: int,

@@ -104,7 +104,7 @@ compiled = compiled_for(None)
 # to compile the way in from Python takes longer than to compile most functions
 _WITHIN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
-#: The same for functions that only compiled ones call.
+#: The same for functions that only compiled ones call: Python cannot.
 compiled_within: Compiling = _compiling(None, **_WITHIN)
 
 #: The same for functions that make no arrays: references to their arguments are not counted.
