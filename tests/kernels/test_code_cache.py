@@ -169,3 +169,10 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     mine = kernel()
     mine.choose_execution(Execution(positions=1 << 40))
     assert mine.trial == 0
+
+
+def test_equations_compiled_before_leave_values_as_they_were() -> None:
+    family = lw.example("four-bar").family({"O2 A": np.linspace(38.0, 42.0, 20)})
+    before = family.sweep(certify=False).rows.v
+    family.sweep(certify=False, specialised=True)
+    np.testing.assert_array_equal(family.sweep(certify=False).rows.v, before)
