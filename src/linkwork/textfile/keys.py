@@ -21,9 +21,12 @@ from linkwork.foundation.file_keys import (
     Speed,
     Table,
     Tables,
+    TablesOrFormula,
     Text,
 )
 from linkwork.foundation.units import FORCES, MASSES
+from linkwork.mechanism.friction import FRICTION_KEYS
+from linkwork.mechanism.input_law import LAW_KEYS
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
@@ -93,6 +96,11 @@ _MASSES = (
     Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
     Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
 )
+_FRICTION = Key(
+    "friction",
+    Named(Table(FRICTION_KEYS)),
+    "Friction of pins and parts: A = { mu = 0.1, radius = 5 }",
+)
 _QUESTIONS = Key(
     "questions",
     Tables(
@@ -129,18 +137,24 @@ _GUESS = Key(
     required=True,
 )
 _RANGE = (
-    Key("from", Number("driven"), "First input value"),
-    Key("to", Number("driven"), "Last input value"),
+    Key("from", Number("ranged"), "First input value; with a law the first time [s]"),
+    Key("to", Number("ranged"), "Last input value; with a law the last time [s]"),
     Key(
         "step",
-        Number("driven"),
-        "Step between input values; its sign points from the first value to the last",
+        Number("ranged"),
+        "Step between input values, or times; its sign points from the first to the last",
     ),
     Key(
         "speed",
         Speed(),
         'Speed of the input, "300 rpm"; a plain number is in file units per second',
     ),
+    Key(
+        "law",
+        TablesOrFormula(LAW_KEYS),
+        "How the input moves in time: segments from t = 0, or a formula of t",
+    ),
+    Key("begin", Number("driven"), "With segments: input value at t = 0; default: the sketch's"),
 )
 _DRIVES = (
     Key("link", Text(of="link"), "The link whose angle is driven"),
@@ -187,6 +201,7 @@ LINKAGE = Form(
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
         *_MASSES,
+        _FRICTION,
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,
