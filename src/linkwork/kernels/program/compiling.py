@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
+from functools import partial
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, Protocol, TypeVar, cast
 
 from linkwork.foundation.errors import MissingPackageError
 
@@ -80,10 +81,21 @@ class _SourcesCache(FunctionCache):
         file._source_stamp = (file._source_stamp, sources_digest())
 
 
+def _enter_nothing(*_: object) -> None:
+    """Enter no function among those that Python can call."""
+
+
+def _refuse(function: Any, *_: object) -> NoReturn:
+    raise TypeError(f"{function.__qualname__} is called by compiled functions only")
+
+
 def _compiling(signature: object, **options: object) -> Compiling:
     def compile_function(function: Any, /) -> Any:
         made = _numba.njit(nogil=True, **_OPTIONS, **options)(function)
         made._cache = _SourcesCache(function)
+        if "no_cpython_wrapper" in options:
+            # Python would call a function that is not there
+            made._insert, made._compile_for_args = _enter_nothing, partial(_refuse, function)
         if signature is not None:
             made.compile(signature)
             made.disable_compile()
