@@ -206,6 +206,7 @@ def test_numbers_near_the_largest_float_warn_nobody(
         ("cam-roller-follower", "base    = 40", "base = 1e200"),
         ("cam-swinging-follower", "base    = 35", "base = 1e200"),
         ("belt-drive", "radii   = [25, 50]", "radii = [25, 1e-200]"),
+        ("four-bar", 'speed = "25 rad/s"', "speed = 1e160"),
     ],
 )
 def test_parts_of_extreme_size_are_solved_or_refused(

@@ -173,7 +173,7 @@ def _form(rng: np.random.Generator, names: Sequence[str]) -> dict[str, Any]:
     return form
 
 
-_WRONG_TYPES = (
+_WRONG_TYPES: tuple[Any, ...] = (
     None, True, 3, -1, 1e308, float("nan"), "", [], {}, [[]], {"a": {}}, "x" * 2000, 10**30,
 )  # fmt: skip
 
