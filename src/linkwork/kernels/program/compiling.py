@@ -95,7 +95,8 @@ def _compiling(signature: object, **options: object) -> Compiling:
         made._cache = _SourcesCache(function)
         if "no_cpython_wrapper" in options:
             # Python would call a function that is not there
-            made._insert, made._compile_for_args = _enter_nothing, partial(_refuse, function)
+            made._insert = _enter_nothing  # noqa: V101  # Numba calls it
+            made._compile_for_args = partial(_refuse, function)  # noqa: V101  # Numba calls it
         if signature is not None:
             made.compile(signature)
             made.disable_compile()
