@@ -48,7 +48,7 @@ def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
         mean=turn.mean,
         energy=stored,
         # eq. (78)
-        inertia=stored / (fluctuation * speed**2) / unit,
+        inertia=stored / (fluctuation * (speed * speed)) / unit,
         slowest=float(angle[low] / scale),
         fastest=float(angle[high] / scale),
         units={

@@ -10,6 +10,7 @@ from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.motion.model import Model
+from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import Solved
@@ -30,7 +31,10 @@ def forces_of_position(model: Model, position: Position) -> Reactions:
 
 
 def forces_of_motion(model: Model, motion: Motion) -> Reactions:
-    """Efforts and reactions in all rows of a motion; raises like :func:`forces_of_position`."""
+    """Efforts and reactions in all rows of a motion of the mechanism; raises like
+    :func:`forces_of_position`, and for other motions.
+    """
+    check_own_motion(model, motion)
     return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),))
 
 

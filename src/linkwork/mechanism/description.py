@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Self
 
 import numpy as np
@@ -341,6 +341,7 @@ def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) 
         taken[folded] = f"[{key[0]}]" if len(key) == 2 else f"[[{key[0]}]]"
 
 
+@lru_cache(maxsize=1024)
 def _reads_as(name: str, folded: str) -> bool:
     """Whether formulas can use the name: they read ``iθ`` as i*θ, ``x²`` as x^2."""
     if folded in RESERVED:

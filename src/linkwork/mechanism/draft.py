@@ -147,6 +147,6 @@ def _spelled_input(which: Input, same: Callable[[str], str]) -> Input:
     changes = {
         field: same(name)
         for field in ("link", "joint", "slider", "cylinder", "relative_to")
-        if (name := getattr(which, field)) is not None
+        if (name := getattr(which, field)) is not None and same(name) != name
     }
-    return replace(which, **changes)
+    return replace(which, **changes) if changes else which

@@ -175,12 +175,13 @@ class BlockSolver:
             # eq. (11)
             x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
-            # eq. (12)
-            bend = system.second_directional_derivative(here, direction) + matrix_vector(
-                jacobian[:, :, n:], second[:, known]
-            )
-            first[:, block.unknowns] = x1
-            second[:, block.unknowns] = -matrix_vector(inverse, bend)
+            with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
+                # eq. (12)
+                bend = system.second_directional_derivative(here, direction) + matrix_vector(
+                    jacobian[:, :, n:], second[:, known]
+                )
+                x2 = -matrix_vector(inverse, bend)
+            first[:, block.unknowns], second[:, block.unknowns] = x1, x2
             own = _condition(system, jacobian[:, :, :n], inverse)
             condition = np.maximum(condition, own)
             # balancing the columns costs more than the rates themselves
