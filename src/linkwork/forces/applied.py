@@ -10,9 +10,10 @@ import numpy as np
 
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet, evaluate
-from linkwork.expression.tree import names_in
+from linkwork.expression.tree import Node, names_in, with_comparisons
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
@@ -45,6 +46,7 @@ class AppliedLoads:
 
     ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
     springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
+    ``switches``: comparisons in formulas that do not follow the rows, with their value 0 or 1.
     """
 
     geometry: Geometry
@@ -55,6 +57,7 @@ class AppliedLoads:
     kinetic: list[Array] = field(default_factory=list)
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
+    switches: Mapping[Node, float] = FrozenDict()
 
     def push(self, point: str, force: ComplexArray, link: str | None = None) -> None:
         """A force on a point, (B,), on the pin there or on one of its links."""
@@ -69,7 +72,12 @@ class AppliedLoads:
         geometry, model = self.geometry, self.geometry.model
         if not isinstance(number, str):
             return np.full(geometry.rows, float(model.description.numbers(number)))
-        tree = parse(number, comparing=True)
+        return self.formula(parse(number, comparing=True))
+
+    def formula(self, tree: Node) -> Array:
+        """The value of a formula in all rows, (B,)."""
+        geometry, model = self.geometry, self.geometry.model
+        tree = with_comparisons(tree, self.switches)
         names = {node.name: self._named(node.name) for node in names_in(tree)}
         with np.errstate(all="ignore"):
             known = {name: jet for name, jet in names.items() if jet is not None}
@@ -87,7 +95,9 @@ class AppliedLoads:
         if name in CONSTANTS:
             return None
         asked = model.motion_quantities.find(name)
-        return _constant(np.atleast_1d(asked.values(self.geometry.solved, model.speed)))
+        # without a speed there is a rate in simulations only
+        speed = np.nan if model.speed is None else model.speed
+        return _constant(np.atleast_1d(asked.values(self.geometry.solved, speed)))
 
     def weigh(self, loaded: LoadedBodies) -> None:
         """Add the weight and the inertia of all masses."""

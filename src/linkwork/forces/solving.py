@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from linkwork.forces.quantities import check_formulas
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
@@ -46,6 +47,7 @@ def _reactions(
             f"nothing loads {model.description.name}: add [masses], [[loads]] or a spring with a "
             "stiffness"
         )
+    check_formulas(model, at_rest=False)
     rows = solve_forces(model, solved)
     values = rows.values.items()
     return Reactions(

@@ -1,0 +1,79 @@
+"""Functions along a leg as Chebyshev polynomials on panels, refined until they are resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+
+__all__ = ["Panels", "fit_panels"]
+
+_NODES = 24
+_TAIL = 3  # coefficients that show whether a function is resolved
+_RESOLVED = 2e-14  # of the largest value on the leg
+_DEEPEST = 10  # halvings of a panel: what is then not resolved is rounding
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Panels:
+    """K functions on P panels of a leg.
+
+    Parameters
+    ----------
+    edges : (P + 1,)
+        Rising.
+    coefficients : (P, nodes, K)
+        Of Chebyshev polynomials on every panel.
+    """
+
+    edges: Array
+    coefficients: Array
+
+    def locate(self, at: Array) -> tuple[IndexArray, Array]:
+        """The panel of every place (B,), and its place there from -1 to 1; beyond at the ends."""
+        panel = np.clip(np.searchsorted(self.edges, at, side="right") - 1, 0, len(self.edges) - 2)
+        low, high = self.edges[panel], self.edges[panel + 1]
+        return panel, (2.0 * at - low - high) / (high - low)
+
+    def __call__(self, at: Array) -> Array:
+        """The functions at places (B,), (B, K)."""
+        panel, x = self.locate(at)
+        powers = np.polynomial.chebyshev.chebvander(x, _NODES - 1)
+        found: Array = np.einsum("bm,bmk->bk", powers, self.coefficients[panel])
+        return found
+
+
+def fit_panels(function: Callable[[Array], Array], low: float, high: float) -> Panels:
+    """Fit functions, (B,) → (B, K), from ``low`` to ``high``."""
+    x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+    fit = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, _NODES - 1))
+    done: list[tuple[float, float, Array]] = []
+    waiting = [(low, high)]
+    size: Array | None = None
+    for depth in range(_DEEPEST + 1):
+        places = np.concatenate(
+            [0.5 * (a + b) + 0.5 * (b - a) * x for a, b in waiting] or [np.zeros(0)]
+        )
+        values = function(places).reshape(len(waiting), _NODES, -1)
+        largest = np.abs(values).max(axis=(0, 1))
+        size = largest if size is None else np.maximum(size, largest)
+        coefficients = np.einsum("mn,pnk->pmk", fit, values)
+        tails = np.abs(coefficients[:, -_TAIL:]).max(axis=1)
+        rough = (tails > _RESOLVED * size).any(axis=1) & (depth < _DEEPEST)
+        parts: list[tuple[float, float]] = []
+        for (a, b), own, split in zip(waiting, coefficients, rough, strict=True):
+            if split:
+                parts += [(a, 0.5 * (a + b)), (0.5 * (a + b), b)]
+            else:
+                done.append((a, b, own))
+        waiting = parts
+        if not waiting:
+            break
+    done.sort(key=lambda panel: panel[0])
+    return Panels(
+        edges=np.array([low, *(b for _, b, _ in done)]),
+        coefficients=np.stack([own for _, _, own in done]),
+    )

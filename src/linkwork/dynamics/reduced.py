@@ -1,0 +1,229 @@
+"""The motion of a mechanism with one input as that of one number: A s̈ + ½A' ṡ² = Q.
+
+A and ½A' follow from the masses and Q from the loads, all as functions of the leader's place s on
+a leg of the curve of positions; they are tabulated, so that no mechanism is solved afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.dynamics.curve import Leg
+from linkwork.dynamics.panels import Panels, fit_panels
+from linkwork.expression.grammar import parse
+from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
+from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.free_bodies import FreeBodies
+from linkwork.forces.geometry import Geometry
+from linkwork.forces.part.load import apply_load
+from linkwork.forces.part.spring import write as write_spring
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.units import force_of_inertia
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.part.load import Load
+from linkwork.mechanism.part.spring import Spring
+from linkwork.motion.model import Model
+from linkwork.motion.named_quantities import RowValues
+from linkwork.results.quantity import Rate
+
+__all__ = ["Forcing", "ReducedLeg", "Reduction", "State"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """B states on a leg: rows with their rates in time, and the displacements by the leader."""
+
+    moving: Geometry
+    displaced: Geometry
+
+
+#: A further generalised force along the leader at B states, such as friction, (B,).
+Forcing = Callable[[State], Array]
+
+
+class Reduction:
+    """What is the same on all legs.
+
+    Parameters
+    ----------
+    model, named : Model
+        The mechanism, and the same over time.
+    forcing : sequence of Forcing
+        Further forces.
+    """
+
+    def __init__(self, model: Model, named: Model, forcing: Sequence[Forcing] = ()) -> None:
+        description = model.description
+        assert isinstance(description, LoadedBodies)
+        self.model, self.named, self.forcing = model, named, forcing
+        self.description = description
+        self.motor = description.inputs[0].motor
+        self.switches: Mapping[Node, float] = FrozenDict()
+
+    @cached_property
+    def loads(self) -> tuple[Load, ...]:
+        """All given loads."""
+        return tuple(getattr(self.description, "loads", ()))
+
+    @cached_property
+    def springs(self) -> tuple[Spring, ...]:
+        """All springs with a force."""
+        springs: tuple[Spring, ...] = getattr(self.description, "springs", ())
+        return tuple(spring for spring in springs if spring.pulls)
+
+    @cached_property
+    def formulas(self) -> tuple[Node, ...]:
+        """The formulas of all loads."""
+        numbers = (number for load in self.loads for _, number in load.formulas)
+        return tuple(parse(each, comparing=True) for each in numbers if isinstance(each, str))
+
+    @cached_property
+    def comparisons(self) -> tuple[Binary, ...]:
+        """What can switch loads."""
+        found = (each for formula in self.formulas for each in comparisons_in(formula))
+        return tuple(dict.fromkeys(found))
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """The names in formulas that are no dimensions."""
+        known = self.description.numbers.known
+        used = {node.name for formula in self.formulas for node in names_in(formula)}
+        return frozenset(used - set(known))
+
+    @cached_property
+    def of_position(self) -> bool:
+        """Whether all loads follow from the position alone, smoothly."""
+        timed = "t" in self.names or any(Rate.split(name)[1] for name in self.names)
+        damped = any(spring.damping != 0 for spring in self.springs)
+        switched = bool(self.comparisons)
+        driven = self.motor is not None and not self.motor.constant
+        return not (timed or damped or switched or driven or self.forcing)
+
+    @cached_property
+    def inertia(self) -> float:
+        """The moment of inertia, or mass, on the input, in the unit of force."""
+        given = self.description.inputs[0].inertia
+        if given is None:
+            return 0.0
+        own = self.description
+        return own.numbers(given) * force_of_inertia(own.mass, own.length, own.force)
+
+    def motor_torque(self, rate: Array) -> Array:
+        """The motor's torque at rates of the input, [rad/s] or [length/s], (B,)."""
+        own, scale = self.description, self.model.input_scale[0]
+        assert self.motor is not None
+        kind = "link" if self.model.equations.inputs[0].kind == "angle" else "slider"
+        return self.motor.torque(rate / scale, kind, own.numbers, own.length)
+
+    def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
+        """Rows (B, N) with derivatives by time, or by a leader."""
+        one = np.ones(len(v))
+        columns = [np.column_stack([v, t]), np.column_stack([first, one])]
+        columns.append(np.column_stack([second, 0.0 * one]))
+        rows = RowValues(self.named, *columns, np.ones(len(v), dtype=bool))
+        return Geometry(self.named, rows)
+
+    def loaded(self, moving: Geometry) -> AppliedLoads:
+        """All loads but weights, which the masses bring."""
+        applied = AppliedLoads(moving, 1.0, switches=self.switches)
+        for load in self.loads:
+            apply_load(load, applied)
+        if self.springs:
+            assert isinstance(self.description, Linkage)
+            bodies = FreeBodies(self.description, moving, applied)
+            for spring in self.springs:
+                write_spring(spring, bodies)
+        return applied
+
+
+class ReducedLeg:
+    """A leg with its tables."""
+
+    def __init__(self, reduction: Reduction, leg: Leg) -> None:
+        self.reduction, self.leg = reduction, leg
+        low, high = sorted((leg.begin, leg.end))
+        self.variables = reduction.model.compiled.solver.variables
+        self.table: Panels = fit_panels(self._tabulated, low, high)
+
+    def _tabulated(self, s: Array) -> Array:
+        """A, ½A', Q of weights, Q of loads of position, variables, first derivatives."""
+        order = np.argsort(s, kind="stable")
+        rows = self.leg.rows(s[order], False).take(np.argsort(order, kind="stable"))
+        displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(len(s)))
+        applied = AppliedLoads(displaced, 1.0)
+        zero = np.zeros(len(s))
+        with np.errstate(all="ignore"):
+            applied.weigh(self.reduction.description)
+            mass = 2.0 * sum(applied.kinetic, zero)
+            bend = sum((body.kinetic_rate for body in applied.masses), zero)
+            weight = sum((body.weight_rate for body in applied.masses), zero)
+        lead = self.reduction.model.compiled.solver.unknowns
+        q1, q2 = rows.first[:, lead], rows.second[:, lead]
+        mass = mass + self.reduction.inertia * q1**2
+        bend = bend + self.reduction.inertia * q1 * q2
+        load = zero
+        if self.reduction.of_position:
+            still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
+            load = self._force(State(moving=still, displaced=displaced), q1, zero)
+        return np.column_stack([mass, bend, weight, load, rows.v, rows.first])
+
+    def acceleration(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
+        """s̈ at B states; ``gain`` (N,): what variables have gained in laps."""
+        row = self.table(s)
+        force = row[:, 2] + row[:, 3]
+        if not self.reduction.of_position:
+            force = force + self.generalised_force(s, speed, t, gain, row)
+        with np.errstate(all="ignore"):
+            # eq. (92)
+            found: Array = (force - row[:, 1] * speed**2) / row[:, 0]
+        return found
+
+    def state(
+        self, s: Array, speed: Array, t: Array, gain: Array, row: Array | None = None
+    ) -> State:
+        """The rows of B states."""
+        row = self.table(s) if row is None else row
+        v, first = row[:, 4 : 4 + self.variables] + gain, row[:, 4 + self.variables :]
+        unknown = np.full_like(v, np.nan)
+        moving = self.reduction.geometry(v, first * speed[:, None], unknown, t)
+        displaced = self.reduction.geometry(v, first, unknown, t)
+        return State(moving=moving, displaced=displaced)
+
+    def generalised_force(
+        self, s: Array, speed: Array, t: Array, gain: Array, row: Array
+    ) -> Array:
+        """Q of all loads but weights, (B,)."""
+        lead = 4 + self.variables + self.reduction.model.compiled.solver.unknowns
+        return self._force(self.state(s, speed, t, gain, row), row[:, lead], speed)
+
+    def _force(self, state: State, q1: Array, speed: Array) -> Array:
+        applied = self.reduction.loaded(state.moving)
+        total = np.zeros(len(q1))
+        for point, force, _ in applied.forces:
+            total = total + (force.conj() * state.displaced.place(point).d1).real
+        for link, torque in applied.torques:
+            total = total + torque * state.displaced.angle(link).d1
+        if self.reduction.motor is not None:
+            total = total + self.reduction.motor_torque(q1 * speed) * q1
+        for forcing in self.reduction.forcing:
+            total = total + forcing(state)
+        found: Array = total
+        return found
+
+    def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
+        """Left minus right side of all comparisons, (B, comparisons)."""
+        moving = self.state(s, speed, t, gain).moving
+        applied = AppliedLoads(moving, 1.0, switches=self.reduction.switches)
+        return np.stack(
+            [
+                applied.formula(each.left) - applied.formula(each.right)
+                for each in self.reduction.comparisons
+            ],
+            axis=1,
+        )
