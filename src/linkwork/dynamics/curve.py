@@ -7,11 +7,12 @@ leads (see :mod:`linkwork.numerics.continuation.curve_tracing`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
+from linkwork.dynamics.straight_turn import turn_of
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.policy import ChangePointPolicy
@@ -20,7 +21,6 @@ from linkwork.foundation.status import Status
 from linkwork.motion.curve_branches import TracedCurve, trace_with_proof
 from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
-from linkwork.motion.sweeping import rows_at_inputs
 from linkwork.numerics.continuation.branch_tracking import Track, rows_on_track
 from linkwork.numerics.continuation.curve_tracing import Leg as TracedLeg
 from linkwork.numerics.continuation.local_parametrization import whole_turns
@@ -68,12 +68,16 @@ def curve_of(model: Model, start: Array, policy: ChangePointPolicy, certify: boo
     drive = Drive.through(model, start[model.compiled.solver.unknowns :], np.ones(1), 0)
     if not model.equations.unknowns:
         return _without_unknowns(model, drive, start)
+    if policy is ChangePointPolicy.STRAIGHT and drive.free:
+        turn = turn_of(drive.solver, start)
+        if turn is not None:
+            leg = Leg(lead=len(start) - 1, begin=turn.begin, end=turn.end, rows=turn.rows)
+            return PositionCurve(
+                legs=(leg,), home=0, value=turn.begin, closed=True, gain=turn.gain(drive.leads)
+            )
     ways = [trace_with_proof(drive.leads, start, 1.0, certify)]
     if not ways[0].curve.end.closed:
         ways.append(trace_with_proof(drive.leads, start, -1.0, certify))
-    stuck = any(way.curve.crossing is not None or not way.curve.legs for way in ways)
-    if stuck and policy is ChangePointPolicy.STRAIGHT and drive.free:
-        return _led_by_input(model, start, policy)
     forward = [_leg(way_leg, ways[0]) for way_leg in ways[0].curve.legs]
     if ways[0].curve.end.closed:
         last = ways[0].curve.legs[-1]
@@ -128,27 +132,6 @@ def _leg(leg: TracedLeg, way: TracedCurve) -> Leg:
         )
 
     return Leg(lead=led.lead, begin=nodes[0].t, end=nodes[-1].t, rows=rows)
-
-
-def _led_by_input(model: Model, start: Array, policy: ChangePointPolicy) -> PositionCurve:
-    """One turn of the input, straight across change points."""
-    lead = model.compiled.solver.unknowns
-    value = float(start[lead])
-    model = model.from_start_of(_started(model, start))
-
-    def rows(values: Array, certify: bool) -> SolvedRows:
-        order = np.argsort(values, kind="stable")
-        found = rows_at_inputs(model, values[order], policy, certify)
-        return found.take(np.argsort(order, kind="stable"))
-
-    leg = Leg(lead=lead, begin=value, end=value + FULL_TURN, rows=rows)
-    around = rows(np.array([value, value + FULL_TURN]), False).v
-    gain = np.where(model.compiled.table.is_angle, np.round((around[1] - around[0]) / FULL_TURN), 0)
-    return PositionCurve(legs=(leg,), home=0, value=value, closed=True, gain=FULL_TURN * gain)
-
-
-def _started(model: Model, start: Array) -> Model:
-    return replace(model, equations=replace(model.equations, start=start))
 
 
 def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve:

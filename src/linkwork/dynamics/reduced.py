@@ -149,10 +149,18 @@ class ReducedLeg:
         self.reduction, self.leg = reduction, leg
         low, high = sorted((leg.begin, leg.end))
         self.variables = reduction.model.compiled.solver.variables
-        self.table: Panels = fit_panels(self._tabulated, low, high)
+        scale = reduction.model.compiled.table.variable_scale
+        groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
+        groups = np.concatenate([groups, np.full(self.variables, groups[-1] + 1)])
+        least = np.concatenate([np.zeros(3), scale, np.zeros(self.variables)])
+        whole = fit_panels(self._tabulated, low, high, groups, least)
+        #: A, Q of weights, Q of loads of position, A'.
+        self.numbers: Panels = whole.part(slice(0, 3)).with_slope()
+        #: Variables and their first derivatives.
+        self.table: Panels = whole.part(slice(3, None))
 
     def _tabulated(self, s: Array) -> Array:
-        """A, ½A', Q of weights, Q of loads of position, variables, first derivatives."""
+        """A, Q of weights, Q of loads of position, variables, first derivatives."""
         order = np.argsort(s, kind="stable")
         rows = self.leg.rows(s[order], False).take(np.argsort(order, kind="stable"))
         displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(len(s)))
@@ -161,46 +169,47 @@ class ReducedLeg:
         with np.errstate(all="ignore"):
             applied.weigh(self.reduction.description)
             mass = 2.0 * sum(applied.kinetic, zero)
-            bend = sum((body.kinetic_rate for body in applied.masses), zero)
             weight = sum((body.weight_rate for body in applied.masses), zero)
         lead = self.reduction.model.compiled.solver.unknowns
-        q1, q2 = rows.first[:, lead], rows.second[:, lead]
+        q1 = rows.first[:, lead]
         mass = mass + self.reduction.inertia * q1**2
-        bend = bend + self.reduction.inertia * q1 * q2
         load = zero
         if self.reduction.of_position:
             still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
             load = self._force(State(moving=still, displaced=displaced), q1, zero)
-        return np.column_stack([mass, bend, weight, load, rows.v, rows.first])
+        return np.column_stack([mass, weight, load, rows.v, rows.first])
 
     def acceleration(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """s̈ at B states; ``gain`` (N,): what variables have gained in laps."""
-        row = self.table(s)
-        force = row[:, 2] + row[:, 3]
+        mass, weight, load, slope = self.numbers(s).T
+        force = weight + load
         if not self.reduction.of_position:
-            force = force + self.generalised_force(s, speed, t, gain, row)
+            force = force + self.generalised_force(s, speed, t, gain)
         with np.errstate(all="ignore"):
-            # eq. (92)
-            found: Array = (force - row[:, 1] * speed**2) / row[:, 0]
+            # eq. (92): A' is the derivative of the polynomial for A, so that energy is kept
+            found: Array = (force - 0.5 * slope * speed**2) / mass
         return found
 
-    def state(
-        self, s: Array, speed: Array, t: Array, gain: Array, row: Array | None = None
-    ) -> State:
+    def state(self, s: Array, speed: Array, t: Array, gain: Array) -> State:
         """The rows of B states."""
-        row = self.table(s) if row is None else row
-        v, first = row[:, 4 : 4 + self.variables] + gain, row[:, 4 + self.variables :]
+        row = self.table(s)
+        v, first = row[:, : self.variables] + gain, row[:, self.variables :]
         unknown = np.full_like(v, np.nan)
         moving = self.reduction.geometry(v, first * speed[:, None], unknown, t)
         displaced = self.reduction.geometry(v, first, unknown, t)
         return State(moving=moving, displaced=displaced)
 
-    def generalised_force(
-        self, s: Array, speed: Array, t: Array, gain: Array, row: Array
-    ) -> Array:
+    def generalised_force(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """Q of all loads but weights, (B,)."""
-        lead = 4 + self.variables + self.reduction.model.compiled.solver.unknowns
-        return self._force(self.state(s, speed, t, gain, row), row[:, lead], speed)
+        return self._force(self.state(s, speed, t, gain), self.input_slope(s), speed)
+
+    def input_slope(self, s: Array) -> Array:
+        """The derivative of the input by the leader, (B,)."""
+        return self.slopes(s)[:, self.reduction.model.compiled.solver.unknowns]
+
+    def slopes(self, s: Array) -> Array:
+        """The derivatives of all variables by the leader, (B, N)."""
+        return self.table(s)[:, self.variables :]
 
     def _force(self, state: State, q1: Array, speed: Array) -> Array:
         applied = self.reduction.loaded(state.moving)

@@ -87,11 +87,14 @@ class Travel:
 
     def begin(self, input_speed: float) -> None:
         """Set the speed of the input at the start, [rad/s] or [length/s]."""
-        row = self.leg.table(np.array([self.s]))[0]
-        slope = row[4 + self.leg.variables + self.reduction.model.compiled.solver.unknowns]
-        self.speed = input_speed / slope
+        self.speed = input_speed / float(self.leg.input_slope(np.array([self.s]))[0])
         self._switch()
         self._record(0.0, self.s, self.speed, self._now())
+        edges = self.leg.table.edges
+        way = self.speed or self._now()
+        # a start at the end of a leg that moves away from it is on the leg before
+        if (self.s <= edges[0] and way < 0.0) or (self.s >= edges[-1] and way > 0.0):
+            self._leave(0 if way < 0.0 else 1)
 
     def _now(self) -> float:
         here = (np.array([x]) for x in (self.s, self.speed, self.t))
@@ -230,10 +233,8 @@ class Travel:
         self.number = number
         new = self.leg.leg
         self.s = new.begin if ahead else new.end
-        row = self.leg.table(np.array([self.s]))[0]
-        slope = float(row[4 + self.leg.variables + old])
         if old != new.lead:
-            self.speed /= slope
+            self.speed /= float(self.leg.slopes(np.array([self.s]))[0, old])
 
     def _note_lap(self, ahead: bool) -> None:
         """Finish at once if a lap has ended as it began and all further ones are the same."""

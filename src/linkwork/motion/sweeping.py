@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
@@ -38,7 +38,7 @@ from linkwork.numerics.rows import SolvedRows
 from linkwork.results.limit import LimitKind
 from linkwork.results.motion import Limit, Motion, OutputLimit
 
-__all__ = ["rows_at_inputs", "sweep", "sweep_rows"]
+__all__ = ["sweep", "sweep_rows"]
 
 _MOST_CROSSINGS = 64
 _ROUNDING = 1e-14  # of whole turns, which are no floats
@@ -119,23 +119,6 @@ def sweep_rows(model: Model, *, certify: bool = True) -> tuple[SolvedRows, tuple
     rows, added = work.tables[0].finish()
     asked = rows.take(np.flatnonzero(~added))
     return fitting(model, asked), work.branches[0].found.ends
-
-
-def rows_at_inputs(
-    model: Model, values: Array, policy: ChangePointPolicy, certify: bool
-) -> SolvedRows:
-    """The rows of the start's branch at rising values (B,) of the only input, internal units."""
-    start = first_position(model, model.start_inputs, NewtonOptions())
-    drive = Drive.through(model, model.start_inputs, np.ones(1), 0)
-    inputs = values[:, None]
-    asked = Asked(t=values, inputs=inputs, in_file_units=inputs / model.input_scale)
-    entry = enter_path(drive, start, values, certify)
-    assert entry is not None
-    low, high = float(values.min()), float(values.max())
-    work = _Sweep(drive, certify, Report(None, entry[0].t, low, high))
-    work.run(*entry, asked, policy)
-    rows, added = work.tables[0].finish()
-    return rows.take(np.flatnonzero(~added))
 
 
 def _begin_sweep(
