@@ -62,6 +62,11 @@ class Geometry:
             return leading_input(self.model.rows)[1]
         return np.stack([self.own(each.name).d1 for each in self.driven.equations.inputs])
 
+    def by_leading(self, each: Array) -> Array:
+        """The sum of amounts of all inputs (p, B), per unit of the leading one or of time, (B,)."""
+        found: Array = (self.input_rates.T * each.T).sum(axis=-1)
+        return found
+
     @property
     def input_bends(self) -> Array:
         """The acceleration of every input where time drives the mechanism, (p, B)."""
@@ -172,6 +177,23 @@ class Geometry:
     def length(self) -> float:
         """The longest link."""
         return self.model.equations.length_scale
+
+    @cached_property
+    def fastest(self) -> Array:
+        """The largest rate of links [rad] and points [longest links] in every row, (B,)."""
+        most = np.zeros(self.rows)
+        for link in self.links:
+            most = np.fmax(most, np.abs(self.angle(link).d1))
+        for point in self.points:
+            most = np.fmax(most, np.abs(self.place(point).d1) / self.length)
+        return most
+
+    @property
+    def table_direction(self) -> float:
+        """1 or -1: which way the table of the leading input goes; 1 for a table of one row."""
+        names = self.model.motion_quantities.names
+        values = self.model.rows[:, list(names.inputs).index(names.lead)]
+        return -1.0 if values[-1] < values[0] else 1.0
 
     @property
     def lead(self) -> Array:
