@@ -76,6 +76,7 @@ if TYPE_CHECKING:
         Configurations as Configurations,
         PathCount as PathCount,
     )
+    from linkwork.results.equilibrium import Equilibrium as Equilibrium
     from linkwork.results.failure import (
         Failure as Failure,
         Remedy as Remedy,

@@ -37,6 +37,7 @@ _COMMANDS = (
     "compile",
     "examples",
     "schema",
+    "simulate",
 )
 
 _WRONG_INPUT = 2

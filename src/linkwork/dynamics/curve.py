@@ -115,9 +115,7 @@ def _leg(leg: TracedLeg, way: TracedCurve) -> Leg:
         columns = {name: led.whole(getattr(found, name)) for name in ("v", "first", "second")}
         if certify and led.provable:
             proof = prove(led.solver, found.v, 4.0 * EPSILON * np.abs(found.v[:, -1:]))
-            standing = (
-                Certification.CERTIFIED if way.certified else Certification.MOTION_NOT_PROVED
-            )
+            standing = Certification.CERTIFIED if way.certified else Certification.MOTION_NOT_PROVED
             code = np.where(
                 proof.holds, standing.code, Certification.POSITION_NOT_PROVED.code
             ).astype(np.int8)
@@ -159,6 +157,4 @@ def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve
     leg = Leg(lead=0, begin=value - reach, end=value + reach, rows=rows)
     gain = np.full(1, FULL_TURN if angle else 0.0)
     why = "the input has left its table of positions"
-    return PositionCurve(
-        legs=(leg,), home=0, value=value, closed=angle, gain=gain, ends=(why, why)
-    )
+    return PositionCurve(legs=(leg,), home=0, value=value, closed=angle, gain=gain, ends=(why, why))

@@ -203,6 +203,8 @@ def _motion(travel: Travel, certify: bool) -> Motion:
         rows = SolvedRows.concatenate([rows, blank.with_columns(v=blank.v)])
     added = np.array([*(bool(sample.event) for sample in samples), *([False] * len(missing))])
     told = f"simulated to t = {travel.t:.10g} s"
+    if travel.held is not None:
+        told += f"; at rest since t = {travel.held:.10g} s, held by a load that switches there"
     if travel.ended:
         told = f"the motion ends at t = {travel.t:.10g} s: {travel.ended}"
     return motion_of_rows(named, rows, told, added)
@@ -237,7 +239,5 @@ def _rows(travel: Travel, samples: Sequence[Sample], certify: bool) -> SolvedRow
         "inputs", "v", "first", "second", "status", "iterations", "residual", "condition",
         "certification", "radius", "uniqueness_radius", "branch", "limit",
     }  # fmt: skip
-    kept = [
-        SolvedRows(**{name: part.columns[name] for name in names & wanted}) for part in parts
-    ]
+    kept = [SolvedRows(**{name: part.columns[name] for name in names & wanted}) for part in parts]
     return SolvedRows.concatenate(kept).take(np.argsort(order, kind="stable"))

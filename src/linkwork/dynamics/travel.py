@@ -25,6 +25,7 @@ _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
 _RESTS = 1e-8  # of the whole time: a bounce that lasts no longer is rest
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
+_AT_REST = 1e-5  # of the fastest speed so far
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,7 @@ class Travel:
     """A motion under way.
 
     ``times`` (B,): those asked for, rising. ``samples``: the states found so far. ``ended``: why
-    the motion ended early, "" if it did not.
+    the motion ended early, "" if it did not. ``held``: since when loads that switch keep it at rest.
     """
 
     curve: PositionCurve
@@ -60,6 +61,7 @@ class Travel:
     ended: str = ""
     t: float = 0.0
     lap: int = 0
+    held: float | None = None
 
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
@@ -214,8 +216,18 @@ class Travel:
 
     def _check_chatter(self) -> None:
         self.recent = [t for t in self.recent if t > self.t - _CHATTER * self.until] + [self.t]
-        if len(self.recent) > _MOST_EVENTS:
-            self.ended = "a comparison in a load switches without end there"
+        if len(self.recent) <= _MOST_EVENTS:
+            return
+        self.ended = "a comparison in a load switches without end there"
+        fastest = max(abs(sample.speed) for sample in self.samples)
+        if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
+            # pushed back as soon as it moves either way: it stays
+            self.ended, self.held = "", self.recent[0]
+            chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
+            self.samples = [k for k in self.samples if k not in chatter]
+            for t in self.times[self.taken :]:
+                self._record(float(t), self.s, 0.0, 0.0)
+            self.taken, self.t = len(self.times), self.until
 
     def _leave(self, side: int) -> None:
         """Onto the next leg, where another variable may lead."""

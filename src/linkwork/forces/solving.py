@@ -6,10 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from linkwork.equations.input_motion import TIME
 from linkwork.forces.quantities import check_formulas
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -32,6 +34,8 @@ def forces_of_position(model: Model, position: Position) -> Reactions:
 
 def forces_of_motion(model: Model, motion: Motion) -> Reactions:
     """Efforts and reactions in all rows of a motion; raises like :func:`forces_of_position`."""
+    if model.untimed is None and TIME in motion.inputs:  # a simulated motion
+        model = model_in_time(model)
     return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),))
 
 
