@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import click
 
 from linkwork.cli import picture
@@ -83,8 +85,10 @@ def simulate(
         if until is not None or csv is not None or plot is not None:
             raise InputError("--equilibria lists positions of rest: leave out --until and files")
         found = mechanism.equilibria(start, change_points=change_points)
-        lines = equilibria_lines(mechanism, found)
-        print_json([vars(each) for each in found]) if as_json else print_lines(lines)
+        if as_json:
+            print_json({"equilibria": [asdict(each) for each in found]})
+        else:
+            print_lines(equilibria_lines(mechanism, found))
         return
     if until is None:
         raise InputError("--until is missing: the last time in seconds")

@@ -10,18 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import AnyArray, Array
 
 __all__ = ["Step", "try_step"]
 
 _POINTS = 12
 _MOST_ROUNDS = 12
 _SETTLED = 1e-15  # of the accelerations: a change that is rounding
-_TOLERANCE = 1e-12  # of the speed: error of the polynomial between the ends of a step
+_TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
 
 _x, _w = legendre.leggauss(_POINTS)
@@ -29,7 +30,7 @@ _FIT = np.linalg.inv(legendre.legvander(_x, _POINTS - 1))
 _C = 0.5 * (_x + 1.0)
 
 
-def _integrals(once: Array) -> Array:
+def _integrals(once: AnyArray) -> Array:
     """The matrix from values to the coefficients of an integral from 0, for t from 0 to 1."""
     return np.stack([0.5 * legendre.legint(column, lbnd=-1) for column in once.T], axis=1)
 
@@ -50,14 +51,21 @@ class Step:
     speed: float
     accelerations: Array
 
+    @cached_property
+    def _coefficients(self) -> Array:
+        """Of the place beyond that at constant speed, the gained speed, the acceleration."""
+        found = np.zeros((_POINTS + 2, 3))
+        found[:, 0] = self.h**2 * (_PLACE @ self.accelerations)
+        found[:-1, 1] = self.h * (_SPEED @ self.accelerations)
+        found[:-2, 2] = _FIT @ self.accelerations
+        return found
+
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at times (B,) within the step."""
         x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
-        own = 0.5 * (x + 1.0) * self.h
-        gained = legendre.legval(x, _SPEED @ self.accelerations)
-        moved = legendre.legval(x, _PLACE @ self.accelerations)
-        place = self.s + own * self.speed + self.h**2 * moved
-        return place, self.speed + self.h * gained, legendre.legval(x, _FIT @ self.accelerations)
+        moved, gained, bend = (legendre.legvander(x, _POINTS + 1) @ self._coefficients).T
+        place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
+        return place, self.speed + gained, bend
 
 
 def try_step(

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.angles import FULL_TURN
 from linkwork.dynamics.straight_turn import turn_of
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.policy import ChangePointPolicy
@@ -30,7 +30,7 @@ from linkwork.numerics.rows import SolvedRows
 __all__ = ["Leg", "PositionCurve", "curve_of"]
 
 _GAIN = 1e-9  # of the scale: a length that grew by more in a lap has really grown
-_LENGTHS = 10.0  # longest links that an input length without unknowns may move
+_SPANS = 2.0  # of its table: how far an input length without unknowns may move
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,7 +136,8 @@ def _without_unknowns(model: Model, drive: Drive, start: Array) -> PositionCurve
     """A driven link or slider alone: the input is the position."""
     value = float(start[0])
     angle = bool(model.compiled.table.is_angle[0])
-    reach = 0.5 * FULL_TURN if angle else _LENGTHS * model.equations.length_scale
+    span = float(np.ptp(np.append(model.rows, value)))
+    reach = 0.5 * FULL_TURN if angle else _SPANS * (span or model.equations.length_scale)
 
     def rows(values: Array, certify: bool) -> SolvedRows:
         v = np.asarray(values, dtype=float)[:, None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,9 +19,10 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["equilibria"]
 
-_LOOKS = 64  # places of a panel at which the sign of the net force is compared
+_LOOKS = 256  # places of a panel at which the sign of the net force is compared
 _ROUNDS = 12
 _SLOPE = 1e-4  # of a panel: differences for the stiffness
+_SAME_PLACE = 1e-9  # of a turn, or of the longest link
 _BALANCED = 1e-9  # of the largest net force: a zero, not a jump of a comparison
 
 
@@ -32,8 +34,8 @@ def equilibria(
 ) -> tuple[Equilibrium, ...]:
     """All equilibria on the circuit of the start, in its order.
 
-    The net force along the motion is zero there, at rest and at t = 0. Equilibria between two of 64
-    places of a panel that cancel each other are not seen.
+    The net force along the motion is zero there, at rest and at t = 0. Two equilibria between two
+    of 256 places of a panel are not seen.
 
     Raises
     ------
@@ -61,9 +63,7 @@ def _force(leg: ReducedLeg, s: Array) -> Array:
 
 def _zeros(leg: ReducedLeg) -> Iterator[float]:
     edges = leg.table.edges
-    looks = np.concatenate(
-        [np.linspace(a, b, _LOOKS + 1)[:-1] for a, b in zip(edges[:-1], edges[1:], strict=True)]
-    )
+    looks = np.concatenate([np.linspace(a, b, _LOOKS + 1)[:-1] for a, b in pairwise(edges)])
     looks = np.append(looks, edges[-1])
     force = _force(leg, looks)
     largest = float(np.abs(force).max())
@@ -111,10 +111,8 @@ def _same(model: Model, one: Equilibrium, other: Equilibrium) -> bool:
     size = model.equations.length_scale
     for variable in model.equations.variables:
         gap = one.values[variable.name] - other.values[variable.name]
-        if variable.kind == "angle":
-            gap = abs(math.remainder(gap, turn)) / turn
-        else:
-            gap = abs(gap) / size
-        if gap > 1e-9:
+        angle = variable.kind == "angle"
+        gap = math.remainder(gap, turn) / turn if angle else gap / size
+        if abs(gap) > _SAME_PLACE:
             return False
     return True

@@ -42,7 +42,11 @@ class Panels:
     def __call__(self, at: Array) -> Array:
         """The functions at places (B,), (B, K)."""
         panel, x = self.locate(at)
-        powers = np.polynomial.chebyshev.chebvander(x, self.coefficients.shape[1] - 1)
+        count = self.coefficients.shape[1]
+        powers = np.cos(np.arccos(np.clip(x, -1.0, 1.0))[:, None] * np.arange(count))
+        beyond = np.abs(x) > 1.0
+        if beyond.any():
+            powers[beyond] = np.polynomial.chebyshev.chebvander(x[beyond], count - 1)
         if len(self.coefficients) == 1:
             return np.asarray(powers @ self.coefficients[0])
         found: Array = np.einsum("bm,bmk->bk", powers, self.coefficients[panel])

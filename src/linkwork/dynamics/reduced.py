@@ -105,6 +105,11 @@ class Reduction:
         driven = self.motor is not None and not self.motor.constant
         return not (timed or damped or switched or driven or self.forcing)
 
+    @property
+    def pushed(self) -> bool:
+        """Whether anything but weights and the motor acts."""
+        return bool(self.loads or self.springs or self.forcing)
+
     @cached_property
     def inertia(self) -> float:
         """The moment of inertia, or mass, on the input, in the unit of force."""
@@ -116,17 +121,28 @@ class Reduction:
 
     def motor_torque(self, rate: Array) -> Array:
         """The motor's torque at rates of the input, [rad/s] or [length/s], (B,)."""
-        own, scale = self.description, self.model.input_scale[0]
-        assert self.motor is not None
+        assert self.torque is not None
+        return self.torque(rate / self.model.input_scale[0])
+
+    @cached_property
+    def torque(self) -> Callable[[Array], Array] | None:
+        """The motor's torque over the input's speed in file units."""
+        if self.motor is None:
+            return None
+        own = self.description
         kind = "link" if self.model.equations.inputs[0].kind == "angle" else "slider"
-        return self.motor.torque(rate / scale, kind, own.numbers, own.length)
+        return self.motor.curve(kind, own.numbers, own.length)
 
     def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
         """Rows (B, N) with derivatives by time, or by a leader."""
         one = np.ones(len(v))
-        columns = [np.column_stack([v, t]), np.column_stack([first, one])]
-        columns.append(np.column_stack([second, 0.0 * one]))
-        rows = RowValues(self.named, *columns, np.ones(len(v), dtype=bool))
+        rows = RowValues(
+            self.named,
+            np.column_stack([v, t]),
+            np.column_stack([first, one]),
+            np.column_stack([second, 0.0 * one]),
+            np.ones(len(v), dtype=bool),
+        )
         return Geometry(self.named, rows)
 
     def loaded(self, moving: Geometry) -> AppliedLoads:
@@ -176,7 +192,9 @@ class ReducedLeg:
         load = zero
         if self.reduction.of_position:
             still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
-            load = self._force(State(moving=still, displaced=displaced), q1, zero)
+            load = self._pushes(State(moving=still, displaced=displaced))
+            if self.reduction.motor is not None:
+                load = load + self.reduction.motor_torque(zero) * q1
         return np.column_stack([mass, weight, load, rows.v, rows.first])
 
     def acceleration(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
@@ -201,7 +219,13 @@ class ReducedLeg:
 
     def generalised_force(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """Q of all loads but weights, (B,)."""
-        return self._force(self.state(s, speed, t, gain), self.input_slope(s), speed)
+        slope = self.input_slope(s)
+        total = np.zeros(len(s))
+        if self.reduction.pushed:
+            total = self._pushes(self.state(s, speed, t, gain))
+        if self.reduction.motor is not None:
+            total = total + self.reduction.motor_torque(slope * speed) * slope
+        return total
 
     def input_slope(self, s: Array) -> Array:
         """The derivative of the input by the leader, (B,)."""
@@ -211,19 +235,17 @@ class ReducedLeg:
         """The derivatives of all variables by the leader, (B, N)."""
         return self.table(s)[:, self.variables :]
 
-    def _force(self, state: State, q1: Array, speed: Array) -> Array:
+    def _pushes(self, state: State) -> Array:
+        """Q of loads, springs and further forces, (B,)."""
         applied = self.reduction.loaded(state.moving)
-        total = np.zeros(len(q1))
+        total = np.zeros(state.moving.rows)
         for point, force, _ in applied.forces:
             total = total + (force.conj() * state.displaced.place(point).d1).real
         for link, torque in applied.torques:
             total = total + torque * state.displaced.angle(link).d1
-        if self.reduction.motor is not None:
-            total = total + self.reduction.motor_torque(q1 * speed) * q1
         for forcing in self.reduction.forcing:
             total = total + forcing(state)
-        found: Array = total
-        return found
+        return total
 
     def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
         """Left minus right side of all comparisons, (B, comparisons)."""

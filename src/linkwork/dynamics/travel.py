@@ -19,6 +19,7 @@ from linkwork.foundation.frozen import FrozenDict
 __all__ = ["Sample", "Travel"]
 
 _BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
+_LOOKS = 33  # places at which a step is looked at
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
@@ -49,7 +50,7 @@ class Travel:
     """A motion under way.
 
     ``times`` (B,): those asked for, rising. ``samples``: the states found so far. ``ended``: why
-    the motion ended early, "" if it did not. ``held``: since when loads that switch keep it at rest.
+    the motion ended early, "" if it did not. ``held``: since when switching loads keep it at rest.
     """
 
     curve: PositionCurve
@@ -112,8 +113,9 @@ class Travel:
             step, following = try_step(
                 self._acceleration, self.t, self.s, self.speed, min(h, short)
             )
-            if step is not None and self._overshoots(step):
-                step, following = None, 0.5 * step.h
+            shorter = None if step is None else self._shorter(step)
+            if shorter is not None:
+                step, following = None, shorter
             if step is None:
                 h = following
                 if h < _SHORTEST * self.until:
@@ -122,10 +124,11 @@ class Travel:
             event = self._event(step)
             end = step.t + step.h if event is None else self._end(event)
             self._take(step, end)
-            h = max(following, h) if step.h >= short else following
+            h = following if event is None and step.h < short else max(following, h)
             if event is not None:
                 self._meet(event)
-                h = min(h, self._first_step())
+                if event.number >= 2:  # the accelerations have jumped
+                    h = min(h, self._first_step())
             if self.progress is not None:
                 self.progress(min(1.0, self.t / self.until))
 
@@ -139,13 +142,20 @@ class Travel:
             times.append(math.sqrt((high - low) / pull))
         return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
 
-    def _overshoots(self, step: Step) -> bool:
+    def _shorter(self, step: Step) -> float | None:
+        """The length that leads just beyond the end of the leg, of a step that goes on further."""
         edges = self.leg.table.edges
-        s = step.at(np.linspace(step.t, step.t + step.h, 9))[0]
-        return bool(
-            s.min() < edges[0] - _BEYOND * (edges[1] - edges[0])
-            or s.max() > edges[-1] + _BEYOND * (edges[-1] - edges[-2])
-        )
+        low = edges[0] - _BEYOND * (edges[1] - edges[0])
+        high = edges[-1] + _BEYOND * (edges[-1] - edges[-2])
+        times = np.linspace(step.t, step.t + step.h, _LOOKS)
+        s = step.at(times)[0]
+        outside = np.flatnonzero((s < low) | (s > high))
+        if not len(outside):
+            return None
+        # between the last place that is known and the first one that is not
+        k = int(outside[0])
+        within = float(times[k - 1] - step.t) if k > 1 else 0.0
+        return max(within, 0.5 * float(times[k] - step.t))
 
     # Events: margins of the leg's two ends, of the stops, of the comparisons, in this order
 
@@ -172,12 +182,12 @@ class Travel:
         times = self.times[self.taken :]
         times = times[(times > step.t) & (times <= end)]
         if len(times):
-            for row in zip(times, *step.at(times), strict=True):
-                self._record(*map(float, row))
+            for t, s, speed, bend in zip(times, *step.at(times), strict=True):
+                self._record(float(t), float(s), float(speed), float(bend))
             self.taken += len(times)
         self.steps.append((self.number, self.lap, step, end))
-        s, speed, _ = step.at(np.array([end]))
-        self.t, self.s, self.speed = end, float(s[0]), float(speed[0])
+        place, pace, _ = step.at(np.array([end]))
+        self.t, self.s, self.speed = end, float(place[0]), float(pace[0])
 
     def _record(
         self, t: float, s: float, speed: float, acceleration: float, event: str = ""
@@ -204,9 +214,9 @@ class Travel:
         """Let every comparison have the value that it has now."""
         if not self.reduction.comparisons:
             return
-        here = [np.array([x]) for x in (self.s, self.speed, self.t)]
+        s, speed, t = (np.array([x]) for x in (self.s, self.speed, self.t))
         self.reduction.switches = FrozenDict()
-        margins = self.leg.margins(*here, self.gain)[0]
+        margins = self.leg.margins(s, speed, t, self.gain)[0]
         values: dict[Node, float] = {}
         for each, margin in zip(self.reduction.comparisons, margins, strict=True):
             over = margin >= 0.0 if each.operator == ">=" else margin > 0.0

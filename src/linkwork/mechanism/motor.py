@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -88,15 +88,15 @@ class Motor:
         except ExpressionError as error:
             yield ("free_speed" if self.free_speed is not None else "stall"), error.message
 
-    def torque(self, speed: Array, kind: str, numbers: Numbers, length: str) -> Array:
-        """The torque at speeds (B,) in the unit of the file per second."""
+    def curve(self, kind: str, numbers: Numbers, length: str) -> Callable[[Array], Array]:
+        """The torque over speeds (B,) in the unit of the file per second."""
         if self.speeds:
             known = [speed_per_second(each, kind, numbers, length) for each in self.speeds]
-            return np.interp(speed, known, [numbers(each) for each in self.torques])
+            torques = [numbers(each) for each in self.torques]
+            return lambda speed: np.interp(speed, known, torques)
         assert self.stall is not None
         stall = numbers(self.stall)
         if self.free_speed is None:
-            return np.full_like(speed, stall)
+            return lambda speed: np.full_like(speed, stall)
         free = speed_per_second(self.free_speed, kind, numbers, length)
-        found: Array = stall * (1.0 - speed / free)
-        return found
+        return lambda speed: stall * (1.0 - speed / free)

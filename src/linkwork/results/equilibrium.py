@@ -28,7 +28,8 @@ class Equilibrium:
     --------
     >>> import linkwork as lw
     >>> pendulum = lw.linkage(
-    ...     length="m", points={"O": (0, 0), "A": (1, 0)}, links={"ground": ["O"], "bar": ["O", "A"]},
+    ...     length="m", points={"O": (0, 0), "A": (1, 0)},
+    ...     links={"ground": ["O"], "bar": ["O", "A"]},
     ...     inputs=lw.Input(link="bar"), masses={"bar": lw.Mass(mass=1, center=(1, 0))},
     ...     gravity=lw.Gravity(),
     ... )
