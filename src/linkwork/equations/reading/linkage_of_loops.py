@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice, product
-from typing import Any
 
 import numpy as np
 
@@ -268,7 +267,7 @@ class _Drawing:
         if variable.kind == "angle":
             link, other, scale = driven_pair(self.joints, variable)
             begin = _direction(self.places[link])
-            part: dict[str, Any] = {"link": self.names.links[link]}
+            part = {"link": self.names.links[link]}
             if other != self.joints.ground:
                 begin -= _direction(self.places[other])
                 part["relative_to"] = self.names.links[other]
