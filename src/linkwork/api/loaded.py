@@ -187,6 +187,6 @@ class LoadedMechanism(SolvableMechanism):
         --------
         >>> import linkwork as lw
         >>> [each.stable for each in lw.example("crank-press").equilibria()]
-        [True, False]
+        [False, True]
         """
         return dynamics.equilibria(self.model, at, change_points=change_points)

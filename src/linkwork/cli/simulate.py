@@ -6,6 +6,7 @@ from dataclasses import asdict
 
 import click
 
+from linkwork.api import Mechanism
 from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import (
@@ -25,6 +26,7 @@ from linkwork.cli.terminal import print_json, print_lines, progress
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
 
 __all__ = ["simulate"]
 
@@ -84,11 +86,7 @@ def simulate(
     if equilibria:
         if until is not None or csv is not None or plot is not None:
             raise InputError("--equilibria lists positions of rest: leave out --until and files")
-        found = mechanism.equilibria(start, change_points=change_points)
-        if as_json:
-            print_json({"equilibria": [asdict(each) for each in found]})
-        else:
-            print_lines(equilibria_lines(mechanism, found))
+        _list_equilibria(mechanism, start, change_points, as_json)
         return
     if until is None:
         raise InputError("--until is missing: the last time in seconds")
@@ -112,10 +110,7 @@ def simulate(
         write_text(csv, csv_lines(table))
         written.append(f"Wrote {csv}: {len(motion)} rows.")
     if plot is not None:
-        with progress("drawing"):
-            shown = names or (mechanism.description.inputs[0].column + ".velocity",)
-            picture.write(motion_plot(motion, shown), plot)
-        written.append(f"Wrote {plot}: {', '.join(shown)} over time.")
+        written.append(_plotted(mechanism, motion, names, plot))
     if as_json:
         print_json(motion_data(motion, table))
     elif csv != "-":
@@ -123,3 +118,20 @@ def simulate(
         print_lines([*page, *(["", *written] if written else [])])
     if not motion.found.all():
         context.exit(1)
+
+
+def _list_equilibria(
+    mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
+) -> None:
+    found = mechanism.equilibria(start, change_points=change_points)
+    if as_json:
+        print_json({"equilibria": [asdict(each) for each in found]})
+    else:
+        print_lines(equilibria_lines(mechanism, found))
+
+
+def _plotted(mechanism: Mechanism, motion: Motion, names: tuple[str, ...], path: str) -> str:
+    shown = names or (mechanism.description.inputs[0].column + ".velocity",)
+    with progress("drawing"):
+        picture.write(motion_plot(motion, shown), path)
+    return f"Wrote {path}: {', '.join(shown)} over time."

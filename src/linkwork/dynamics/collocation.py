@@ -16,6 +16,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.rounding import EPSILON
 
 __all__ = ["Step", "try_step"]
 
@@ -113,7 +114,7 @@ def _linearise(
     h: float,
 ) -> tuple[Array, Array]:
     """Accelerations at all points, and the Jacobian of the collocation equations, (n, n)."""
-    eps = math.sqrt(np.finfo(float).eps)
+    eps = math.sqrt(EPSILON)
     ds = eps * max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps, 1e-12)
     dw = eps * max(float(np.abs(w).max()), abs(ds / h))
     many = acceleration(

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -19,15 +20,13 @@ from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
+from linkwork.forces.part.index import apply_parts
 from linkwork.forces.part.load import apply_load
-from linkwork.forces.part.spring import write as write_spring
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
-from linkwork.mechanism.part.load import Load
-from linkwork.mechanism.part.spring import Spring
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
@@ -67,20 +66,17 @@ class Reduction:
         self.switches: Mapping[Node, float] = FrozenDict()
 
     @cached_property
-    def loads(self) -> tuple[Load, ...]:
-        """All given loads."""
-        return tuple(getattr(self.description, "loads", ()))
-
-    @cached_property
-    def springs(self) -> tuple[Spring, ...]:
-        """All springs with a force."""
-        springs: tuple[Spring, ...] = getattr(self.description, "springs", ())
-        return tuple(spring for spring in springs if spring.pulls)
+    def acting(self) -> tuple[Any, ...]:
+        """The parts that load the mechanism: loads and springs."""
+        parts = getattr(self.description, "parts", None)
+        if parts is None:  # of loops
+            return tuple(getattr(self.description, "loads", ()))
+        return tuple(part for part in parts if part.acts)
 
     @cached_property
     def formulas(self) -> tuple[Node, ...]:
         """The formulas of all loads."""
-        numbers = (number for load in self.loads for _, number in load.formulas)
+        numbers = (each for part in self.acting for _, each in getattr(part, "formulas", ()))
         return tuple(parse(each, comparing=True) for each in numbers if isinstance(each, str))
 
     @cached_property
@@ -100,7 +96,7 @@ class Reduction:
     def of_position(self) -> bool:
         """Whether all loads follow from the position alone, smoothly."""
         timed = "t" in self.names or any(Rate.split(name)[1] for name in self.names)
-        damped = any(spring.damping != 0 for spring in self.springs)
+        damped = any(getattr(part, "damping", 0) != 0 for part in self.acting)
         switched = bool(self.comparisons)
         driven = self.motor is not None and not self.motor.constant
         return not (timed or damped or switched or driven or self.forcing)
@@ -108,7 +104,7 @@ class Reduction:
     @property
     def pushed(self) -> bool:
         """Whether anything but weights and the motor acts."""
-        return bool(self.loads or self.springs or self.forcing)
+        return bool(self.acting or self.forcing)
 
     @cached_property
     def inertia(self) -> float:
@@ -148,13 +144,11 @@ class Reduction:
     def loaded(self, moving: Geometry) -> AppliedLoads:
         """All loads but weights, which the masses bring."""
         applied = AppliedLoads(moving, 1.0, switches=self.switches)
-        for load in self.loads:
+        if isinstance(self.description, Linkage):
+            apply_parts(FreeBodies(self.description, moving, applied))
+            return applied
+        for load in self.acting:
             apply_load(load, applied)
-        if self.springs:
-            assert isinstance(self.description, Linkage)
-            bodies = FreeBodies(self.description, moving, applied)
-            for spring in self.springs:
-                write_spring(spring, bodies)
         return applied
 
 

@@ -14,7 +14,7 @@ from linkwork.forces.free_bodies import FreeBodies
 from linkwork.mechanism.part.index import part_module
 from linkwork.mechanism.part.part import Part
 
-__all__ = ["drive_part", "join_parts"]
+__all__ = ["apply_parts", "drive_part", "join_parts"]
 
 
 def join_parts(bodies: FreeBodies) -> None:
@@ -22,6 +22,14 @@ def join_parts(bodies: FreeBodies) -> None:
     for part in bodies.parts:
         write: Callable[[Part, FreeBodies], None] = _room(part).write
         write(part, bodies)
+
+
+def apply_parts(bodies: FreeBodies) -> None:
+    """Add what parts do that load the mechanism by themselves: loads and springs."""
+    for part in bodies.parts:
+        if part.acts:
+            write: Callable[[Part, FreeBodies], None] = _room(part).write
+            write(part, bodies)
 
 
 def drive_part(bodies: FreeBodies, name: str) -> int:
