@@ -24,6 +24,7 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "forces",
+    "simulate",
     "design",
     "draw",
     "plot",
@@ -37,7 +38,6 @@ _COMMANDS = (
     "compile",
     "examples",
     "schema",
-    "simulate",
 )
 
 _WRONG_INPUT = 2
