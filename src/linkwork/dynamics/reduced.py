@@ -20,7 +20,7 @@ from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
-from linkwork.forces.part.index import apply_parts
+from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
@@ -145,7 +145,7 @@ class Reduction:
         """All loads but weights, which the masses bring."""
         applied = AppliedLoads(moving, 1.0, switches=self.switches)
         if isinstance(self.description, Linkage):
-            apply_parts(FreeBodies(self.description, moving, applied))
+            join_loads(FreeBodies(self.description, moving, applied))
             return applied
         for load in self.acting:
             apply_load(load, applied)
