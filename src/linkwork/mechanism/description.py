@@ -177,6 +177,7 @@ class Description:
                 _check_rows(self, which, self.input_key(k), problems)
             else:
                 _check_law(self, which, self.input_key(k), problems)
+            _check_motor(self, which, self.input_key(k), problems)
         self._check_lock_step(problems)
         if self.timed:
             self._check_times(taken, problems)
@@ -283,6 +284,18 @@ class Description:
                     f"has {count} rows, {which} has {counts[first]}: "
                     "inputs move in lock-step and need equal row counts",
                 )
+
+
+def _check_motor(description: Description, which: Input, key: Key, problems: Problems) -> None:
+    numbers = description.numbers
+    if which.motor is not None:
+        kind = which.drives[0]
+        for field, message in which.motor.mistakes(kind, numbers, description.length):
+            problems.add((*key, "motor", field), message)
+    if which.inertia is not None:
+        amount = numbers.check_number(problems.add, (*key, "inertia"), which.inertia)
+        if amount < 0:
+            problems.add((*key, "inertia"), f"must not be negative, got {amount:g}")
 
 
 def _check_law(description: Description, which: Input, key: Key, problems: Problems) -> None:
