@@ -20,7 +20,7 @@ from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import LinearRows
 from linkwork.motion.proving import prove_rows
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation import path_proof
+from linkwork.numerics.continuation import path_proof, step_halving
 from linkwork.numerics.continuation.branch_tracking import (
     InputPath,
     Track,
@@ -418,7 +418,8 @@ def test_the_first_step_without_a_proof_tells_why_there_is_none_beyond() -> None
 def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
     lanes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(path_proof, "_LANES", lanes)
+    monkeypatch.setattr(step_halving, "_LANES", lanes)
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     points = beads_of(solver, v)
@@ -441,7 +442,8 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
 
 
 def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(path_proof, "_LANES", 1)  # one after the other
+    monkeypatch.setattr(step_halving, "_LANES", 1)  # one after the other
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
