@@ -566,3 +566,27 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
         ),
     ]
     assert set(reasons) == set(Certification)
+
+
+def test_a_step_to_another_branch_is_soon_refused() -> None:
+    theta = np.radians(np.arange(0.0, 361.0, 60.0))
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    v[3] = four_bar_at(ROCKER, theta, -1)[1][3]
+    found = prove_path(solver, PATH, beads_of(solver, v))
+    np.testing.assert_array_equal(found.connected, [True, True, False, False, True, True])
+    # a step that shrinks to nothing before it is refused takes 45 halvings
+    assert found.pieces.max() < 40
+
+
+def test_steps_divided_at_once_are_proved_as_halved_ones_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    theta = np.linspace(0.0, 2.0 * np.pi, 9)
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    points = beads_of(solver, v)
+    divided = prove_path(solver, PATH, points)
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
+    halved = prove_path(solver, PATH, points)
+    assert divided.connected.all()
+    assert halved.connected.all()
+    assert divided.pieces.sum() <= 1.5 * halved.pieces.sum()

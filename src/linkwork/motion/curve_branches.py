@@ -51,13 +51,13 @@ def trace_with_proof(
         if not curve.legs:
             return TracedCurve(curve=curve, proof=None, turns=())
         proof = prove_curve(leads, curve) if certify else None
-        found = TracedCurve(curve=curve, proof=proof, turns=tuple(turning_points(leads, curve)))
+        found = TracedCurve(curve=curve, proof=proof, turns=())
         if best is None or found.certified:
             best = found
         if best.certified:
             break
     assert best is not None
-    return best
+    return replace(best, turns=tuple(turning_points(leads, best.curve)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
