@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from linkwork.foundation.newton_trouble import NewtonTrouble as NewtonTrouble
     from linkwork.foundation.status import Status as Status
     from linkwork.mechanism.driven_input import Input as Input
+    from linkwork.mechanism.friction import Friction as Friction
     from linkwork.mechanism.mass import Gravity as Gravity, Mass as Mass
     from linkwork.mechanism.part.belt import Belt as Belt
     from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment
@@ -77,6 +78,13 @@ if TYPE_CHECKING:
         Remedy as Remedy,
     )
     from linkwork.results.force import Force as Force
+    from linkwork.results.machine_design import (
+        Counterweights as Counterweights,
+        Flywheel as Flywheel,
+        Harmonics as Harmonics,
+        InflectionCircle as InflectionCircle,
+        MotorCheck as MotorCheck,
+    )
     from linkwork.results.motion import (
         Limit as Limit,
         LimitKind as LimitKind,
@@ -89,6 +97,7 @@ if TYPE_CHECKING:
     )
     from linkwork.results.reactions import ForceStatus as ForceStatus, Reactions as Reactions
     from linkwork.results.series import Series as Series
+    from linkwork.results.stall import Stall as Stall
     from linkwork.results.table import Table as Table
 else:
     __getattr__ = loader(__name__)

@@ -12,8 +12,8 @@ import pytest
 from xlsxwriter.worksheet import Worksheet
 
 import linkwork as lw
+from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.export.workbook import workbook
-from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.cell_names import CellNames
 from linkwork.export.workbook.fast_cells import FastCells
 from linkwork.expression.grammar import parse

@@ -10,7 +10,7 @@ import pytest
 from openpyxl.utils import FORMULAE
 
 import linkwork as lw
-from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.expression.grammar import parse
 from linkwork.expression.lane_functions import FUNCTIONS
 from linkwork.foundation.angles import AngleUnit
@@ -80,7 +80,7 @@ def test_a_formula_too_long_for_a_cell_is_values_only(tmp_path: Path) -> None:
         '[guess]\nx = 0.01\nu = 1.01\n[input]\nvariable = "u"\nfrom = 1.01\nto = 1.1\nstep = 0.01\n'
     )
     told = mechanism.to_excel(tmp_path / "tower.xlsx", mechanism.sweep())
-    assert told == ("x: its formula is too long for a cell; the column contains Linkwork's values",)
+    assert told == ("x: its formula is too long; the column contains Linkwork's values",)
     for formula in formulas_of(tmp_path / "tower.xlsx"):
         check_formula(formula)
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwork.export.workbook.linear_form import LinearForm
-from linkwork.export.workbook.traced_number import Trace
+from linkwork.export.formulas.linear_form import LinearForm
+from linkwork.export.formulas.traced_number import Trace
 from linkwork.expression.jets import Jet
 from linkwork.expression.tree import Name
 from linkwork.foundation.lanes import LaneArithmetic

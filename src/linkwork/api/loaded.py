@@ -11,6 +11,7 @@ from linkwork.api.solvable import SolvableMechanism
 if TYPE_CHECKING:
     from linkwork.results.motion import Motion
     from linkwork.results.reactions import Reactions
+    from linkwork.results.stall import Stall
 
 __all__ = ["LoadedMechanism"]
 
@@ -62,3 +63,34 @@ class LoadedMechanism(SolvableMechanism):
             )
         rows = self.sweep(configuration=configuration) if motion is None else motion
         return forces.forces_of_motion(self.model, rows)
+
+    def stalls(
+        self, *, configuration: str | None = None, motion: Motion | None = None
+    ) -> tuple[Stall, ...]:
+        """Input values between motion and self-locking by friction, over the input's table.
+
+        Parameters
+        ----------
+        configuration : str, optional
+            As in :meth:`solve`.
+        motion : Motion, optional
+            Instead of the table: a motion of this mechanism, solved already.
+
+        Returns
+        -------
+        tuple of Stall
+            In the order of the rows; empty without self-locking.
+
+        Raises
+        ------
+        InputError
+            If nothing loads the mechanism.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("crank-press").stalls()
+        ()
+        """
+        rows = self.sweep(configuration=configuration) if motion is None else motion
+        return forces.locate_stalls(self.model, rows, configuration=configuration)

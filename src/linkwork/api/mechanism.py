@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwork import batch, drawing, export, motion, textfile, viewer
 from linkwork.api import solving
-from linkwork.api.loaded import LoadedMechanism
+from linkwork.api.dynamic import DynamicMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_names
 from linkwork.foundation.paths import as_path
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Mechanism"]
 
 
-class Mechanism(LoadedMechanism):
+class Mechanism(DynamicMechanism):
     """A planar mechanism: solve, sweep, check, draw, animate and export it.
 
     The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and
@@ -312,6 +312,36 @@ class Mechanism(LoadedMechanism):
         written = export.workbook_of(self.model, cycle)
         as_path(path).write_bytes(written.content)
         return written.notices
+
+    def to_code(self, path: str | Path, motion: Motion | None = None) -> None:
+        """Write the solver as a program in another language, which needs no Linkwork.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its suffix selects the language: ``.py`` (NumPy), ``.m`` (Octave, MATLAB),
+            ``.c`` (C99), ``.js``, ``.st`` (structured text of IEC 61131-3).
+        motion : Motion, optional
+            A sweep of this mechanism, whose table the program computes again; by default
+            :meth:`sweep`.
+
+        Raises
+        ------
+        InputError
+            If there is no such language, or no formulas of the mechanism's equations.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").to_code(f"{folder}/four_bar.py")
+        ...     lines = pathlib.Path(folder, "four_bar.py").read_text().splitlines()
+        >>> lines[1]
+        'Four-bar linkage, open.'
+        """
+        cycle = self.sweep() if motion is None else motion
+        text = export.code_of(self.model, cycle, as_path(path))
+        as_path(path).write_text(text, "utf-8")
 
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file.

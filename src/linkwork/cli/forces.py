@@ -28,6 +28,8 @@ from linkwork.drawing.scene_options import SceneOptions
 from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
+from linkwork.results.reactions import ForceStatus
+from linkwork.results.stall import Stall
 
 __all__ = ["forces"]
 
@@ -78,10 +80,14 @@ def forces(
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     motion = None
+    stalls: tuple[Stall, ...] = ()
     if values is None:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
         found = mechanism.forces(motion=motion)
+        if ForceStatus.SELF_LOCKING in found.statuses:
+            with progress("locating stalls"):
+                stalls = mechanism.stalls(motion=motion, configuration=configuration)
     else:
         found = mechanism.forces(values, configuration=configuration)
     table = found.table(*names)
@@ -97,12 +103,12 @@ def forces(
     if plot is not None and motion is not None:
         written.append(_plotted(motion, names or found.efforts, plot))
     if as_json:
-        print_json(reactions_data(found, table))
+        print_json(reactions_data(found, table, stalls))
     elif csv != "-":
         page = (
             position_forces_lines(found, names)
             if motion is None
-            else motion_forces_lines(found, motion, names)
+            else motion_forces_lines(found, motion, names, stalls)
         )
         print_lines([*page, *(["", *written] if written else [])])
     if motion is not None and not motion.found.all():

@@ -6,6 +6,7 @@ import cmath
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -14,13 +15,16 @@ from linkwork.cli.motion_page import range_lines
 from linkwork.cli.position_page import inputs_text
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, significant, table_lines
+from linkwork.foundation.arrays import BoolArray
 from linkwork.results.motion import Motion
 from linkwork.results.reactions import ForceStatus, Reactions
+from linkwork.results.stall import Stall
 from linkwork.results.table import Table
 
 __all__ = ["motion_forces_lines", "position_forces_lines", "reactions_data"]
 
 _TOTALS = ("shaking", "power", "kinetic_energy", "stored_energy", "load_power", "energy_rate")
+_LOSSES = ("friction_power", "efficiency")
 
 
 def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[str]:
@@ -29,20 +33,22 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
         {name: float(value) for name, value in found.inputs.items()}, found.input_units
     )
     lines = title_lines(found.mechanism)
-    if found.status in (ForceStatus.NO_POSITION, ForceStatus.NO_RATES):
-        return [*lines, *sentence(bad, "No forces", where), *fields([("why", found.status.value)])]
+    if found.status in (ForceStatus.NO_POSITION, ForceStatus.NO_RATES, ForceStatus.SELF_LOCKING):
+        why = [("why", found.status.value)]
+        if found.status is ForceStatus.SELF_LOCKING:
+            why.append(("proved", "yes" if found.proved else "no"))
+        return [*lines, *sentence(bad, "No forces", where), *fields(why)]
     lines += sentence(good, "Forces", where)
     if names:
         return [*lines, "", *_numbers("quantity", found, names)]
     vectors = [stem for stem in _stems(found) if not stem.startswith("shaking")]
     pairs = {f"{stem}.{axis}" for stem in vectors for axis in "xy"}
-    totals = [name for name in found.values if name.partition(".")[0] in _TOTALS]
+    totals = [name for name in found.values if name.partition(".")[0] in (*_TOTALS, *_LOSSES)]
+    efforts = [name for name in found.values if ".effort" in name]
     others = [
-        name
-        for name in found.values
-        if name not in {*pairs, *totals, *found.efforts, "disagreement"}
+        name for name in found.values if name not in {*pairs, *totals, *efforts, "disagreement"}
     ]
-    for title, listed in (("effort", found.efforts), ("reaction", others)):
+    for title, listed in (("effort", efforts), ("reaction", others)):
         if listed:
             lines += ["", *_numbers(title, found, listed)]
     if vectors:
@@ -51,7 +57,9 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
     return [*lines, "", *fields(list(_evidence(found)))]
 
 
-def motion_forces_lines(found: Reactions, motion: Motion, names: Sequence[str] = ()) -> list[str]:
+def motion_forces_lines(
+    found: Reactions, motion: Motion, names: Sequence[str] = (), stalls: Sequence[Stall] = ()
+) -> list[str]:
     """The smallest and largest values of all forces over a motion."""
     name = next(iter(found.inputs), "")
     values, unit = found.inputs[name], found.input_units[name]
@@ -69,10 +77,11 @@ def motion_forces_lines(found: Reactions, motion: Motion, names: Sequence[str] =
         if name != "disagreement" and np.isfinite(found.values[name]).any()
     ]
     lines += ["", *range_lines(motion, listed)] if listed else []
-    return [*lines, "", *fields(list(_evidence(found)))]
+    stops = [("stalls", _stall(stall)) for stall in stalls]
+    return [*lines, "", *fields([*stops, *_evidence(found)])]
 
 
-def reactions_data(found: Reactions, table: Table) -> dict[str, Any]:
+def reactions_data(found: Reactions, table: Table, stalls: Sequence[Stall] = ()) -> dict[str, Any]:
     """The forces as JSON-ready data."""
     return {
         "mechanism": found.mechanism,
@@ -81,6 +90,18 @@ def reactions_data(found: Reactions, table: Table) -> dict[str, Any]:
         "columns": {name: column.tolist() for name, column in table.columns.items()},
         "undetermined": [name for name, rows in found.undetermined.items() if rows.any()],
         "lifted": [name for name, rows in found.lifted.items() if rows.any()],
+        "slipping": [name for name, rows in found.slipping.items() if rows.any()],
+        "proved": found.proved.tolist(),
+        "stalls": [
+            {
+                "input": stall.input,
+                "value": stall.value,
+                "unit": stall.unit,
+                "bracket": list(stall.bracket),
+                "proved": stall.proved,
+            }
+            for stall in stalls
+        ],
     }
 
 
@@ -142,5 +163,28 @@ def _evidence(found: Reactions) -> Iterator[tuple[str, str]]:
         yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
     for name, rows in found.lifted.items():
         if rows.any():
-            where = "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
-            yield "lifts off", f"{name} would have to pull{where}"
+            yield "lifts off", f"{name} would have to pull{_where(rows)}"
+    for name, rows in found.slipping.items():
+        if rows.any():
+            yield "slips", f"{name} needs more friction than there is{_where(rows)}"
+    unsure = int(np.sum(~found.proved))
+    if unsure:
+        yield "not proved", f"that friction leaves an equilibrium, or none, in {unsure} rows"
+
+
+def _where(rows: BoolArray) -> str:
+    return "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
+
+
+def _stall(stall: Stall) -> str:
+    """Where friction stops the mechanism, and whether this is proved."""
+    moves, locked = stall.bracket
+    proof = (
+        f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"
+    )
+    others = (name for name in stall.position.unknowns if name != stall.input)
+    places = [
+        f"{name} = {stall.position[name]:.8g} {stall.position.value_units[name]}"
+        for name in (stall.input, *islice(others, 1))
+    ]
+    return f"at {', '.join(places)} ({proof})"

@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.export.code.code import (
+        code_of as code_of,
+        language_of as language_of,
+    )
     from linkwork.export.workbook.workbook import (
         WrittenWorkbook as WrittenWorkbook,
         workbook_of as workbook_of,

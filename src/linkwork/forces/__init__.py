@@ -12,5 +12,6 @@ if TYPE_CHECKING:
         forces_of_motion as forces_of_motion,
         forces_of_position as forces_of_position,
     )
+    from linkwork.forces.stalling import locate_stalls as locate_stalls
 else:
     __getattr__ = loader(__name__)

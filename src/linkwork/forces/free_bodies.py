@@ -6,20 +6,23 @@ divided by the longest link, so that they compare with forces.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
+from linkwork.forces.size import Size
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.friction import Friction
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.part import Part, carriers
 from linkwork.results.quantity import Kind
 
-__all__ = ["Act", "FreeBodies", "Holder", "Reading"]
+__all__ = ["Act", "Follower", "FreeBodies", "Holder", "Reading"]
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,24 @@ class Act:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Reading:
-    """A quantity Σ factor · unknown + constant, (B,) each, and the size of ``follow``.
+class Follower:
+    """Acts whose size follows from unknowns.
 
-    ``pushes``: the joint can only push, so that a negative value means that it lifts off.
+    ``motion``: of friction, the relative motion that it opposes, per unit of each input, (p, B) in
+    radians or lengths; the acts are those of a unit along this motion.
+    """
+
+    size: Size
+    acts: tuple[Act, ...]
+    motion: Array | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reading:
+    """A quantity Σ factor · unknown + constant, (B,) each, and the amount of ``follow``.
+
+    ``pushes``: the joint can only push, so that a negative value means that it lifts off;
+    ``adhesion``: it slips beyond this part of an unknown.
     """
 
     name: str
@@ -58,23 +75,21 @@ class Reading:
     constant: Array | float = 0.0
     follow: int | None = None
     pushes: bool = False
+    adhesion: tuple[int, float] | None = None
 
 
 @dataclass(eq=False)
 class FreeBodies:
     """The links of a linkage, and what acts on them.
 
-    ``unknowns`` are the acts of each unknown, ``following`` those whose size follows from another
-    unknown: its number, the size as a function of it, the acts of a unit.
+    ``unknowns`` are the acts of each unknown, ``following`` those whose sizes follow from unknowns.
     """
 
     linkage: Linkage
     geometry: Geometry
     applied: AppliedLoads
     unknowns: list[tuple[Act, ...]] = field(default_factory=list)
-    following: list[tuple[int, Callable[[Array], Array], tuple[Act, ...]]] = field(
-        default_factory=list
-    )
+    following: list[Follower] = field(default_factory=list)
     readings: list[Reading] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -115,10 +130,48 @@ class FreeBodies:
         self.unknowns.append(acts)
         return len(self.unknowns) - 1
 
-    def follow(self, unknown: int, size: Callable[[Array], Array], *acts: Act) -> int:
-        """Acts whose size follows from an unknown, which they do not change; returns a number."""
-        self.following.append((unknown, size, acts))
+    def follow(self, size: Size, *acts: Act, motion: Array | None = None) -> int:
+        """Acts whose size follows from unknowns, or friction; returns their number."""
+        self.following.append(Follower(size=size, acts=acts, motion=motion))
         return len(self.following) - 1
+
+    def friction(self, joint: str) -> Friction | None:
+        """The friction of a pin or part."""
+        return self.linkage.friction.get(joint)
+
+    def number(self, number: Number | None) -> float:
+        """A number of the file that is given."""
+        assert number is not None
+        return self.linkage.numbers(number)
+
+    def rub_couple(self, name: str, size: Size, on: Holder, against: Holder) -> None:
+        """Friction as a moment between two bodies."""
+        geometry = self.geometry
+        turning = geometry.turning(on.body) - geometry.turning(against.body)
+        zero = np.zeros(1, dtype=complex)
+        acts = (Act(on, zero, zero, 1.0), Act(against, zero, zero, -1.0))
+        self._rub(name, Kind.MOMENT, f"moment of friction on {on.body}", size, acts, turning)
+
+    def rub_force(
+        self, name: str, size: Size, pair: tuple[Holder, Holder], place: ComplexArray,
+        along: ComplexArray, sliding: ComplexArray,
+    ) -> None:  # fmt: skip
+        """Friction as a force between two bodies along a unit vector, with the velocity of sliding
+        of the first on the second, (p, B).
+        """
+        on, against = pair
+        acts = (Act(on, place, along), Act(against, place, -along))
+        motion = (np.conj(along) * sliding).real
+        about = f"force of friction on {on.pin or on.body}"
+        self._rub(name, Kind.FORCE, about, size, acts, motion)
+
+    def _rub(
+        self, name: str, kind: Kind, about: str, size: Size, acts: tuple[Act, ...], motion: Array
+    ) -> None:
+        own = self.follow(size, *acts, motion=motion)
+        self.readings.append(
+            Reading(name=f"{name}.friction", kind=kind, about=about, terms=(), follow=own)
+        )
 
     def read(
         self, name: str, kind: Kind, about: str, unknown: int, factor: Array | float = 1.0,

@@ -161,6 +161,23 @@ class Geometry:
         """The longest link."""
         return self.model.equations.length_scale
 
+    @cached_property
+    def fastest(self) -> Array:
+        """The largest rate of links [rad] and points [longest links] in every row, (B,)."""
+        most = np.zeros(self.rows)
+        for link in self.links:
+            most = np.fmax(most, np.abs(self.angle(link).d1))
+        for point in self.points:
+            most = np.fmax(most, np.abs(self.place(point).d1) / self.length)
+        return most
+
+    @property
+    def table_direction(self) -> float:
+        """1 or -1: which way the table of the leading input goes; 1 for a table of one row."""
+        names = self.model.motion_quantities.names
+        values = self.model.rows[:, list(names.inputs).index(names.lead)]
+        return -1.0 if values[-1] < values[0] else 1.0
+
     @property
     def lead(self) -> Array:
         """The leading input, [rad] or [length]."""

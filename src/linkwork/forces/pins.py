@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwork.forces.free_bodies import Act, FreeBodies, Holder, Reading
+from linkwork.forces.size import NormOf
 from linkwork.results.quantity import Kind
 
 __all__ = ["join_pins", "read_first_links"]
@@ -24,12 +25,25 @@ def join_pins(bodies: FreeBodies) -> None:
             continue
         place = bodies.geometry.place(point).v
         for other in links[1:]:
+            forces = []
             for axis, unit in (("x", 1.0 + 0j), ("y", 1j)):
                 along = np.array([unit])
                 force = bodies.pair(Holder(other), Holder(links[0], point), place, along)
+                forces.append(force)
                 for name in _names(bodies, point, other, axis):
                     about = f"force of the pin {point} on {other}"
                     bodies.read(name, Kind.FORCE, about, force)
+            _rub_pin(bodies, point, other, links[0], (forces[0], forces[1]))
+
+
+def _rub_pin(bodies: FreeBodies, point: str, link: str, first: str, force: tuple[int, int]) -> None:
+    """Friction of a link on the pin, which is fixed in the first link."""
+    friction = bodies.friction(point)
+    if friction is None:
+        return
+    arm = bodies.number(friction.mu) * bodies.number(friction.radius)
+    name = point if len(bodies.carriers[point]) < 3 else f"{point}.{link}"
+    bodies.rub_couple(name, NormOf(unknowns=force, factor=arm), Holder(link), Holder(first))
 
 
 def _names(bodies: FreeBodies, point: str, link: str, axis: str) -> list[str]:

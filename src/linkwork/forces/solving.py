@@ -59,4 +59,6 @@ def _reactions(
         statuses=ForceStatus.of_codes(rows.status),
         undetermined={name: force.undetermined.reshape(shape) for name, force in values},
         lifted={name: force.lifted.reshape(shape) for name, force in values},
+        slipping={name: force.slipping.reshape(shape) for name, force in values},
+        proved=rows.proved.reshape(shape),
     )

@@ -5,15 +5,15 @@ other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.drives import drive_inputs, effort_kind, effort_name
-from linkwork.forces.equilibrium import balance
-from linkwork.forces.free_bodies import Act, FreeBodies, Reading
+from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.geometry import Geometry
+from linkwork.forces.joint_forces import FrictionEfforts, joint_forces
 from linkwork.forces.part.index import join_parts
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import join_pins, read_first_links
@@ -31,6 +31,7 @@ from linkwork.results.reactions import ForceStatus
 __all__ = ["ForceRows", "ForceValue", "solve_forces"]
 
 _UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
+_NO_WORK = 1e-12  # of the largest term
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,7 +39,7 @@ class ForceValue:
     """A quantity of forces in B rows.
 
     ``undetermined``: where a self-stress changes it; ``lifted``: where a joint that can only push
-    would have to pull.
+    would have to pull; ``slipping``: where a rolling wheel would need more adhesion.
     """
 
     kind: Kind
@@ -46,14 +47,18 @@ class ForceValue:
     value: Array
     undetermined: BoolArray
     lifted: BoolArray
+    slipping: BoolArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ForceRows:
-    """All forces in B rows: quantities by name, and the status code of every row."""
+    """All forces in B rows: quantities by name, the status code of every row, and whether it is
+    proved that friction leaves an equilibrium or none.
+    """
 
     values: Mapping[str, ForceValue]
     status: StatusArray
+    proved: BoolArray
 
 
 @dataclass(eq=False)
@@ -62,6 +67,15 @@ class _Solution:
     applied: AppliedLoads
     regular: BoolArray
     values: dict[str, ForceValue] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        #: Where friction leaves no equilibrium, and where this, or the equilibrium, is proved.
+        self.locked = np.zeros(self.geometry.rows, dtype=bool)
+        self.proved = np.ones(self.geometry.rows, dtype=bool)
+
+    def slips(self, name: str, rows: BoolArray) -> None:
+        """Mark where a wheel would need more adhesion."""
+        self.values[name] = replace(self.values[name], slipping=rows & self.regular)
 
     def add(
         self, name: str, kind: Kind, about: str, value: Array,
@@ -74,7 +88,7 @@ class _Solution:
         # rounding of a contact without force is no lift-off
         lifted = value < -1e-9 * size if pushes else none
         self.values[name] = ForceValue(
-            kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted
+            kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted, slipping=none
         )
 
 
@@ -101,17 +115,26 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             bodies = _read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
+        zero = np.zeros_like(by_work)
+        rubbing = FrictionEfforts(
+            efforts=zero, largest=zero, doubt=np.zeros(geometry.rows, dtype=bool)
+        )
         if bodies is not None:
-            _add_reactions(found, bodies)
+            rubbing = _add_reactions(found, bodies)
         drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
-        _add_efforts(found, by_work, largest, drives)
+        _add_efforts(found, by_work, largest, drives, rubbing)
+        if bodies is not None and any(own.motion is not None for own in bodies.following):
+            _add_losses(found, by_work, largest, rubbing)
+            if not applied.rate:
+                _add_backward(found, bodies, by_work)
         _add_totals(found)
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     status[lost] = ForceStatus.NO_POSITION.code
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
-    return ForceRows(values=found.values, status=status.astype(np.int8))
+    status[found.locked & ~lost] = ForceStatus.SELF_LOCKING.code
+    return ForceRows(values=found.values, status=status.astype(np.int8), proved=found.proved)
 
 
 def _anything(geometry: Geometry) -> Iterator[Array]:
@@ -123,13 +146,8 @@ def _anything(geometry: Geometry) -> Iterator[Array]:
 
 def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
     """Rows in which the input moves the mechanism at a finite rate."""
-    most = np.zeros(geometry.rows)
     # rates at a dead point are infinite, or huge if the row misses it by rounding
-    for link in geometry.links:
-        most = np.fmax(most, np.abs(geometry.angle(link).d1))
-    for point in geometry.points:
-        most = np.fmax(most, np.abs(geometry.place(point).d1) / geometry.length)
-    found: BoolArray = (most < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
+    found: BoolArray = (geometry.fastest < _UNBOUNDED) & np.isfinite(by_work).all(axis=0)
     return found
 
 
@@ -175,58 +193,43 @@ def _known_acts(bodies: FreeBodies) -> list[Act]:
     return acts
 
 
-def _add_reactions(found: _Solution, bodies: FreeBodies) -> None:
-    """All readings, from the unknowns and the acts that follow from them."""
+def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
+    """All readings, from the unknowns and what follows from them."""
     acts = _known_acts(bodies)
-    known = balance(bodies.matrix())
-    r = known.solve(bodies.sums(acts))
-    sizes, unsure = [], []
-    for k, size, follow in bodies.following:
-        unit = np.zeros_like(r)
-        unit[:, k] = 1.0
-        # teeth under self-stress: the size of what follows from them is not known either
-        doubtful = known.undetermined(unit)
-        amount = np.where(doubtful, 0.0, size(r[:, k]))
-        # the equations are linear: what follows is added to the first solution
-        answer = known.solve(bodies.sums(follow))
-        sizes.append(amount)
-        unsure.append((doubtful, answer))
-        acts += [_scaled(act, amount) for act in follow]
-    for amount, (_, answer) in zip(sizes, unsure, strict=True):
-        r = r + amount[:, None] * answer
+    direction = _direction(found)
+    forces = joint_forces(bodies, acts, direction)
+    rubbing = forces.friction_efforts()
     # where nothing balances the loads, no reading means anything
-    found.regular &= np.isfinite(r).all(axis=1)
-    read_first_links(bodies, acts)
+    found.regular &= np.isfinite(forces.unknowns).all(axis=1) | ~forces.found
+    found.locked = found.regular & ~forces.found
+    found.regular &= forces.found
+    found.proved = forces.proved
+    read_first_links(bodies, [*acts, *forces.acts()])
     for reading in bodies.readings:
-        value, factors = _value(reading, r)
-        if reading.follow is not None:
-            value = value + sizes[reading.follow]
-        doubt = known.undetermined(factors)
-        for k, (doubtful, answer) in enumerate(unsure):
-            change = np.abs((factors * answer).sum(axis=1))
-            doubt |= doubtful & ((change > 1e-9) | (reading.follow == k))
+        value, doubt = forces.read(reading)
         found.add(reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes)
+        if reading.adhesion is not None:
+            normal, mu = reading.adhesion
+            found.slips(reading.name, np.abs(value) > mu * np.abs(forces.unknowns[:, normal]))
+    return rubbing
 
 
-def _scaled(act: Act, amount: Array) -> Act:
-    return Act(act.on, act.place, act.force * amount, act.moment)
+def _direction(found: _Solution) -> Array:
+    """Which way the leading input moves, or the way of its table where it is at rest, (B,)."""
+    geometry = found.geometry
+    rate = np.broadcast_to(found.applied.rate, geometry.rows)
+    return np.where(rate == 0.0, geometry.table_direction, np.sign(rate))
 
 
-def _value(reading: Reading, r: Array) -> tuple[Array, Array]:
-    """The reading and its factors of all unknowns (B, n)."""
-    factors = np.zeros_like(r)
-    for k, factor in reading.terms:
-        factors[:, k] += factor
-    value: Array = (factors * np.nan_to_num(r)).sum(axis=1) + reading.constant
-    return value, factors
-
-
-def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Sequence[str]) -> None:
+def _add_efforts(
+    found: _Solution, ideal: Array, largest: Array, drives: Sequence[str], rubbing: FrictionEfforts
+) -> None:
     """Efforts by virtual work, and their largest difference from those of the free bodies."""
     geometry = found.geometry
     worst = np.zeros(geometry.rows)
+    largest = np.maximum(largest, rubbing.largest)
     # the effort by virtual work replaces the other one, which only checks it
-    power, checked = np.zeros(geometry.rows), False
+    by_work, checked = ideal + rubbing.efforts, False
     for k, variable in enumerate(geometry.model.equations.inputs):
         name = effort_name(variable.name)
         if drives:  # of the linkage that loops read as, under the name of the loops' variable
@@ -237,14 +240,45 @@ def _add_efforts(found: _Solution, by_work: Array, largest: Array, drives: Seque
             size = np.where(largest[k] > 0.0, largest[k], 1.0)
             worst = np.fmax(worst, np.abs(found.values[name].value - by_work[k]) / size)
         kind = effort_kind(geometry.kind(variable.name))
-        found.add(name, kind, f"effort of the input {variable.name}", by_work[k])
-        power += by_work[k] * geometry.input_rates[k] * found.applied.rate
+        about = f"effort of the input {variable.name}"
+        found.add(name, kind, about, by_work[k], rubbing.doubt)
     if not len(by_work):
         return
     if checked:
         found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
     if found.applied.rate:
-        found.add("power", Kind.POWER, "power of all inputs", power)
+        power = geometry.input_rates @ by_work * found.applied.rate
+        found.add("power", Kind.POWER, "power of all inputs", power, rubbing.doubt)
+
+
+def _add_losses(found: _Solution, ideal: Array, largest: Array, rubbing: FrictionEfforts) -> None:
+    """The efficiency, the power of friction, and the other end of the range of efforts at rest."""
+    geometry, rate = found.geometry, found.applied.rate
+    # work per unit of the leading input along its motion
+    way = _direction(found)
+    useful = geometry.input_rates @ ideal * way
+    lost = geometry.input_rates @ rubbing.efforts * way
+    # nothing moves against the loads at their dead point: rounding would be taken for a sign
+    useful = np.where(np.abs(useful) > _NO_WORK * largest.max(axis=0), useful, 0.0)
+    spent = useful + lost
+    # the input drives the loads, or they drive it: a negative value means that friction holds them
+    efficiency = np.where(useful >= 0.0, useful / spent, spent / useful)
+    about = "useful part of the power"
+    found.add("efficiency", Kind.NUMBER, about, efficiency, rubbing.doubt)
+    if rate:
+        about = "power that friction takes"
+        found.add("friction_power", Kind.POWER, about, lost * np.abs(rate), rubbing.doubt)
+
+
+def _add_backward(found: _Solution, bodies: FreeBodies, ideal: Array) -> None:
+    """Efforts for motion against the direction of the table: at rest any between holds."""
+    forces = joint_forces(bodies, _known_acts(bodies), -_direction(found))
+    more = forces.friction_efforts()
+    for k, variable in enumerate(found.geometry.model.equations.inputs):
+        value = np.where(forces.found, ideal[k] + more.efforts[k], np.nan)
+        kind = effort_kind(found.geometry.kind(variable.name))
+        about = f"effort of the input {variable.name} for motion backwards"
+        found.add(f"{effort_name(variable.name)}.backward", kind, about, value, more.doubt)
 
 
 def _add_totals(found: _Solution) -> None:

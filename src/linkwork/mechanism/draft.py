@@ -15,6 +15,7 @@ from linkwork.mechanism.bodies import Measured, Shapes
 from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.field_types import check_entries
+from linkwork.mechanism.friction import Friction
 from linkwork.mechanism.link_shapes import link_shapes
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.part.index import PARTS, JoinedBodies
@@ -38,6 +39,7 @@ class Draft(JoinedBodies):
         set_ = object.__setattr__
         for table, kind in PARTS.items():
             check_entries(table, kind, getattr(self, table))
+        check_entries("friction", Friction, self.friction.values())
         own = [name for part in self.parts if (name := getattr(part, "name", ""))]
         named = (*self.points, *self.links, *own)
         find_spelling = {canonical(name): name for name in named}
@@ -49,6 +51,8 @@ class Draft(JoinedBodies):
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
         set_(self, "masses", self.spelled_masses())
+        rubbing = {same(name): friction for name, friction in self.friction.items()}
+        set_(self, "friction", FrozenDict(rubbing))
         for which in ("lengths", "angles"):
             table = getattr(self, which)
             folded = {" ".join(map(same, key.split())): number for key, number in table.items()}

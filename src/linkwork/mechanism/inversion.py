@@ -91,7 +91,7 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
         raise UnknownNameError(f'"{link}" is not a link of {linkage.name} {known}')
     if link == GROUND:
         return linkage if which is None else replace(linkage, inputs=(which,))
-    linkage = replace(linkage, masses=FrozenDict(), gravity=None, loads=())
+    linkage = replace(linkage, masses=FrozenDict(), friction=FrozenDict(), gravity=None, loads=())
     _check_carried(linkage)
     return _Inverting(linkage, link, places).done(which)
 

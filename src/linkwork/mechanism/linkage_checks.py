@@ -9,6 +9,7 @@ from linkwork.foundation.errors import choices
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Key, Problems, declared
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.friction_checks import check_friction
 from linkwork.mechanism.loaded import check_masses
 from linkwork.mechanism.part.index import JoinedBodies
 from linkwork.mechanism.part.part import PartChecks, turning_links
@@ -35,6 +36,7 @@ def check_linkage(linkage: JoinedBodies, problems: Problems) -> None:
     for key, part in linkage.keyed_parts():
         part.check(PartChecks(linkage, problems, key))
     check_masses(linkage, problems)
+    check_friction(linkage, problems)
     _check_guided_once(linkage, problems)
     _check_dimension_keys(linkage, problems)
     _check_inputs(linkage, problems)

@@ -37,6 +37,10 @@ class ForceStatus(CodedEnum):
         "a self-stress of redundant links loads some joints, whose forces depend on tolerances: "
         "they are not given; release a link to determine them"
     )
+    SELF_LOCKING = (
+        "friction locks the mechanism: no effort of the input moves it this way; reduce friction, "
+        "or drive another link"
+    )
     NO_RATES = (
         "at a dead point or change point the input has no finite effort: ask for a value beside it"
     )
@@ -63,8 +67,11 @@ class Reactions:
         Unit and meaning of every quantity.
     statuses : tuple of ForceStatus
         One for each row.
-    undetermined, lifted : Mapping[str, array of bool]
-        Where a self-stress changes a quantity; where a joint that can only push would have to pull.
+    undetermined, lifted, slipping : Mapping[str, array of bool]
+        Where a self-stress changes a quantity; where a joint that can only push would have to pull;
+        where a rolling wheel would need more adhesion.
+    proved : array of bool
+        Whether it is proved that friction leaves an equilibrium, or where ``SELF_LOCKING``, none.
 
     Examples
     --------
@@ -86,11 +93,14 @@ class Reactions:
     statuses: tuple[ForceStatus, ...]
     undetermined: Mapping[str, BoolArray]
     lifted: Mapping[str, BoolArray]
+    slipping: Mapping[str, BoolArray]
+    proved: BoolArray
 
     def __post_init__(self) -> None:
-        for name in ("inputs", "values", "undetermined", "lifted"):
+        for name in ("inputs", "values", "undetermined", "lifted", "slipping"):
             table = {key: read_only(array) for key, array in getattr(self, name).items()}
             object.__setattr__(self, name, FrozenDict(table))
+        object.__setattr__(self, "proved", read_only(self.proved))
 
     def __len__(self) -> int:
         return len(self.statuses)

@@ -133,6 +133,16 @@ def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> Non
                 copy["name"] = free_name(str(row["name"]), taken)
                 known[canonical(str(row["name"]))] = copy["name"]
             edits.append(table, copy)
+    _copy_friction(edits, known)
+
+
+def _copy_friction(edits: TextEdits, new: Mapping[str, str]) -> None:
+    """The friction of copied parts, and of copied points that are pins again."""
+    carried = [point for link in edits.keys(("links",)) for point in edits.get(("links", link))]
+    for name in edits.keys(("friction",)):
+        copy = new.get(canonical(name), name)
+        if copy != name and carried.count(copy) != 1:
+            edits.put(("friction", copy), dict(edits.get(("friction", name))))
 
 
 def _references(table: str, row: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

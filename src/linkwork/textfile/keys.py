@@ -24,6 +24,7 @@ from linkwork.foundation.file_keys import (
     Text,
 )
 from linkwork.foundation.units import FORCES, MASSES
+from linkwork.mechanism.friction import FRICTION_KEYS
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
@@ -92,6 +93,11 @@ _FORCE_UNITS = (
 _MASSES = (
     Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
     Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
+)
+_FRICTION = Key(
+    "friction",
+    Named(Table(FRICTION_KEYS)),
+    "Friction of pins and parts: A = { mu = 0.1, radius = 5 }",
 )
 _QUESTIONS = Key(
     "questions",
@@ -187,6 +193,7 @@ LINKAGE = Form(
         ),
         *(Key(name, Tables(kind.keys), kind.doc) for name, kind in PARTS.items()),
         *_MASSES,
+        _FRICTION,
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
         _TRACE,
         _OUTPUTS,

@@ -10,6 +10,7 @@ from typing import Any
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.friction import Friction
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.mass import Gravity, Mass
@@ -215,7 +216,14 @@ def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
     parts = {
         table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
     }
-    return {**tables, **parts, **_masses(content), "sketch": content.get("sketch", False)}
+    friction = {name: Friction(**own) for name, own in content.get("friction", {}).items()}
+    return {
+        **tables,
+        **parts,
+        **_masses(content),
+        "friction": friction,
+        "sketch": content.get("sketch", False),
+    }
 
 
 def _masses(content: dict[str, Any]) -> dict[str, Any]:

@@ -115,7 +115,9 @@ def _keys(
     edits: TextEdits, of: str, folded: str, new: str
 ) -> Iterator[tuple[tuple[str, str], str]]:
     """Keys that contain the name, with the new keys."""
-    tables = {"point": _OF_POINTS, "link": ("links", "masses"), "part": ()}[of]
+    tables = {
+        "point": (*_OF_POINTS, "friction"), "link": ("links", "masses"), "part": ("friction",),
+    }[of]  # fmt: skip
     for table in tables:
         for key in edits.keys((table,)):
             words = key.split()

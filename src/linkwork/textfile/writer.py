@@ -111,6 +111,8 @@ def _tables(description: Description) -> _Tables:
             for name in PARTS:
                 found[name] = [_given(part) for part in getattr(description, name)]
             found |= _masses(description)
+            given = description.friction.items()
+            found["friction"] = {name: _given(friction) for name, friction in given}
             found |= _inputs(description)
         case Loops():
             found["loops"] = dict(description.loops)

@@ -12,13 +12,13 @@ import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import Variable
-from linkwork.export.workbook.cell_formula import CellFormula
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.closure_formulas import ClosureFormulas
+from linkwork.export.formulas.rate_formulas import RateFormulas
+from linkwork.export.formulas.traced_equations import Dimension, TracedEquations
 from linkwork.export.workbook.cell_names import CellNames
-from linkwork.export.workbook.closure_formulas import ClosureFormulas
 from linkwork.export.workbook.iterations import Iterations
-from linkwork.export.workbook.rate_formulas import RateFormulas
 from linkwork.export.workbook.style import Style
-from linkwork.export.workbook.traced_equations import Dimension, TracedEquations
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import canonical, pretty

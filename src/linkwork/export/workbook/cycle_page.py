@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import Variable
+from linkwork.export.formulas.cell_formula import cell_number
 from linkwork.export.workbook.book import (
     FIRST,
     LINKWORK,
@@ -17,7 +18,6 @@ from linkwork.export.workbook.book import (
     apart,
     column_name,
 )
-from linkwork.export.workbook.cell_formula import cell_number
 from linkwork.export.workbook.cycle_columns import CycleColumns
 from linkwork.export.workbook.dimension_page import input_table
 from linkwork.export.workbook.newton_page import NewtonColumns

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from linkwork.equations.model import Term
-from linkwork.export.workbook.traced_equations import TracedEquations, forms_of
+from linkwork.export.formulas.traced_equations import TracedEquations, forms_of
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.results.quantity import Kind
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.export.workbook.closure_formulas import ClosureFormulas
+from linkwork.export.formulas.closure_formulas import ClosureFormulas
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.motion.model import Model
 from linkwork.numerics.newton import corrections

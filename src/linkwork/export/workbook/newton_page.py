@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from linkwork.equations.model import Variable
+from linkwork.export.formulas.cell_formula import CellFormula, cell_number
+from linkwork.export.formulas.closure_formulas import BlockFormulas
 from linkwork.export.workbook.book import CYCLE, FIRST, NEWTON, Book, apart, cached, column_name
-from linkwork.export.workbook.cell_formula import CellFormula, cell_number
-from linkwork.export.workbook.closure_formulas import BlockFormulas
 from linkwork.export.workbook.page_layout import PRINTED, print_table
 from linkwork.expression.tree import names_in
 from linkwork.foundation.errors import InputError

@@ -7,8 +7,8 @@ from functools import cached_property
 from itertools import groupby
 
 from linkwork.equations.model import Variable
+from linkwork.export.formulas.cell_formula import cell_number
 from linkwork.export.workbook.book import FIRST, LINKWORK, Book, column_name
-from linkwork.export.workbook.cell_formula import cell_number
 from linkwork.export.workbook.cycle_columns import CycleColumns
 from linkwork.foundation.certification import Certification
 

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from linkwork.equations.compiling import coordinate_name
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import (
     FIRST,
     LINKWORK,
@@ -17,10 +19,8 @@ from linkwork.export.workbook.book import (
     Book,
     column_name,
 )
-from linkwork.export.workbook.cell_formula import CellFormula
 from linkwork.export.workbook.newton_page import NewtonColumns, correction
 from linkwork.export.workbook.page_layout import print_table
-from linkwork.export.workbook.rate_formulas import rate_key
 from linkwork.expression.tree import Name
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.names import canonical

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
+from linkwork.export.formulas.closure_formulas import ClosureFormulas
+from linkwork.export.formulas.rate_formulas import RateFormulas
+from linkwork.export.formulas.traced_equations import traced
 from linkwork.export.workbook.about_page import notices, write_about
 from linkwork.export.workbook.book import (
     CYCLE,
@@ -18,7 +21,6 @@ from linkwork.export.workbook.book import (
     Book,
 )
 from linkwork.export.workbook.chart_page import write_charts
-from linkwork.export.workbook.closure_formulas import ClosureFormulas
 from linkwork.export.workbook.cycle_columns import planned_cycle
 from linkwork.export.workbook.cycle_page import write_cycle
 from linkwork.export.workbook.dimension_page import write_dimensions
@@ -28,8 +30,6 @@ from linkwork.export.workbook.iterations import iterated
 from linkwork.export.workbook.linkwork_page import write_linkwork
 from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.page_layout import set_up_page
-from linkwork.export.workbook.rate_formulas import RateFormulas
-from linkwork.export.workbook.traced_equations import traced
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.foundation.value_types import check_class

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from linkwork.forces.free_bodies import Act, FreeBodies, Reading
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.forces.size import Sided
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.belt import Belt
 from linkwork.results.quantity import Kind
 
@@ -25,12 +24,15 @@ def write(belt: Belt, bodies: FreeBodies) -> None:
     left, right = strands
     pull = bodies.unknown(*(act.times(0.5) for act in left), *(act.times(-0.5) for act in right))
     given = None if belt.pretension is None else bodies.linkage.numbers(belt.pretension)
-    both = bodies.follow(pull, partial(_tension, given=given), *left, *right)
-    for number, half in ((1, 0.5), (2, -0.5)):
+    # without pretension the slack strand has none
+    half = 0.5 if given is None else 0.0
+    size = Sided(unknowns=(pull,), plus=half, minus=half, constant=given or 0.0)
+    both = bodies.follow(size, *left, *right)
+    for number, own in ((1, 0.5), (2, -0.5)):
         about = f"tension of the strand {'left' if number == 1 else 'right'} of the centres"
         name = f"{belt.name}.tension{number}"
         reading = Reading(
-            name=name, kind=Kind.FORCE, about=about, terms=((pull, half),), follow=both, pushes=True
+            name=name, kind=Kind.FORCE, about=about, terms=((pull, own),), follow=both, pushes=True
         )
         bodies.readings.append(reading)
 
@@ -45,9 +47,3 @@ def _strand(belt: Belt, bodies: FreeBodies, side: float) -> tuple[ComplexArray, 
     cosine = (small - large) / distance
     out = (second - first) / distance * (cosine + side * 1j * np.sqrt(1.0 - cosine**2))
     return first + small * out, second + large * out
-
-
-def _tension(pull: Array, *, given: float | None) -> Array:
-    """The mean tension; without pretension the slack strand has none."""
-    found: Array = np.abs(pull) / 2.0 if given is None else np.full_like(pull, given)
-    return found

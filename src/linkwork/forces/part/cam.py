@@ -7,6 +7,7 @@ import numpy as np
 from linkwork.forces.free_bodies import FreeBodies, Holder
 from linkwork.forces.part.contact import moving_most, normal_away, sliding
 from linkwork.forces.part.guide import line_of
+from linkwork.forces.size import Sided
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.cam import Cam
 from linkwork.mechanism.part.guide import guide_named
@@ -31,6 +32,25 @@ def write(cam: Cam, bodies: FreeBodies) -> None:
     push = bodies.pair(follower, bodies.link(cam.cam), place, normal)
     about = f"force of the cam on {follower.body}"
     bodies.read(f"{cam.name}.normal", Kind.FORCE, about, push, pushes=True)
+    friction = bodies.friction(cam.name)
+    if friction is not None:
+        mu = bodies.number(friction.mu)
+        size = Sided(unknowns=(push,), plus=mu, minus=mu)
+        rates = _sliding(cam, bodies, follower, point, place)
+        pair = follower, bodies.link(cam.cam)
+        bodies.rub_force(cam.name, size, pair, place, -1j * normal, rates)
+
+
+def _sliding(
+    cam: Cam, bodies: FreeBodies, follower: Holder, point: str, place: ComplexArray
+) -> ComplexArray:
+    """The velocity of the follower on the cam at their contact, per unit of each input, (p, B)."""
+    geometry = bodies.geometry
+    rates = sliding(geometry, point, cam.cam, cam.center)
+    # a face turns about its point; the contact is elsewhere on it
+    turning = geometry.turning(follower.body) - geometry.turning(cam.cam)
+    found: ComplexArray = rates + 1j * turning * (place - geometry.place(point).v)
+    return found
 
 
 def _at(cam: Cam, bodies: FreeBodies, point: str) -> tuple[ComplexArray, ComplexArray]:

@@ -6,6 +6,8 @@ import numpy as np
 
 from linkwork.equations.outline import Outline
 from linkwork.forces.free_bodies import Act, FreeBodies
+from linkwork.forces.part.contact import sliding
+from linkwork.forces.size import Sided
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.curve import Curve
 from linkwork.results.quantity import Kind
@@ -18,9 +20,16 @@ def write(curve: Curve, bodies: FreeBodies) -> None:
     tangent = _tangent(curve, bodies)
     place = bodies.geometry.place(curve.point).v
     normal = 1j * tangent / np.abs(tangent)
-    force = bodies.pair(bodies.at(curve.point), bodies.link(curve.on), place, normal)
+    pair = bodies.at(curve.point), bodies.link(curve.on)
+    force = bodies.pair(*pair, place, normal)
     about = f"force of the curve on the pin {curve.point}, to its left"
     bodies.read(f"{curve.name}.normal", Kind.FORCE, about, force)
+    friction = bodies.friction(curve.name)
+    if friction is not None:
+        mu = bodies.number(friction.mu)
+        size = Sided(unknowns=(force,), plus=mu, minus=mu)
+        rates = sliding(bodies.geometry, curve.point, curve.on, curve.origin)
+        bodies.rub_force(curve.name, size, pair, place, -1j * normal, rates)
 
 
 def drive(curve: Curve, bodies: FreeBodies) -> int:

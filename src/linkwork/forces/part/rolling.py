@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.forces.free_bodies import FreeBodies
+from linkwork.forces.free_bodies import FreeBodies, Reading
 from linkwork.forces.part.guide import along_line, line_of, side_of
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.rolling import Rolling
@@ -22,7 +22,14 @@ def write(rolling: Rolling, bodies: FreeBodies) -> None:
     bodies.read(f"{rolling.name}.normal", Kind.FORCE, about, normal, pushes=True)
     grip = bodies.pair(wheel, on, place, along)
     about = f"force of {rolling.on} on {rolling.wheel} that keeps it from slipping"
-    bodies.read(f"{rolling.name}.tangent", Kind.FORCE, about, grip)
+    friction = bodies.friction(rolling.name)
+    adhesion = None if friction is None else (normal, bodies.number(friction.mu))
+    bodies.readings.append(
+        Reading(
+            name=f"{rolling.name}.tangent", kind=Kind.FORCE, about=about, terms=((grip, 1.0),),
+            adhesion=adhesion,
+        )
+    )  # fmt: skip
 
 
 def _contact(

@@ -6,11 +6,10 @@ pitch line by the pressure angle, and pushes whatever side it turns to.
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from linkwork.forces.free_bodies import Act, FreeBodies, Holder, Reading
+from linkwork.forces.size import Sided
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.results.quantity import Kind
 
@@ -39,25 +38,33 @@ def mesh(
     about = f"force of {links[0]} on {links[1]} across the line of centres"
     bodies.read(f"{name}.tangent", Kind.FORCE, about, along)
     acts = _pair(second, first, place, away)
-    apart = bodies.follow(along, partial(_separating, pressure=pressure, slope=slope), *acts)
+    plus, minus = (_separating(side, pressure, slope) for side in (1.0, -1.0))
+    apart = bodies.follow(Sided(unknowns=(along,), plus=plus, minus=minus), *acts)
     about = f"force of {links[0]} on {links[1]} along the line of centres"
     radial = f"{name}.radial"
     bodies.readings.append(
         Reading(name=radial, kind=Kind.FORCE, about=about, terms=(), follow=apart)
     )
+    friction = bodies.friction(name)
+    if friction is not None:
+        # teeth slide at their distance from the pitch point times the relative speed of rotation
+        arm = bodies.number(friction.mu) * bodies.number(friction.radius)
+        size = Sided(
+            unknowns=(along,), plus=arm * np.hypot(1.0, plus), minus=arm * np.hypot(1.0, minus)
+        )
+        bodies.rub_couple(name, size, second, first)
 
 
 def _pair(on: Holder, against: Holder, place: ComplexArray, way: ComplexArray) -> tuple[Act, Act]:
     return Act(on, place, way), Act(against, place, -way)
 
 
-def _separating(tangent: Array, *, pressure: float, slope: Array | float) -> Array:
-    """The force along the line of centres that belongs to the one across it.
+def _separating(side: float, pressure: float, slope: Array | float) -> Array:
+    """The force along the line of centres for a unit across it to one side.
 
     A tooth pushes along ± t + n tan α, t the common tangent and n its normal.
     """
-    side = np.sign(tangent)
     # eq. (74): p, the direction of the push in the frame of the line of centres
     push = (side * 1j + np.tan(pressure)) * np.exp(1j * np.asarray(slope))
-    found: Array = np.where(side == 0.0, 0.0, tangent * push.real / push.imag)
+    found: Array = side * push.real / push.imag
     return found

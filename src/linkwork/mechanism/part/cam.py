@@ -184,6 +184,10 @@ class Cam(NamedPart):
         return (self.name, *(f"{self.name}_{word}" for word in added))
 
     @property
+    def friction_sizes(self) -> tuple[str, ...] | None:
+        return None if self.contact == "roller" else ()
+
+    @property
     def turning(self) -> tuple[str, ...]:
         return (self.cam,)
 

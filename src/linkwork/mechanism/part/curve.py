@@ -87,6 +87,10 @@ class Curve(NamedPart):
         return self.name, f"{self.name}_x", f"{self.name}_y"
 
     @property
+    def friction_sizes(self) -> tuple[str, ...]:
+        return ()
+
+    @property
     def drive(self) -> str:
         return "" if self.closed else "slider"
 

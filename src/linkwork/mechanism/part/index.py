@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import get_args, get_type_hints
 
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key
+from linkwork.mechanism.friction import Friction
 from linkwork.mechanism.part.belt import Belt
 from linkwork.mechanism.part.cam import Cam
 from linkwork.mechanism.part.curve import Curve
@@ -61,7 +63,12 @@ def part_module(kind: type) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class JoinedBodies(_Tables, Bodies):
-    """Rigid links and the parts between them."""
+    """Rigid links and the parts between them.
+
+    ``friction`` is that of pins and parts, by name.
+    """
+
+    friction: Mapping[str, Friction] = FrozenDict()
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:

@@ -85,6 +85,13 @@ class Part:
         return ()
 
     @property
+    def friction_sizes(self) -> tuple[str, ...] | None:
+        """What its friction depends on apart from the coefficient: ``radius``, which is required,
+        or ``length``; ``None`` without friction.
+        """
+        return None
+
+    @property
     def body(self) -> tuple[str, ...]:
         """The points of the part, if it is a body."""
         return ()

@@ -111,6 +111,10 @@ class Rolling(NamedPart):
         return "" if self.line is None else "slider"
 
     @property
+    def friction_sizes(self) -> tuple[str, ...]:
+        return ()
+
+    @property
     def guided(self) -> tuple[str, str, str] | None:
         return None if self.line is None else ("center", self.center, self.on)
 

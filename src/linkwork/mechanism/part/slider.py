@@ -87,6 +87,10 @@ class Slider(GuidePart):
         return self.points[0]
 
     @property
+    def friction_sizes(self) -> tuple[str, ...]:
+        return ("length",)
+
+    @property
     def guided(self) -> tuple[str, str, str] | None:
         return ("points", self.points[0], self.on) if self.points else None
 

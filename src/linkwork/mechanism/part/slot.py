@@ -82,6 +82,10 @@ class Slot(GuidePart):
         return self.point
 
     @property
+    def friction_sizes(self) -> tuple[str, ...]:
+        return ()
+
+    @property
     def guided(self) -> tuple[str, str, str]:
         return "point", self.point, self.on
 

@@ -28,6 +28,10 @@ class ToothedPart(NamedPart):
 
     pressure_angle: Number | None = None
 
+    @property
+    def friction_sizes(self) -> tuple[str, ...]:
+        return ("radius",)
+
     def pressure(self, linkage: Bodies) -> float:
         """The angle between the force of a tooth and the pitch line [rad]."""
         if self.pressure_angle is None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from linkwork.batch.building import write_equations
 from linkwork.equations.model import LoopEquations
-from linkwork.export.workbook.linear_form import LinearForm
-from linkwork.export.workbook.traced_number import Trace, TracedNumber
+from linkwork.export.formulas.linear_form import LinearForm
+from linkwork.export.formulas.traced_number import Trace, TracedNumber
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node, names_in
 from linkwork.foundation.names import GROUND, canonical

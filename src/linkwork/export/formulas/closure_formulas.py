@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import LinearEquation, RealEquation, Redundant, Term
-from linkwork.export.workbook.cell_formula import CellFormula
-from linkwork.export.workbook.linear_form import LinearForm, cosine, sine
-from linkwork.export.workbook.traced_equations import TracedEquations, forms_of
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.linear_form import LinearForm, cosine, sine
+from linkwork.export.formulas.traced_equations import TracedEquations, forms_of
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.foundation.angles import AngleUnit
@@ -21,11 +21,10 @@ from linkwork.foundation.names import canonical
 from linkwork.motion.model import Model
 from linkwork.results import quantities
 
-__all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "NoFormula", "Row", "check_length"]
+__all__ = ["BlockFormulas", "ClosureFormulas", "Coefficient", "NoFormula", "Row"]
 
 _MOST_NODES = 7  # longer coefficients get their own cell
-_MOST_UNKNOWNS = 40  # of a block: its corrections must fit into one cell
-_LONGEST = 7_000  # characters of a formula; a cell takes 8,192
+_OF_CELLS = 40, 7_000  # unknowns of a block, characters: a cell takes 8,192
 _PER_NODE, _PER_PART = 4, 24  # characters at most: parentheses; a number or a function
 
 
@@ -68,10 +67,16 @@ class ClosureFormulas:
     model : Model
     traced : TracedEquations
         The same equations with the formulas of their coefficients.
+    most_unknowns : int
+        Of a block: the corrections of a larger one do not fit into one cell.
+    longest : int
+        Characters of a formula.
     """
 
     model: Model
     traced: TracedEquations
+    most_unknowns: int = _OF_CELLS[0]
+    longest: int = _OF_CELLS[1]
     coefficients: dict[Node, Coefficient] = field(default_factory=dict)
     blocks: list[BlockFormulas] = field(default_factory=list)
     points: dict[str, tuple[CellFormula, CellFormula]] = field(default_factory=dict)
@@ -168,11 +173,11 @@ class ClosureFormulas:
     def _block(self, equations: tuple[int, ...], unknowns: tuple[int, ...]) -> BlockFormulas:
         symbols = [self.model.equations.unknowns[k].symbol for k in unknowns]
         try:
-            if len(symbols) > _MOST_UNKNOWNS:
-                raise NoFormula(f"more than {_MOST_UNKNOWNS} unknowns depend on each other")
+            if len(symbols) > self.most_unknowns:
+                raise NoFormula(f"more than {self.most_unknowns} unknowns depend on each other")
             rows = tuple(row for k in equations for row in self._rows(k, symbols))
             for row in rows:
-                check_length(row.formula, *row.slopes)
+                self.check_length(row.formula, *row.slopes)
         except NoFormula as error:
             return BlockFormulas(unknowns=unknowns, reason=str(error))
         return BlockFormulas(unknowns=unknowns, rows=rows)
@@ -228,6 +233,15 @@ class ClosureFormulas:
             slopes=tuple(CellFormula(slope, self._angle) for slope in slopes),
         )
 
+    def check_length(self, *formulas: CellFormula) -> None:
+        """Raise :class:`NoFormula` for a formula that is too long."""
+        for formula in formulas:
+            length = 0
+            for part in _parts_of(formula.node):  # stops early: a derivative can have millions
+                length += len(part.name) + _PER_NODE if isinstance(part, Name) else _PER_PART
+                if length > self.longest:
+                    raise NoFormula("its formula is too long")
+
     # Links, points and outputs
 
     def _place_points(self) -> None:
@@ -259,16 +273,6 @@ class ClosureFormulas:
 
 class NoFormula(Exception):
     """A quantity without a cell formula."""
-
-
-def check_length(*formulas: CellFormula) -> None:
-    """Raise :class:`NoFormula` for a formula that is too long for a cell."""
-    for formula in formulas:
-        length = 0
-        for part in _parts_of(formula.node):  # stops early: a derivative can have millions
-            length += len(part.name) + _PER_NODE if isinstance(part, Name) else _PER_PART
-            if length > _LONGEST:
-                raise NoFormula("its formula is too long for a cell")
 
 
 def _total(parts: Iterator[tuple[LinearForm, LinearForm]]) -> tuple[LinearForm, LinearForm]:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from linkwork.equations.compiling import coordinate_name
 from linkwork.equations.model import Term
-from linkwork.export.workbook.cell_formula import CellFormula
-from linkwork.export.workbook.closure_formulas import ClosureFormulas, NoFormula, check_length
-from linkwork.export.workbook.linear_form import LinearForm
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.closure_formulas import ClosureFormulas, NoFormula
+from linkwork.export.formulas.linear_form import LinearForm
 from linkwork.expression.derivative import derivative, product_of, sum_of
 from linkwork.expression.tree import Binary, Call, Name, Node, Number, names_in
 from linkwork.foundation.angles import AngleUnit
@@ -172,7 +172,7 @@ class RateFormulas:
         try:
             for symbol in moving:
                 slope = derivative(node, symbol, unit.radians)
-                check_length(CellFormula(slope))
+                self.closure.check_length(CellFormula(slope))
                 if symbol not in held:
                     first = sum_of(first, product_of(slope, self._rate(symbol, 1)))
                     if symbol in self._moved or symbol in self.of:
@@ -184,7 +184,7 @@ class RateFormulas:
         except ValueError as error:
             raise NoFormula(str(error)) from None
         pair = CellFormula(first, unit), CellFormula(second, unit)
-        check_length(*pair)
+        self.closure.check_length(*pair)
         return pair
 
     def _moves(self, name: str) -> bool:

@@ -13,7 +13,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from linkwork.export.workbook.linear_form import LinearForm, call, cosine, sine
+from linkwork.export.formulas.linear_form import LinearForm, call, cosine, sine
 from linkwork.expression.lane_functions import FUNCTIONS, least, most
 from linkwork.expression.tree import Binary, Call, Node, Number
 from linkwork.foundation.angles import FULL_TURN

@@ -1,0 +1,64 @@
+"""Programs of all library mechanisms, run and compared; see ``scripts/exports``."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+import linkwork as lw
+from linkwork.foundation.errors import InputError
+from tests.export.running import RUNNERS, columns_of, largest_differences
+
+_SUFFIXES = (".py", ".js", ".c", ".m", ".st")
+
+
+def _compared(name: str, suffix: str, folder: Path) -> str:
+    """The largest differences of values and derivatives, or why there is no program."""
+    mechanism, file = lw.example(name), folder / f"solver{suffix}"
+    few = suffix == ".st"  # its parser is slow
+    motion = mechanism.sweep(start=60, stop=62, step=1) if few else mechanism.sweep()
+    try:
+        mechanism.to_code(file, motion)
+    except InputError as error:
+        return f"refused: {str(error).partition(': ')[2]}"
+    if suffix == ".st":
+        return _parsed(file)
+    columns, statuses = columns_of(file)
+    same = [s == "found" for s in statuses] == motion.found[motion.asked].tolist()
+    found = largest_differences(columns, motion)
+    rates = {name: x for name, x in found.items() if name.endswith((".d1", ".d2"))}
+    values = {name: x for name, x in found.items() if name not in rates}
+    shown = (f"{max(part.values(), default=0.0):.1e}" for part in (values, rates))
+    return f"{len(statuses)} rows, values {', derivatives '.join(shown)}" + (
+        "" if same else " WRONG"
+    )
+
+
+def _parsed(file: Path) -> str:
+    """Whether an independent parser, the package blark, reads a program."""
+    parsed = import_module("blark.parse").parse_source_code(file.read_text("utf-8"))
+    return "syntax right" if parsed.exception is None else f"SYNTAX {parsed.exception}"
+
+
+def main() -> None:
+    """Compare programs in the languages that this machine can run."""
+    wanted = [x for x in sys.argv[1:] if x in _SUFFIXES] or _SUFFIXES
+    names = [x for x in sys.argv[1:] if x not in _SUFFIXES]
+    names = names or [n for n in lw.examples() if lw.example(n).description.inputs]
+    parser = {".st"} if find_spec("blark") else set[str]()
+    for suffix in wanted:
+        if suffix not in RUNNERS | parser:
+            click.echo(f"{suffix}: SKIPPED, nothing here runs it")
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            for name in names:
+                click.echo(f"{suffix} {name:28s} {_compared(name, suffix, Path(folder))}")
+
+
+if __name__ == "__main__":
+    main()

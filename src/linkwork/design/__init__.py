@@ -1,0 +1,19 @@
+"""Questions of designers about a mechanism: which dimension matters, and by how much."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.design.counterweights import (
+        balanced as balanced,
+        counterweights as counterweights,
+    )
+    from linkwork.design.flywheel import flywheel as flywheel
+    from linkwork.design.harmonic_analysis import harmonics as harmonics
+    from linkwork.design.inflection import inflection_circle as inflection_circle
+    from linkwork.design.motor_check import motor_check as motor_check
+else:
+    __getattr__ = loader(__name__)

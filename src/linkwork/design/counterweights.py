@@ -1,0 +1,176 @@
+"""Counterweights that remove the shaking force of a four-bar.
+
+The centre of mass of the moving links stays at rest if the vectors that turn with crank and rocker
+vanish (R. S. Berkof, G. G. Lowen 1969, doi:10.1115/1.3591524).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork import motion
+from linkwork.forces import forces_of_motion
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.mass import Mass
+from linkwork.mechanism.part.index import PARTS
+from linkwork.mechanism.part.load import Load
+from linkwork.mechanism.part.spring import Spring
+from linkwork.results.machine_design import Counterweight, Counterweights
+
+__all__ = ["balanced", "counterweights"]
+
+
+@dataclass(frozen=True)
+class _FourBar:
+    """The links of a four-bar: both on ground with their fixed and moving pins, and the coupler."""
+
+    sides: tuple[tuple[str, str, str], tuple[str, str, str]]
+    coupler: str
+
+
+def counterweights(linkage: Linkage, radius: float | Mapping[str, float]) -> Counterweights:
+    """The counterweights of crank and rocker, and how the linkage shakes before and after.
+
+    Raises
+    ------
+    InputError
+        If the mechanism is no four-bar with pins and masses, or a radius is not positive.
+    """
+    weights = tuple(_weights(linkage, radius))
+    (force, moment), (force_after, moment_after) = (
+        _shaking(own) for own in (linkage, balanced(linkage, weights))
+    )
+    mass, length, unit = linkage.mass, linkage.length, linkage.force
+    return Counterweights(
+        weights=weights,
+        force=(force, force_after),
+        moment=(moment, moment_after),
+        units={
+            "mass": mass, "product": f"{mass}·{length}", "force": unit,
+            "moment": f"{unit}·{length}",
+        },
+    )  # fmt: skip
+
+
+def _weights(linkage: Linkage, radius: float | Mapping[str, float]) -> Iterator[Counterweight]:
+    """The counterweights of crank and rocker at a distance from their pins on ground."""
+    bar = _four_bar(linkage)
+    # in the frames of their links
+    first, second = (
+        _local(linkage, link, moving) - _local(linkage, link, fixed)
+        for link, fixed, moving in bar.sides
+    )
+    start, end = (_local(linkage, bar.coupler, moving) for _, _, moving in bar.sides)
+    mass, centre = _mass(linkage, bar.coupler)
+    share = (centre - start) / (end - start)
+    for (link, fixed, _), arm, part in zip(
+        bar.sides, (first, second), (1.0 - share, share), strict=True
+    ):
+        own, place = _mass(linkage, link)
+        # eq. (80)
+        needed = -(own * (place - _local(linkage, link, fixed)) + mass * part * arm)
+        size = abs(needed)
+        distance = radius[link] if isinstance(radius, Mapping) else radius
+        if not distance > 0.0:
+            raise InputError(f'the radius on "{link}" must be positive, got {distance:g}')
+        way = needed / size if size else 1.0 + 0j
+        at = _local(linkage, link, fixed) + distance * way
+        yield Counterweight(
+            link=link,
+            product=size,
+            angle=math.degrees(math.atan2(way.imag, way.real)),
+            mass=size / distance,
+            place=(at.real, at.imag),
+        )
+
+
+def balanced(linkage: Linkage, weights: tuple[Counterweight, ...]) -> Linkage:
+    """The linkage with its counterweights."""
+    masses = dict(linkage.masses)
+    for weight in weights:
+        own, centre = _mass(linkage, weight.link)
+        total = own + weight.mass
+        if not total:
+            continue
+        place = complex(*weight.place)
+        both = (own * centre + weight.mass * place) / total
+        inertia = _inertia(linkage, weight.link)
+        inertia += own * abs(centre - both) ** 2 + weight.mass * abs(place - both) ** 2
+        masses[weight.link] = Mass(mass=total, center=(both.real, both.imag), inertia=inertia)
+    return replace(linkage, masses=masses)
+
+
+def _shaking(linkage: Linkage) -> tuple[float, float]:
+    """The largest shaking force and moment of the masses alone, at the input's speed or 1 rad/s."""
+    inputs = tuple(
+        own if own.speed is not None else replace(own, speed="1 rad/s") for own in linkage.inputs
+    )
+    alone = replace(
+        linkage, loads=(), springs=(), gravity=None, friction=FrozenDict(), inputs=inputs
+    )
+    model = motion.model_of(alone)
+    found = forces_of_motion(model, motion.sweep(model, certify=False))
+    x, y, moment = (np.asarray(found[f"shaking.{part}"]) for part in ("x", "y", "moment"))
+    return float(np.nanmax(np.hypot(x, y))), float(np.nanmax(np.abs(moment)))
+
+
+def _four_bar(linkage: Linkage) -> _FourBar:
+    parts = [
+        table
+        for table, kind in PARTS.items()
+        if kind not in (Load, Spring) and getattr(linkage, table)
+    ]
+    moving = [link for link in linkage.links if link != GROUND]
+    sides = []
+    for link in moving:
+        others = [other for other in moving if other != link]
+        fixed = [p for p in linkage.links[link] if p in linkage.links[GROUND]]
+        joined = [p for p in linkage.links[link] if any(p in linkage.links[o] for o in others)]
+        if len(fixed) == 1 and len(joined) == 1:
+            sides.append((link, fixed[0], joined[0]))
+    rest = [link for link in moving if link not in [side[0] for side in sides]]
+    if parts or len(moving) != 3 or len(sides) != 2 or len(rest) != 1:
+        raise InputError(
+            f"{linkage.name} is no four-bar with pins only: the shaking force of other mechanisms "
+            "cannot be removed by two counterweights"
+        )
+    if not linkage.masses:
+        raise InputError(f"{linkage.name} has no masses to balance: add [masses]")
+    return _FourBar(sides=(sides[0], sides[1]), coupler=rest[0])
+
+
+def _local(linkage: Linkage, link: str, point: str) -> complex:
+    """A point in the frame of its link."""
+    return complex(linkage.shapes.local[link][point])
+
+
+def _mass(linkage: Linkage, link: str) -> tuple[float, complex]:
+    """The mass of a link, and its centre in the link's frame."""
+    given = linkage.masses.get(link)
+    if given is None:
+        return 0.0, 0j
+    mass = linkage.numbers(given.mass)
+    if given.shape is not None:
+        return mass, complex(_rod(linkage, link) / 2.0)
+    return mass, complex(*map(linkage.numbers, given.center or (0.0, 0.0)))
+
+
+def _inertia(linkage: Linkage, link: str) -> float:
+    given = linkage.masses.get(link)
+    if given is None:
+        return 0.0
+    if given.shape is not None:
+        return float(linkage.numbers(given.mass) * _rod(linkage, link) ** 2 / 12.0)
+    return float(linkage.numbers(given.inertia))
+
+
+def _rod(linkage: Linkage, link: str) -> float:
+    first, second = linkage.links[link][:2]
+    return float(np.abs(_local(linkage, link, second) - _local(linkage, link, first)))

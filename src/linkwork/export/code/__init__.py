@@ -1,0 +1,1 @@
+"""A mechanism's solver as a program in another language."""

@@ -1,0 +1,85 @@
+"""Programs in C99 without allocation, for controllers."""
+
+from __future__ import annotations
+
+from linkwork.export.code.syntax import Syntax
+
+__all__ = ["C"]
+
+_WORDS = """
+    auto break case char const continue default do double else enum extern float for goto if
+    inline int long register restrict return short signed sizeof static struct switch typedef
+    union unsigned void volatile while bool true false nan infinity null main
+"""
+_OWN = """
+    n m k derived_count rate_count block_count largest rows stretches units sizes block_unknowns
+    block_size tolerance most_iterations most_change largest_misfit shortest_step closure sides
+    solve newton follow rates misfits derived derived_rates table starts shown columns
+    linkwork_position row largest_change f j u q v w d1 d2 v1 v2 e pi radians degrees y0 y1 yn
+    j0 j1 jn gamma index position printf isnan sin cos tan asin acos atan atan2 sqrt fabs exp
+    log log10 hypot fmin fmax pow double_t float_t time signal remove rename div abs exit abort
+"""
+_SIDES = """\
+/* {{about}}: F differentiated {times}, without the {left} derivatives of its own unknowns. */
+static void {left}_sides_{{k}}(const double u[M], const double q[], const double d1[],
+    const double d2[], double F[])
+{{{{
+    (void)u, (void)q, (void)d1, (void)d2;
+    {{body}}
+}}}}
+"""
+_FORMS = {
+    name: f"{name}({{}})"
+    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "exp", "log10")
+}
+C = Syntax(
+    language="C99",
+    suffix=".c",
+    template="c.txt",
+    functions=_FORMS
+    | {
+        "atan2": "atan2({}, {})", "hypot": "hypot({}, {})", "min": "fmin({}, {})",
+        "max": "fmax({}, {})", "abs": "fabs({})", "ln": "log({})", "^": "pow({}, {})",
+        "radians": "radians({})", "degrees": "degrees({})", "pi": "PI", "e": "exp(1.0)",
+    },
+    sections={
+        "closure": (
+            "/* {about}: F, and the Jacobian by its unknowns. */\n"
+            "static void closure_{k}(const double u[M], const double q[], double F[], "
+            "double J[][LARGEST])\n{{\n    (void)u, (void)q;\n    {body}\n}}\n"
+        ),
+        "sides1": _SIDES.format(times="once", left="first"),
+        "sides2": _SIDES.format(times="twice", left="second"),
+        "misfits": (
+            "/* The errors of the lengths of redundant links, in w. */\n"
+            "static void misfits(const double u[M], const double q[], double w[])\n"
+            "{{\n    (void)u, (void)q, (void)w;\n    {body}\n}}"
+        ),
+        "derived": (
+            "/* Links that turn with others, points and outputs. */\n"
+            "static void derived(const double u[M], const double q[], double v[])\n"
+            "{{\n    (void)u, (void)q, (void)v;\n    {body}\n}}"
+        ),
+        "derived_rates": (
+            "/* Their derivatives by the leading input; angles in radians. */\n"
+            "static void derived_rates(const double u[M], const double q[], const double v[],\n"
+            "    const double d1[], const double d2[], double v1[], double v2[])\n"
+            "{{\n    (void)u, (void)q, (void)v, (void)d1, (void)d2, (void)v1, (void)v2;\n"
+            "    {body}\n}}"
+        ),
+        "no blocks": "    {0, 0, 0, 0}",
+        "call": "    {{closure_{k}, first_sides_{k}, second_sides_{k}, {n}}},",
+    },
+    assign="const double {name} = {value};",
+    constant="#define {name} ({value})",
+    comment=" /* {} */",
+    first=0,
+    element="{array}[{k}]",
+    entry="{array}[{i}][{j}]",
+    store="{place} = {value};",
+    string='"{}"',
+    row=("{", ", ", "}"),
+    rows=("{\n    ", ", ", "\n}"),
+    empty="0",
+    reserved=frozenset((_WORDS + _OWN).split()),
+)  # fmt: skip
