@@ -109,6 +109,12 @@ def test_proofs_are_those_of_arrays(name: str) -> None:
     assert held > 4
 
 
+def test_no_rows_are_no_rows() -> None:
+    solver = lw.example("four-bar").model.compiled.solver
+    nothing = solver.solve(np.empty((0, 3)))
+    assert nothing.v.shape == solver.rates(nothing.v, np.ones(1)).first.shape == (0, 3)
+
+
 def test_a_position_with_a_singular_block_has_no_rates() -> None:
     solver = lw.example("four-bar").model.compiled.solver
     rows = _Numbers(solver.blocks, solver.unknowns, solver.variables, solver.variable_scale)

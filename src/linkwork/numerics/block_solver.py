@@ -84,11 +84,11 @@ class BlockSolver:
 
     def goes_singly(self, count: int) -> bool:
         """Whether so few rows are solved one by one in plain numbers."""
-        return count * self._share <= _ARRAYS
+        return 0 < count * self._share <= _ARRAYS
 
     def is_proved_singly(self, count: int) -> bool:
         """Whether so few rows are proved one by one in plain numbers."""
-        return count * self._share <= _PROOFS
+        return 0 < count * self._share <= _PROOFS
 
     def solve(
         self,
