@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from linkwork.marching.solution_path import PathOptions
 from linkwork.numerics.homotopy import isolated_roots as roots_module
 from linkwork.numerics.homotopy.bilinear import BilinearSystem, prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
@@ -151,7 +152,8 @@ def test_results_do_not_depend_on_what_was_solved_before(monkeypatch: pytest.Mon
 def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
     roots_of(system)
-    monkeypatch.setattr("linkwork.numerics.homotopy.path_tracking._LARGEST_STEPS", 3)
+    for care in ("BOLD", "CAREFUL"):
+        monkeypatch.setattr(roots_module, care, PathOptions(attempts=3))
     roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (0, 6)
 

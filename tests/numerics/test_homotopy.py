@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
-from linkwork.numerics.homotopy.path_tracking import (
+from linkwork.marching.solution_path import (
     ARRIVED,
     BOLD,
     CAREFUL,
     LOST,
     SINGULAR,
     PathOptions,
-    track,
 )
+from linkwork.numerics.homotopy.path_tracking import track
 
 Right = Callable[[Array], tuple[AnyArray, AnyArray]]  # real or complex
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from linkwork.marching.solution_path import CAREFUL
 from linkwork.numerics.homotopy import isolated_roots as roots_module
 from linkwork.numerics.homotopy.bilinear import prove_roots
 from linkwork.numerics.homotopy.bilinear_family import Structure, structure_of
@@ -14,7 +15,7 @@ from linkwork.numerics.homotopy.bilinear_homotopy import StartHomotopy
 from linkwork.numerics.homotopy.column_sums import columns_of, sums_hold
 from linkwork.numerics.homotopy.isolated_roots import isolated_roots
 from linkwork.numerics.homotopy.laman_number import laman_number
-from linkwork.numerics.homotopy.path_tracking import CAREFUL, track
+from linkwork.numerics.homotopy.path_tracking import track
 from linkwork.numerics.homotopy.solution_bound import (
     Products,
     Theorem,

@@ -10,6 +10,8 @@ These loops step along a path, each for a reason:
   branches and curves beyond dead points are all followed by it.
 * ``numerics.homotopy.path_tracking``: all paths of a homotopy at once, each with a step of its own;
   a path leaves the batch when it ends.
+* ``kernels.paths.lane_paths``: the same in 64 lanes of compiled code; a lane takes the next path
+  when its own has ended.
 * ``kernels.march.independent``: 64 mechanisms at once, each with a step of its own; a lane takes
   the next mechanism when it is done.
 * ``kernels.march.lockstep``: 64 mechanisms at the same input, so that they share the weights of a

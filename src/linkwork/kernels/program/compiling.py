@@ -107,6 +107,8 @@ say_that_it_compiles()
 
 def named_tuple(fields: list[object], kind: type) -> Any:
     """The type of a NamedTuple in a signature."""
+    if len(set(fields)) == 1:  # Numba has a type of its own for these
+        return types.NamedUniTuple(fields[0], len(fields), kind)
     return types.NamedTuple(fields, kind)
 
 

@@ -14,6 +14,7 @@ from platformdirs import user_cache_path
 
 __all__ = [
     "LOOPS",
+    "PATH_LOOP",
     "is_compiled",
     "is_loaded",
     "loop_serves",
@@ -23,14 +24,16 @@ __all__ = [
 
 #: The loops over lanes, by module, with the function that takes long to compile.
 LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
-_FOLDER = Path(__file__).parents[1] / "march"
-_COMPILED = ("kernels/gpu", "kernels/march", "kernels/program", "marching")
+#: The loop over solution paths of a homotopy.
+PATH_LOOP = "lane_paths"
+_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths"}
+_COMPILED = ("kernels/gpu", "kernels/march", "kernels/paths", "kernels/program", "marching")
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
 def is_loaded(loop: str) -> bool:
     """Whether this process has a loop in use."""
-    return f"linkwork.kernels.march.{loop}" in sys.modules
+    return f"linkwork.kernels.{_package(loop)}.{loop}" in sys.modules
 
 
 def is_compiled(loop: str) -> bool:
@@ -67,11 +70,17 @@ def _indices(loop: str) -> Iterator[Path]:
     """Numba's index files of a loop."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     shared = Path(given) if given else user_cache_path("numba", appauthor=False)
-    folders = list(shared.glob(f"{_FOLDER.name}_*"))
+    package = _package(loop)
+    folders = list(shared.glob(f"{package}_*"))
     if not given:
-        folders.append(_FOLDER / "__pycache__")
+        folders.append(Path(__file__).parents[1] / package / "__pycache__")
     for folder in folders:
-        yield from folder.glob(f"{loop}.{LOOPS[loop]}-*.nbi")
+        yield from folder.glob(f"{loop}.{_FUNCTIONS[loop]}-*.nbi")
+
+
+def _package(loop: str) -> str:
+    """The package of kernels that a loop belongs to."""
+    return "paths" if loop == PATH_LOOP else "march"
 
 
 def say_that_it_compiles(loop: str = "") -> None:
@@ -79,7 +88,7 @@ def say_that_it_compiles(loop: str = "") -> None:
 
     Without a loop: whether what all of them share was compiled, with any of them.
     """
-    if not any(map(is_compiled, (loop,) if loop else LOOPS)):
+    if not any(map(is_compiled, (loop,) if loop else _FUNCTIONS)):
         _warn_that_it_compiles()
 
 

@@ -15,17 +15,15 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
-from linkwork.numerics.homotopy.path_tracking import (
+from linkwork.marching.solution_path import (
     ARRIVED,
     BOLD,
     CAREFUL,
     LOST,
     SINGULAR,
-    Homotopy,
     PathOptions,
-    Paths,
-    track,
 )
+from linkwork.numerics.homotopy.path_tracking import Homotopy, Paths, track
 from linkwork.numerics.homotopy.polynomial_system import (
     PolynomialSystem,
     Roots,

@@ -1,0 +1,267 @@
+"""Four-bars through precision positions, as polynomial equations in isotropic coordinates.
+
+The first position is the reference. From its point P0 the moving pivots A and B and the fixed
+pivots A0 and B0 are the complex numbers x, y, a, b; x̄, ȳ, ā, b̄ are unknowns of their own, which
+are conjugates at real solutions. A position at the distance δ from P0 in which the coupler has
+turned by e = 1 + γ keeps the length of both bars, with ē = 1/e:
+
+    p γ + q γ̄ + r = 0,   p = (ā - δ̄) x,   q = (a - δ) x̄,   r = δ(ā - x̄) + δ̄(a - x) - δδ̄,
+
+and u γ + v γ̄ + w = 0 alike with y and b. A pose gives e, hence two equations. A point does not:
+with D = pv - qu, G = qw - vr and H = ru - pw the equation of e alone is
+
+    G H + (G + H) D = 0
+
+(Wampler, Morgan, Sommese 1992, J. Mech. Des. 114, 153, in isotropic form).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.precision.cognates import third_pivot
+from linkwork.foundation.arrays import BoolArray, ComplexArray
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
+from linkwork.numerics.homotopy.parameter_path import Equations
+
+__all__ = ["CONDITIONS", "PrecisionProblem"]
+
+#: Conditions that a four-bar can meet, not counting the first position.
+CONDITIONS = 8
+_TURN = 0.7  # rad, of random complex rotations
+_TRIES = 60  # steps of Newton's method towards random positions of a random linkage,
+_CLOSED = 1e-10  # and what they may leave
+_NOTHING = 1e-9  # of the largest number of a solution: zero
+_FAR = 10.0  # random positions further away make a bad start
+
+
+@dataclass(frozen=True)
+class PrecisionProblem:
+    """All four-bars through some poses and points, or with some of their fixed pivots given.
+
+    Parameters
+    ----------
+    poses, points : int
+        Given after the first position.
+    pivots : int
+        Fixed pivots that are given: A0, or A0 and B0.
+
+    Notes
+    -----
+    Unknowns are x, x̄, a, ā, y, ȳ, b, b̄ without those that are given; parameters are e, δ, δ̄ of
+    every pose, δ, δ̄ of every point, and a, ā, b, b̄ of pivots.
+    """
+
+    poses: int
+    points: int
+    pivots: int = 0
+
+    @property
+    def unknowns(self) -> int:
+        """n."""
+        return CONDITIONS - 2 * self.pivots
+
+    @property
+    def parameters(self) -> int:
+        """P."""
+        return 3 * self.poses + 2 * self.points + 2 * self.pivots
+
+    @property
+    def given(self) -> tuple[int, ...]:
+        """The numbers of x, x̄, a, ā, y, ȳ, b, b̄ that are given,"""
+        return (2, 3, 6, 7)[: 2 * self.pivots]
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """and the others."""
+        return tuple(k for k in range(CONDITIONS) if k not in self.given)
+
+    @property
+    def last(self) -> slice:
+        """The parameters of the last point."""
+        first = 3 * self.poses + 2 * self.points
+        return slice(first - 2, first)
+
+    @property
+    def name(self) -> str:
+        """The name of its start set."""
+        return f"{self.poses + 1}-{self.points}-{self.pivots}"
+
+    def equations(self, z: Sequence[Any], c: Sequence[Any], rate: Sequence[Any]) -> Equations:
+        """The equations, with operators alone."""
+        first = 3 * self.poses + 2 * self.points
+        places, numbers = (*self.free, *self.given), (*z, *c[first:])
+        linkage = [number for _, number in sorted(zip(places, numbers, strict=True), key=_place)]
+        rows = list[_Row]()
+        for k in range(0, 3 * self.poses, 3):
+            rows += _pose_rows(linkage, c[k : k + 3], rate[k : k + 3])
+        for k in range(3 * self.poses, first, 2):
+            rows.append(_point_row(linkage, c[k : k + 2], rate[k : k + 2]))
+        changes = [
+            sum((slopes[k] * r for k, r in zip(self.given, rate[first:], strict=True)), change)
+            for _, slopes, change in rows
+        ]
+        slopes = [[row[k] for k in self.free] for _, row, _ in rows]
+        return [value for value, _, _ in rows], slopes, changes
+
+    def proper(self, x: ComplexArray, c: ComplexArray) -> BoolArray:
+        """Which solutions (B, n) are linkages: where both bars turn at one point anything goes."""
+        linkage = self.linkages(x, c)
+        legs = linkage.reshape(len(x), 2, 2, 2)  # leg, pivot, number or its conjugate
+        far = np.abs(legs).max(axis=(1, 2, 3), initial=1.0)[:, None]
+        moving = np.abs(legs[:, :, 0]).max(axis=1)  # x = y = 0, or x̄ = ȳ = 0
+        apart = np.abs(legs[:, 0] - legs[:, 1]).max(axis=1)  # x = y and a = b, or conjugates
+        good: BoolArray = ((moving > _NOTHING * far) & (apart > _NOTHING * far)).all(axis=1)
+        return good
+
+    def is_real(self, c: ComplexArray) -> bool:
+        """Whether parameters (P,) are those of real positions."""
+        first, width = 3 * self.poses, 2 * (self.points + self.pivots)
+        turns, moved = c[:first].reshape(-1, 3), c[first : first + width].reshape(-1, 2)
+        pairs = np.concatenate([turns[:, 1:], moved])
+        turned = np.abs(turns[:, 0])
+        return bool((pairs[:, 0] == pairs[:, 1].conj()).all() and np.allclose(turned, 1.0))
+
+    def mirrored(self, x: ComplexArray) -> ComplexArray:
+        """The mirror images (B, n): x̄ in place of x, and so on."""
+        swapped = np.arange(self.unknowns) ^ 1
+        return x[:, swapped].conj()
+
+    def fingerprint(self, x: ComplexArray, c: ComplexArray) -> ComplexArray:
+        """Numbers (B, K) that are equal for solutions of one linkage, or of one triple of cognates.
+
+        Both pairs of a moving and a fixed pivot may be named A and A0. Cognates go through the same
+        points, not through the same poses.
+        """
+        if self.pivots == 2 or (self.pivots == 1 and self.poses):
+            return x
+        linkage = self.linkages(x, c)
+        own, a, other, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
+        if self.poses:
+            return np.concatenate([own + other, a + b, own * a + other * b], axis=1)
+        third = third_pivot(linkage)
+        if self.pivots:
+            return np.concatenate([b + third, b * third, own * (a - own)], axis=1)
+        return np.concatenate([a + b + third, a * b * third], axis=1)
+
+    def random_parameters(self, rng: np.random.Generator) -> ComplexArray:
+        """Random complex parameters (P,)."""
+        return self._parameters(
+            _random_turns(rng, self.poses),
+            normal_numbers(rng, 2, self.poses + self.points),
+            normal_numbers(rng, 2 * self.pivots),
+        )
+
+    def random_member(self, rng: np.random.Generator) -> tuple[ComplexArray, ComplexArray]:
+        """Random parameters (P,) and one of their solutions (n,): positions of a random linkage."""
+        count = self.poses + self.points
+        while True:
+            linkage = normal_numbers(rng, CONDITIONS)
+            turns = _random_turns(rng, count)
+            moved = _positions_of(linkage, turns, normal_numbers(rng, 2, count))
+            if np.abs(moved).max(initial=0.0) < _FAR:  # also false for numbers that are none
+                break
+        return (
+            self._parameters(turns[: self.poses], moved, linkage[list(self.given)]),
+            linkage[list(self.free)],
+        )
+
+    def linkages(self, x: ComplexArray, c: ComplexArray) -> ComplexArray:
+        """Solutions (B, n) at the parameters c (P,) with their given pivots, (B, 8)."""
+        whole = np.empty((len(x), CONDITIONS), dtype=complex)
+        whole[:, list(self.free)] = x
+        whole[:, list(self.given)] = c[self.parameters - 2 * self.pivots :]
+        return whole
+
+    def _parameters(
+        self, turns: ComplexArray, moved: ComplexArray, pivots: ComplexArray
+    ) -> ComplexArray:
+        poses = np.column_stack([turns, *moved[:, : self.poses]])
+        points = moved[:, self.poses :].T
+        return np.concatenate([poses.ravel(), points.ravel(), pivots])
+
+
+def _place(pair: tuple[int, Any]) -> int:
+    return pair[0]
+
+
+#: The value of an equation, its derivatives by x, x̄, a, ā, y, ȳ, b, b̄, and its change.
+_Row = tuple[Any, list[Any], Any]
+
+
+def _leg_numbers(leg: Sequence[Any], d: Any, d_bar: Any) -> tuple[Any, Any, Any]:
+    """p, q and r of a leg x, x̄, a, ā."""
+    x, x_bar, a, a_bar = leg
+    p, q = (a_bar - d_bar) * x, (a - d) * x_bar
+    return p, q, d * (a_bar - x_bar) + d_bar * (a - x) - d * d_bar  # eq. (111)
+
+
+def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any]) -> list[_Row]:
+    """The equations of both legs in a pose e, δ, δ̄."""
+    (e, d, d_bar), (e_rate, d_rate, d_bar_rate) = pose, rate
+    e_bar = 1.0 / e
+    g, g_bar, e_bar_rate = e - 1.0, e_bar - 1.0, e_rate * e_bar * e_bar
+    rows = list[_Row]()
+    for first in (0, 4):
+        leg = linkage[first : first + 4]
+        x, x_bar, a, a_bar = leg
+        p, q, r = _leg_numbers(leg, d, d_bar)
+        own = [
+            (a_bar - d_bar) * g - d_bar, (a - d) * g_bar - d,
+            x_bar * g_bar + d_bar, x * g + d,
+        ]  # fmt: skip
+        change = p * e_rate - q * e_bar_rate
+        change = change + (a_bar - x_bar - d_bar - x_bar * g_bar) * d_rate
+        change = change + (a - x - d - x * g) * d_bar_rate
+        slopes = [*own, *[0.0] * 4] if first == 0 else [*[0.0] * 4, *own]
+        rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (110)
+    return rows
+
+
+def _point_row(linkage: Sequence[Any], point: Sequence[Any], rate: Sequence[Any]) -> _Row:
+    """The equation of a point δ, δ̄."""
+    d, d_bar = point
+    x, x_bar, a, a_bar, y, y_bar, b, b_bar = linkage
+    p, q, r = _leg_numbers(linkage[:4], d, d_bar)
+    u, v, w = _leg_numbers(linkage[4:], d, d_bar)
+    det, g, h = p * v - q * u, q * w - v * r, r * u - p * w
+    by_g, by_h, by_det = h + det, g + det, g + h
+    # derivatives by p, q, r and u, v, w
+    fp, fq, fr = v * by_det - w * by_h, w * by_g - u * by_det, u * by_h - v * by_g
+    fu, fv, fw = r * by_h - q * by_det, p * by_det - r * by_g, q * by_g - p * by_h
+    slopes = [
+        (a_bar - d_bar) * fp - d_bar * fr, (a - d) * fq - d * fr,
+        x_bar * fq + d_bar * fr, x * fp + d * fr,
+        (b_bar - d_bar) * fu - d_bar * fw, (b - d) * fv - d * fw,
+        y_bar * fv + d_bar * fw, y * fu + d * fw,
+    ]  # fmt: skip
+    by_d = fr * (a_bar - x_bar - d_bar) - fq * x_bar + fw * (b_bar - y_bar - d_bar) - fv * y_bar
+    by_d_bar = fr * (a - x - d) - fp * x + fw * (b - y - d) - fu * y
+    return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (112)
+
+
+def _random_turns(rng: np.random.Generator, count: int) -> ComplexArray:
+    """Random complex rotations e."""
+    turns: ComplexArray = np.exp(_TURN * 1j * normal_numbers(rng, count))
+    return turns
+
+
+def _positions_of(linkage: ComplexArray, turns: ComplexArray, start: ComplexArray) -> ComplexArray:
+    """δ and δ̄, (2, J), in which a linkage (8,) has turned by ``turns`` (J,)."""
+    moved = start.copy()
+    with np.errstate(all="ignore"):
+        for _ in range(_TRIES):
+            by_both = []
+            for rate in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+                rows = _pose_rows(linkage.tolist(), (turns, *moved), rate)
+                by_both.append([row[2] for row in rows])
+            (a, b), (c, d) = by_both
+            (f, _, _), (g, _, _) = rows
+            moved = moved - np.array([d * f - c * g, a * g - b * f]) / (a * d - b * c)
+    rows = _pose_rows(linkage.tolist(), (turns, *moved), (0.0, 0.0, 0.0))
+    left = np.abs([row[0] for row in rows]).max()
+    return moved if left < _CLOSED else np.full_like(moved, np.nan)

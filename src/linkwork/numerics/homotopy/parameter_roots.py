@@ -1,0 +1,208 @@
+"""All isolated solutions of a member of a family, by straight paths from those of a random one.
+
+Lost paths, and paths that met, are followed again with more care. What is still missing is looked
+for among the mirror images of solutions, if the member is real, and along detours: a path by way
+of random parameters leads from the same starts to the same ends in another order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from linkwork.foundation.arrays import BoolArray, ComplexArray, IndexArray
+from linkwork.marching.solution_path import ARRIVED, SINGULAR, PathOptions
+from linkwork.numerics.homotopy.monodromy import Family, Member, first_of_each
+from linkwork.numerics.homotopy.parameter_path import (
+    QUICK,
+    SURE,
+    ParameterPath,
+    Tracker,
+    polish_ends,
+)
+
+__all__ = ["MirroredFamily", "ParameterRoots", "roots_at"]
+
+_FAR = 10.0  # a path whose end is so much larger than at σ = 1e-4 runs to infinity
+_VERY_FAR = 1e6
+_DETOURS = 3
+
+
+class MirroredFamily(Family, Protocol):
+    """A family with real members, whose solutions come in pairs or are their own mirror images."""
+
+    def is_real(self, c: ComplexArray) -> bool:
+        """Whether parameters (P,) are those of a real member."""
+
+    def mirrored(self, x: ComplexArray) -> ComplexArray:
+        """The mirror images of solutions (B, n) of a real member."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ParameterRoots:
+    """Isolated solutions of a member, and the outcome of every path.
+
+    Parameters
+    ----------
+    x : (R, n)
+        Regular finite solutions, one for each that count as one.
+    singular : (S, n)
+        Ends of paths at singular solutions, as far as they are known.
+    paths, at_infinity, lost : int
+        Paths followed, those that ran to infinity and those that led nowhere.
+    by_mirror, by_detour : int
+        Solutions that the straight paths did not find.
+    closed : bool, optional
+        Of a real member: whether every solution's mirror image is among them.
+    """
+
+    x: ComplexArray
+    singular: ComplexArray
+    paths: int
+    at_infinity: int
+    lost: int
+    by_mirror: int
+    by_detour: int
+    closed: bool | None
+
+    @property
+    def complete(self) -> bool:
+        """Whether every path has an end of its own."""
+        ends = len(self.x) + len(self.singular) + self.at_infinity
+        return ends == self.paths and self.closed is not False
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Ends:
+    """Ends of paths in the unknowns, (B, n), and what they are, (B,)."""
+
+    x: ComplexArray
+    regular: BoolArray
+    infinite: BoolArray
+    singular: BoolArray
+
+    @property
+    def lost(self) -> BoolArray:
+        return ~(self.regular | self.infinite | self.singular)
+
+
+class _Search:
+    """The search for the solutions of one member."""
+
+    def __init__(
+        self, family: MirroredFamily, member: Member, goal: ComplexArray, tracker: Tracker
+    ) -> None:
+        self.family, self.member, self.goal, self.tracker = family, member, goal, tracker
+
+    def run(self, rng: np.random.Generator) -> ParameterRoots:
+        ends = self._straight()
+        found = ends.x[ends.regular]
+        settled = int((ends.infinite | ends.singular).sum())
+        by_mirror, closed = 0, None
+        if self.family.is_real(self.goal):
+            found, by_mirror, closed = self._close(found)
+        by_detour = detours = 0
+        while len(found) + settled < len(self.member.x) and detours < _DETOURS:
+            more = self._new_ones(found, self._by_detour(rng))
+            detours += 1
+            by_detour += len(more)
+            if len(more):
+                found = np.concatenate([found, more])
+                if closed is not None:
+                    found, mirrored, closed = self._close(found)
+                    by_mirror += mirrored
+        return ParameterRoots(
+            x=found,
+            singular=ends.x[ends.singular],
+            paths=len(self.member.x),
+            at_infinity=int(ends.infinite.sum()),
+            lost=int(ends.lost.sum()),
+            by_mirror=by_mirror,
+            by_detour=by_detour,
+            closed=closed,
+        )
+
+    def _straight(self) -> _Ends:
+        """The straight paths; those that were lost or met a second time, with care."""
+        ends = self._follow(self.member.parameters, self.member.x, QUICK)
+        again = np.flatnonzero(ends.lost | self._meeting(ends))
+        if not len(again):
+            return ends
+        more = self._follow(self.member.parameters, self.member.x[again], SURE)
+        for whole, part in (
+            (ends.x, more.x), (ends.regular, more.regular),
+            (ends.infinite, more.infinite), (ends.singular, more.singular),
+        ):  # fmt: skip
+            whole[again] = part
+        # of two paths that still meet one has jumped
+        first = np.flatnonzero(ends.regular)
+        kept = first[self._first_of_each(ends.x[first])]
+        ends.regular[:] = False
+        ends.regular[kept] = True
+        return ends
+
+    def _by_detour(self, rng: np.random.Generator) -> ComplexArray:
+        """Ends of the paths by way of random parameters."""
+        way = self.family.random_parameters(rng)
+        path = ParameterPath(system=self.family, start=self.member.parameters, goal=way)
+        paths = self.tracker(path, self.member.x, QUICK)
+        ends = self._follow(way, paths.w[paths.state == ARRIVED], QUICK)
+        return ends.x[ends.regular]
+
+    def _follow(self, start: ComplexArray, x: ComplexArray, options: PathOptions) -> _Ends:
+        path = ParameterPath(system=self.family, start=start, goal=self.goal)
+        paths = self.tracker(path, x, options)
+        arrived = np.flatnonzero(paths.state == ARRIVED)
+        w, (regular, multiple) = paths.w.copy(), np.zeros((2, len(x)), dtype=bool)
+        polished = polish_ends(path, w[arrived])
+        proper = self.family.proper(polished.x, self.goal)
+        w[arrived], regular[arrived] = polished.x, polished.regular & proper
+        multiple[arrived] = polished.multiple & proper
+        size, before = (np.abs(z).max(axis=1, initial=0.0) for z in (paths.w, paths.near))
+        ended = paths.state == SINGULAR
+        infinite = ended & ((size > _FAR * before) | (size > _VERY_FAR))
+        singular = multiple | (ended & ~infinite)
+        return _Ends(x=w, regular=regular, infinite=infinite, singular=singular)
+
+    def _close(self, found: ComplexArray) -> tuple[ComplexArray, int, bool]:
+        """Solutions with their mirror images, how many those are, and whether all are there."""
+        path = ParameterPath(system=self.family, start=self.goal, goal=self.goal)
+        images = self._new_ones(found, self.family.mirrored(found))
+        sharp = polish_ends(path, images)
+        new = self._new_ones(found, sharp.x[sharp.regular])
+        return np.concatenate([found, new]), len(new), bool(sharp.regular.all())
+
+    def _new_ones(self, found: ComplexArray, more: ComplexArray) -> ComplexArray:
+        """Solutions that are not among those found."""
+        both = np.concatenate([found, more])
+        kept = self._first_of_each(both)
+        return both[kept[kept >= len(found)]]
+
+    def _meeting(self, ends: _Ends) -> BoolArray:
+        """Paths that ended at the same regular solution: one of them has jumped."""
+        place = np.flatnonzero(ends.regular)
+        prints = self.family.fingerprint(ends.x[place], self.goal)
+        met = np.ones(len(place), dtype=bool)
+        # alone in both directions
+        alone = np.intersect1d(first_of_each(prints), len(place) - 1 - first_of_each(prints[::-1]))
+        met[alone] = False
+        whole = np.zeros(len(ends.x), dtype=bool)
+        whole[place] = met
+        return whole
+
+    def _first_of_each(self, x: ComplexArray) -> IndexArray:
+        return first_of_each(self.family.fingerprint(x, self.goal))
+
+
+def roots_at(
+    family: MirroredFamily,
+    member: Member,
+    goal: ComplexArray,
+    tracker: Tracker,
+    rng: np.random.Generator,
+) -> ParameterRoots:
+    """All isolated solutions at the parameters ``goal`` (P,)."""
+    with np.errstate(all="ignore"):
+        return _Search(family, member, goal, tracker).run(rng)
