@@ -109,6 +109,17 @@ def test_proofs_are_those_of_arrays(name: str) -> None:
     assert held > 4
 
 
+def test_inputs_may_move_at_rates_of_their_own() -> None:
+    arrays, numbers, start = _both("geared-five-bar")
+    v = arrays.solve(start[:5]).v
+    inputs = v.shape[1] - arrays.unknowns
+    rate = np.linspace(1.0, 2.0, 5 * inputs).reshape(5, inputs)
+    a, b = (solver.rates(v, rate, input_bend=-3.0 * rate) for solver in (arrays, numbers))
+    np.testing.assert_allclose(b.first, a.first, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(b.second, a.second, rtol=1e-9, atol=1e-9)
+    assert (b.second[:, arrays.unknowns :] == -3.0 * rate).all()
+
+
 def test_no_rows_are_no_rows() -> None:
     solver = lw.example("four-bar").model.compiled.solver
     nothing = solver.solve(np.empty((0, 3)))

@@ -188,7 +188,7 @@ class BlockSolver:
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
         if linear is None and self.goes_singly(len(v)):
-            return rates_singly(self.singles, v, input_rate)
+            return rates_singly(self.singles, v, input_rate, input_bend)
         parts = self.linearise(v) if linear is None else linear
         count = len(v)
         first = np.zeros((count, self.variables))

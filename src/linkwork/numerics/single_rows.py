@@ -158,13 +158,17 @@ def rates_singly(
     blocks: Sequence[SingleBlock],
     v: Array,
     input_rate: Array,
+    input_bend: Array | float = 0.0,
 ) -> SolvedRows:
     """``BlockSolver.rates`` for a few rows (B, N)."""
-    still = [0.0] * v.shape[1]
-    begin = [*still[: v.shape[1] - len(input_rate)], *input_rate.tolist()]
+    inputs = input_rate.shape[-1]
+    still = [0.0] * (v.shape[1] - inputs)
+    rates = (input_rate if input_rate.ndim > 1 else np.tile(input_rate, (len(v), 1))).tolist()
+    bends = np.broadcast_to(input_bend, (len(v), inputs)).tolist() if np.any(input_bend) else None
     firsts, seconds, conditions, nearnesses, orientations = [], [], [], [], []
-    for row in v.tolist():
-        first, second = begin.copy(), still.copy()
+    for number, row in enumerate(v.tolist()):
+        first = still + rates[number]
+        second = still + ([0.0] * inputs if bends is None else bends[number])
         condition = nearness = 1.0
         orientation = []
         for block in blocks:
