@@ -208,12 +208,15 @@ def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))
     fields["questions"] = tuple(map(_question, content.get("questions", ())))
+    deviations = content.get("tolerances", {}).items()
+    fields["tolerances"] = {name: table["deviation"] for name, table in deviations}
     fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
     return fields
 
 
 def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
-    tables = {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
+    named = ("points", "links", "lengths", "angles", "clearances")
+    tables = {key: content.get(key, {}) for key in named}
     parts = {
         table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
     }
