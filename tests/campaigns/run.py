@@ -26,6 +26,7 @@ from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.positions import library_positions, random_position
+from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
 from tests.campaigns.workbooks import workbook_campaign
@@ -33,7 +34,7 @@ from tests.campaigns.workbooks import workbook_campaign
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
-_OWN_PART = {"parallel-trains": 1}  # every length of train is a part
+_OWN_PART = {"parallel-trains": 1, "precision-points": 4}  # what takes long by itself
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,10 @@ def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
 
+def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
+    return precision_campaign(part, _OWN_PART["precision-points"])
+
+
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
@@ -115,6 +120,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
     "forces": (_forces, 2_000),
+    "precision-points": (_precision_points, 200),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -27,6 +27,7 @@ __all__ = ["MirroredFamily", "ParameterRoots", "roots_at"]
 
 _FAR = 10.0  # a path whose end is so much larger than at σ = 1e-4 runs to infinity
 _VERY_FAR = 1e6
+_ROUGH = 1e-3  # relative: how well a singular end is known
 _DETOURS = 3
 
 
@@ -113,9 +114,11 @@ class _Search:
                 if closed is not None:
                     found, mirrored, closed = self._close(found)
                     by_mirror += mirrored
+        # a mirror image may have shown that an end is regular after all
+        singular = self._apart(found, ends.x[ends.singular])
         return ParameterRoots(
             x=found,
-            singular=ends.x[ends.singular],
+            singular=singular,
             paths=len(self.member.x),
             at_infinity=int(ends.infinite.sum()),
             lost=int(ends.lost.sum()),
@@ -179,6 +182,15 @@ class _Search:
         both = np.concatenate([found, more])
         kept = self._first_of_each(both)
         return both[kept[kept >= len(found)]]
+
+    def _apart(self, found: ComplexArray, ends: ComplexArray) -> ComplexArray:
+        """Singular ends that are not near a solution found, each as often as paths lead there."""
+        prints, others = (self.family.fingerprint(x, self.goal) for x in (found, ends))
+        near = [
+            (np.abs(prints - row).max(axis=1) < _ROUGH * (1.0 + np.abs(row).max())).any()
+            for row in others
+        ]
+        return ends[~np.array(near, dtype=bool)]
 
     def _meeting(self, ends: _Ends) -> BoolArray:
         """Paths that ended at the same regular solution: one of them has jumped."""
