@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from linkwork.foundation.status import Status as Status
     from linkwork.mechanism.driven_input import Input as Input
     from linkwork.mechanism.friction import Friction as Friction
+    from linkwork.mechanism.input_law import LawSegment as LawSegment
     from linkwork.mechanism.mass import Gravity as Gravity, Mass as Mass
     from linkwork.mechanism.part.belt import Belt as Belt
     from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment

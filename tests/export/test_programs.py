@@ -25,10 +25,10 @@ angle = "deg"
 for = 40
 J = 120
 cos_beta = 80
-e1 = 100
+c = 100
 
 [loops]
-while = "for*e^(i*θ2) + J*e^(i*q) = e1 + cos_beta*e^(i*β)"
+while = "for*e^(i*θ2) + J*e^(i*q) = c + cos_beta*e^(i*β)"
 
 [guess]
 "θ2" = 30

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork import drawing, forces, viewer
+from linkwork import drawing, forces, motion, viewer
 from linkwork.foundation.presenting import register_presenter
 from linkwork.motion.model import Model
 from linkwork.results.circuits import Circuits
@@ -18,6 +18,7 @@ __all__ = ["register_presenters"]
 def register_presenters() -> None:
     """Register the function behind every display method; it is loaded at its first call."""
     register_presenter(Model.force_quantities, lambda: forces.force_quantities)
+    register_presenter(Model.derivatives, lambda: motion.derivatives_of)
     register_presenter(Motion.__repr__, lambda: motion_text)
     register_presenter(Motion.table, lambda: table_of)
     register_presenter(Motion.plot, lambda: drawing.plot_motion)

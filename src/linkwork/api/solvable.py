@@ -113,9 +113,10 @@ class SolvableMechanism(DescribedMechanism):
     ) -> Motion:
         """The positions at all rows of the input's table, on the branch of the guess.
 
-        The branch is followed in both directions from the input value of the guess, with steps that
-        do not depend on the table. A row beyond a limit is tried a whole turn away, otherwise it
-        keeps its status. Every dead point and change point on the way adds a row.
+        If an input has a law, time drives the rows. The branch is followed both ways from the input
+        value of the guess, with steps that do not depend on the table. A row beyond a limit is
+        tried a whole turn away, otherwise it keeps its status. Dead points and change points on the
+        way add rows.
 
         Parameters
         ----------
@@ -367,9 +368,8 @@ class SolvableMechanism(DescribedMechanism):
             As in :meth:`sweep`.
         """
         motion = self.sweep(configuration=configuration, certify=certify, progress=progress)
-        # a motion between dead points is shown back and forth, along the circuit
-        if motion.found.all() or not motion.found.any():
-            return motion
+        if motion.found.all() or not motion.found.any() or self.description.timed:
+            return motion  # time does not turn back
         return self.sweep(
             configuration=configuration, through=True, certify=certify, progress=progress
         )

@@ -18,6 +18,7 @@ from linkwork.batch.pattern import Coefficients, Pattern
 from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
+from linkwork.equations.input_motion import driven_by_time
 from linkwork.equations.model import LoopEquations, Term
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
@@ -38,6 +39,11 @@ _COMPLEX = ("loops", "points")
 
 def write_equations(description: Description) -> LoopEquations:
     """The equations of a description; its numbers may be arrays of designs."""
+    equations = _own_equations(description)
+    return driven_by_time(equations, description) if description.timed else equations
+
+
+def _own_equations(description: Description) -> LoopEquations:
     match description:
         case Linkage():
             return write_loops(description)
@@ -214,8 +220,9 @@ def family_base(model: Model, varied: Sequence[VariedNumber]) -> tuple[Model, bo
     """
     description = model.description
     spoken = sum(which.speed is not None for which in description.inputs)
-    # released links and contradicting speeds depend on numbers, and are decided design by design
-    if model.equations.surplus is not None or spoken > 1:
+    # released links and contradicting speeds depend on numbers, and are decided design by design;
+    # so do the pieces of laws
+    if model.equations.surplus is not None or spoken > 1 or description.timed:
         return model, False
     known = _WIDENED.setdefault(model.compiled, {})
     key = tuple(varied)

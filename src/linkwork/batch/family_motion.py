@@ -325,7 +325,8 @@ class FamilyMotion:
         model = self.designs.base
         inputs = model.quantities.names.inputs
         own = [name for name in model.quantities.own if name not in inputs]
-        asked = [rate for rate in Rate if not (rate.by_time and self.speed is None)]
+        known = (rate for rate in Rate if not rate.needs_series)
+        asked = [rate for rate in known if not (rate.by_time and self.speed is None)]
         names = [*own, *(f"{name}.{rate.value}" for rate in asked for name in own)]
         names += [name for name in _EVIDENCE[:2] if name not in own]
         needed = 8 * len(names) * self.status.size

@@ -36,7 +36,7 @@ __all__ = ["circuits", "circuits_lines"]
 
 @click.command
 @file_argument
-@click.option("--draw", metavar="PATH", help="Draw all circuits: .png, .svg or .pdf.")
+@click.option("--draw", metavar="PATH", help="Draw all circuits: .png, .svg, .pdf or .tikz.")
 @click.option(
     "--of",
     "names",

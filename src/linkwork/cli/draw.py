@@ -30,7 +30,7 @@ __all__ = ["draw"]
 @click.command
 @file_argument
 @click.option(
-    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg, .pdf or .tikz."
 )
 @at_option
 @configuration_option

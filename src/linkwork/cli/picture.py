@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwork.api import Mechanism
-from linkwork.drawing.matplotlib_writer import FORMATS, write
 from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
+from linkwork.drawing.picture_file import FORMATS, write
 from linkwork.drawing.pose import no_points
 from linkwork.drawing.scene import Scene
 from linkwork.foundation.errors import InputError

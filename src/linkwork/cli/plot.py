@@ -41,7 +41,7 @@ __all__ = ["plot"]
 @click.command
 @file_argument
 @click.option(
-    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg or .pdf."
+    "-o", "--output", metavar="PATH", required=True, help="Picture file: .png, .svg, .pdf or .tikz."
 )
 @columns_option(
     "Column of the table to plot; a point for path and hodograph; a pin for transmission. "

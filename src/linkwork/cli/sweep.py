@@ -55,7 +55,7 @@ __all__ = ["sweep"]
 @click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
 @click.option("--csv", metavar="PATH", help="Write the table of all rows; - is standard output.")
 @click.option("--xlsx", metavar="PATH", help="Write a workbook whose formulas solve the cycle.")
-@click.option("--draw", metavar="PATH", help="Draw the motion as .png, .svg or .pdf.")
+@click.option("--draw", metavar="PATH", help="Draw the motion as .png, .svg, .pdf or .tikz.")
 @click.option("--plot", metavar="PATH", help="Plot unknowns and outputs over the input.")
 @set_option
 @json_option

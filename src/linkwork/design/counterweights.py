@@ -19,9 +19,6 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.mass import Mass
-from linkwork.mechanism.part.index import PARTS
-from linkwork.mechanism.part.load import Load
-from linkwork.mechanism.part.spring import Spring
 from linkwork.results.machine_design import Counterweight, Counterweights
 
 __all__ = ["balanced", "counterweights"]
@@ -122,11 +119,8 @@ def _shaking(linkage: Linkage) -> tuple[float, float]:
 
 
 def _four_bar(linkage: Linkage) -> _FourBar:
-    parts = [
-        table
-        for table, kind in PARTS.items()
-        if kind not in (Load, Spring) and getattr(linkage, table)
-    ]
+    # loads and springs join no links
+    parts = [part for part in linkage.parts if part.kind is not None or part.mobility]
     moving = [link for link in linkage.links if link != GROUND]
     sides = []
     for link in moving:

@@ -16,12 +16,14 @@ if TYPE_CHECKING:
     from linkwork.drawing.drawn_box import reach_of as reach_of
     from linkwork.drawing.matplotlib_writer import (
         figure as figure,
-        render as render,
-        write as write,
     )
     from linkwork.drawing.mechanism_scene import (
         SceneOptions as SceneOptions,
         scene_of as scene_of,
+    )
+    from linkwork.drawing.picture_file import (
+        render as render,
+        write as write,
     )
     from linkwork.drawing.scene import (
         Arc as Arc,

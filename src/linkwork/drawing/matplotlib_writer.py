@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import io
 import math
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwork.drawing.captions import lines_within
@@ -32,15 +30,14 @@ from linkwork.drawing.scene import (
 from linkwork.drawing.sheet import TALLEST, Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "Brush", "figure", "render", "write"]
+__all__ = ["FORMATS", "Brush", "figure", "image"]
 
-#: File formats by suffix.
+#: Formats of image files.
 FORMATS = ("png", "svg", "pdf")
 
 _LONG_SIDE = 6.0  # longer side of the drawing [inches]
@@ -61,57 +58,16 @@ _DATELESS: dict[str, dict[str, str | None]] = {
 }
 
 
-def write(
-    scene: Scene | Chart | Sheet,
-    path: str | Path,
-    *,
-    dpi: float = 200.0,
-    theme: Theme | ChartTheme = LIGHT,
-) -> Path:
-    """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
-
-    The file is written completely or not at all; the same scene gives the same bytes.
-
-    Raises
-    ------
-    InputError
-        If the suffix is not a known format, or the file cannot be written.
-    MissingPackageError
-        If Matplotlib is not installed.
-    """
-    target = as_path(path)
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in FORMATS:
-        known = ", ".join(f".{name}" for name in FORMATS)
-        raise InputError(f'cannot draw "{target.name}": its suffix must be one of {known}')
-    page = render(scene, kind, dpi=dpi, theme=theme)
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(page)
-        part.replace(target)
-    except OSError as error:
-        raise InputError(f'cannot write "{target}": {error.strerror or error}') from error
-    finally:
-        part.unlink(missing_ok=True)
-    return target
-
-
-def render(
-    scene: Scene | Chart | Sheet,
-    kind: str,
-    *,
-    dpi: float = 200.0,
-    theme: Theme | ChartTheme = LIGHT,
+def image(
+    scene: Scene | Chart | Sheet, kind: str, *, dpi: float, theme: Theme | ChartTheme
 ) -> bytes:
-    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`.
+    """A scene, chart or sheet as the content of a PNG, SVG or PDF file.
 
     Raises
     ------
     InputError
-        If the format is unknown, or a drawing has a theme of charts.
+        If a drawing has a theme of charts.
     """
-    if kind not in FORMATS:
-        raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
     buffer = io.BytesIO()
     with house_settings():
         if isinstance(scene, Chart):

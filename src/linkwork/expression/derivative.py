@@ -41,6 +41,8 @@ def derivative(node: Node, name: str, radians: float = 1.0) -> Node:
                 _negative(product_of(node.left, derivative(node.right, name, radians))),
             )
             return Binary("/", top, Binary("^", node.right, Number(2.0)))
+        case Binary("<" | "<=" | ">" | ">="):
+            return _ZERO
         case Binary():
             return _power(node, name, radians)
         case Call():

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from linkwork.expression.tree import Binary, Negative, Node, Number
 
-__all__ = ["ATOM", "NEGATIVE", "STRENGTH", "strength"]
+__all__ = ["ATOM", "COMPARISONS", "NEGATIVE", "STRENGTH", "strength"]
 
-STRENGTH = {"+": 1, "-": 1, "*": 2, "/": 2, "^": 4}
+COMPARISONS = ("<", "<=", ">", ">=")
+STRENGTH = {**dict.fromkeys(COMPARISONS, 0), "+": 1, "-": 1, "*": 2, "/": 2, "^": 4}
 NEGATIVE = 3
 ATOM = 5
 

@@ -143,6 +143,8 @@ class AppliedLoads:
 def time_of(geometry: Geometry) -> Array:
     """The time since the first row of the table [s]; NaN without a speed."""
     model = geometry.model
+    if model.untimed is not None:
+        return geometry.lead
     lead = list(model.motion_quantities.names.inputs).index(model.motion_quantities.names.lead)
     speed = model.speed or np.nan
     return np.asarray((geometry.lead - model.rows[0, lead]) / speed)

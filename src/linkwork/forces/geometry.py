@@ -50,10 +50,27 @@ class Geometry:
         """The points of the file."""
         return self.model.motion_quantities.names.points
 
+    @property
+    def driven(self) -> Model:
+        """The mechanism with its own inputs, also where time drives it."""
+        return self.model.untimed or self.model
+
     @cached_property
     def input_rates(self) -> Array:
-        """The rate of every input with respect to the leading one, (p,)."""
-        return leading_input(self.model.rows)[1]
+        """The rate of every input with respect to the leading one, or to time, (p,) or (p, B)."""
+        if self.model.untimed is None:
+            return leading_input(self.model.rows)[1]
+        return np.stack([self.own(each.name).d1 for each in self.driven.equations.inputs])
+
+    def by_leading(self, each: Array) -> Array:
+        """The sum of amounts of all inputs (p, B), per unit of the leading one or of time, (B,)."""
+        found: Array = (self.input_rates.T * each.T).sum(axis=-1)
+        return found
+
+    @property
+    def input_bends(self) -> Array:
+        """The acceleration of every input where time drives the mechanism, (p, B)."""
+        return np.stack([self.own(each.name).d2 for each in self.driven.equations.inputs])
 
     def own(self, name: str) -> Jet:
         """A variable of the mechanism [rad] or [length]."""
@@ -105,15 +122,15 @@ class Geometry:
 
     @cached_property
     def variables(self) -> Array:
-        """All variables, internal units, (B, N)."""
-        named = (self.own(variable.name).v for variable in self.model.equations.variables)
+        """All variables of the mechanism with its own inputs, internal units, (B, N)."""
+        named = (self.own(variable.name).v for variable in self.driven.equations.variables)
         return np.stack(list(named), axis=1)
 
     @cached_property
     def _partials(self) -> tuple[ComplexArray, Array]:
         """Derivatives with respect to each input: points (p, B, P), variables (p, B, N)."""
-        compiled, v = self.model.compiled, self.variables
-        units = np.eye(len(self.model.equations.inputs))
+        compiled, v = self.driven.compiled, self.variables
+        units = np.eye(len(self.driven.equations.inputs))
         rates = np.stack([compiled.solver.rates(v, unit).first for unit in units])
         places = [compiled.points.jet(v, rate, np.zeros_like(v))[1] for rate in rates]
         return np.stack(places), rates
@@ -121,7 +138,7 @@ class Geometry:
     @property
     def alone(self) -> bool:
         """Whether there is one input, which leads."""
-        return len(self.model.equations.inputs) == 1
+        return self.model.untimed is None and len(self.model.equations.inputs) == 1
 
     def partial(self, point: str) -> ComplexArray:
         """Derivatives of a point with respect to each input, (p, B)."""
@@ -129,11 +146,11 @@ class Geometry:
         if self.alone:
             found: ComplexArray = self.place(point).d1[None, :]
             return found
-        return self._partials[0][:, :, self.model.compiled.points.names.index(point)]
+        return self._partials[0][:, :, self.driven.compiled.points.names.index(point)]
 
     def turning(self, link: str) -> Array:
         """Derivatives of a link's angle with respect to each input, (p, B)."""
-        count = len(self.model.equations.inputs)
+        count = len(self.driven.equations.inputs)
         if link == GROUND or self.alone:
             found: Array = np.broadcast_to(self.angle(link).d1, (count, self.rows))
             return found
@@ -145,8 +162,8 @@ class Geometry:
         # links held by sliders on ground do not turn
         if variable is None:
             return np.zeros((count, self.rows))
-        names = [x.name for x in self.model.equations.variables]
-        symbols = [x.symbol for x in self.model.equations.variables]
+        names = [x.name for x in self.driven.equations.variables]
+        symbols = [x.symbol for x in self.driven.equations.variables]
         k = names.index(variable) if variable in names else symbols.index(variable)
         return self._partials[1][:, :, k]
 
@@ -185,7 +202,7 @@ class Geometry:
 
     def kind(self, name: str) -> Kind:
         """Whether an input is an angle or a length."""
-        return self.model.motion_quantities.names.inputs[name]
+        return self.driven.motion_quantities.names.inputs[name]
 
 
 def _times(jet: Jet, factor: complex | Array) -> Jet:

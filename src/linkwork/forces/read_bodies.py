@@ -26,14 +26,17 @@ def read_geometry(geometry: Geometry, links: set[str]) -> Geometry | None:
     links : set of str
         What masses and loads act on.
     """
-    seen = as_linkage(geometry.model)
+    seen = as_linkage(geometry.driven)
     if not isinstance(seen, Seen) or seen.loose:
         return None
     if not links <= set(seen.linkage.links):
         return None
     v = _rows(geometry, seen)
     solver, rate = seen.model.compiled.solver, geometry.input_rates
-    rates = solver.rates(v, rate)
+    bend = np.zeros(len(rate))
+    if geometry.model is not geometry.driven:
+        rate, bend = rate.T, geometry.input_bends.T
+    rates = solver.rates(v, rate, input_bend=bend)
     found = np.asarray(np.isfinite(v).all(axis=1), dtype=bool)
     own = Geometry(seen.model, RowValues(seen.model, v, rates.first, rates.second, found))
     shared = [point for point in geometry.points if point in own.points]
@@ -48,7 +51,7 @@ def read_geometry(geometry: Geometry, links: set[str]) -> Geometry | None:
 
 def _rows(geometry: Geometry, seen: Seen) -> Array:
     """The variables of the linkage in all rows: angles turn as those of the loops."""
-    model, other = geometry.model, seen.model.equations
+    model, other = geometry.driven, seen.model.equations
     names = [variable.name for variable in model.equations.variables]
     here = geometry.variables
     solver = model.compiled.solver

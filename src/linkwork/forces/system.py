@@ -230,7 +230,7 @@ def _add_efforts(
     largest = np.maximum(largest, rubbing.largest)
     # the effort by virtual work replaces the other one, which only checks it
     by_work, checked = ideal + rubbing.efforts, False
-    for k, variable in enumerate(geometry.model.equations.inputs):
+    for k, variable in enumerate(geometry.driven.equations.inputs):
         name = effort_name(variable.name)
         if drives:  # of the linkage that loops read as, under the name of the loops' variable
             found.values[name] = found.values.pop(drives[k])
@@ -247,7 +247,7 @@ def _add_efforts(
     if checked:
         found.add("disagreement", Kind.NUMBER, "difference of the two ways to the efforts", worst)
     if found.applied.rate:
-        power = geometry.input_rates @ by_work * found.applied.rate
+        power = geometry.by_leading(by_work) * found.applied.rate
         found.add("power", Kind.POWER, "power of all inputs", power, rubbing.doubt)
 
 
@@ -256,8 +256,8 @@ def _add_losses(found: _Solution, ideal: Array, largest: Array, rubbing: Frictio
     geometry, rate = found.geometry, found.applied.rate
     # work per unit of the leading input along its motion
     way = _direction(found)
-    useful = geometry.input_rates @ ideal * way
-    lost = geometry.input_rates @ rubbing.efforts * way
+    useful = geometry.by_leading(ideal) * way
+    lost = geometry.by_leading(rubbing.efforts) * way
     # nothing moves against the loads at their dead point: rounding would be taken for a sign
     useful = np.where(np.abs(useful) > _NO_WORK * largest.max(axis=0), useful, 0.0)
     spent = useful + lost
@@ -274,7 +274,7 @@ def _add_backward(found: _Solution, bodies: FreeBodies, ideal: Array) -> None:
     """Efforts for motion against the direction of the table: at rest any between holds."""
     forces = joint_forces(bodies, _known_acts(bodies), -_direction(found))
     more = forces.friction_efforts()
-    for k, variable in enumerate(found.geometry.model.equations.inputs):
+    for k, variable in enumerate(found.geometry.driven.equations.inputs):
         value = np.where(forces.found, ideal[k] + more.efforts[k], np.nan)
         kind = effort_kind(found.geometry.kind(variable.name))
         about = f"effort of the input {variable.name} for motion backwards"

@@ -19,7 +19,7 @@ def efforts(applied: AppliedLoads) -> tuple[Array, Array]:
     errors are relative to it.
     """
     geometry = applied.geometry
-    shape = (len(geometry.model.equations.inputs), geometry.rows)
+    shape = (len(geometry.driven.equations.inputs), geometry.rows)
     total, largest = np.zeros(shape), np.zeros(shape)
     for load, moved in _terms(applied):
         # eq. (71)

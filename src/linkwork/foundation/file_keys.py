@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 __all__ = [
     "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number",
-    "PlainNumber", "Several", "Speed", "Table", "Tables", "Text", "Whole",
+    "PlainNumber", "Several", "Speed", "Table", "Tables", "TablesOrFormula", "Text", "Whole",
 ]  # fmt: skip
 
 
@@ -32,9 +32,9 @@ class Text:
 class Number:
     """A number, or a formula in the named dimensions.
 
-    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``lift``: as
-    the follower of the cam, ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring
-    between points or links.
+    ``of``: what it measures: number, length, angle, area; ``driven``: as the input, ``ranged``: so
+    too, unless the input has a law, which makes it a time, ``lift``: as the follower of the cam,
+    ``named``: as formulas use it, ``stiffness`` and ``free``: of a spring between points or links.
     """
 
     of: str = "number"
@@ -103,6 +103,13 @@ class Tables:
 
 
 @dataclass(frozen=True)
+class TablesOrFormula:
+    """A list of tables, or a formula in quotes."""
+
+    keys: tuple[Key, ...]
+
+
+@dataclass(frozen=True)
 class Named:
     """A table whose keys the author chooses; each key has ``words`` words."""
 
@@ -132,6 +139,7 @@ Kind = (
     | ListOf
     | Table
     | Tables
+    | TablesOrFormula
     | Named
     | Several
 )

@@ -36,12 +36,16 @@ class Piecewise:
         A, ω, ψ of every piece.
     periodic : bool
         Whether it repeats itself after ``breaks[-1] - breaks[0]``.
+    corners : tuple of int
+        The joints, counted from that of the first two pieces, at which its slope changes: bounds
+        hold on either side of them, not across.
     """
 
     breaks: Array
     powers: Array
     sines: Array
     periodic: bool = True
+    corners: tuple[int, ...] = ()
 
     @property
     def period(self) -> float:
@@ -62,13 +66,22 @@ class Piecewise:
             periodic=self.periodic,
         )
 
+    def slope_before_joints(self) -> Array:
+        """The derivative at the end of all pieces but the last, (K - 1,)."""
+        t = np.diff(self.breaks)[:-1]
+        degrees = np.arange(1, self.powers.shape[1])
+        a, w, p = self.sines[:-1].T
+        straight = (self.powers[:-1, 1:] * degrees * t[:, None] ** (degrees - 1.0)).sum(axis=1)
+        found: Array = straight + a * w * np.cos(w * t + p)
+        return found
+
     def times(self, factor: float) -> Piecewise:
         """The function with all values multiplied."""
         return replace(
             self, powers=factor * self.powers, sines=self.sines * np.array([factor, 1.0, 1.0])
         )
 
-    def _locate(self, x: Array) -> tuple[IndexArray, Array, Array]:
+    def locate(self, x: Array) -> tuple[IndexArray, Array, Array]:
         """Piece of each x, t inside it, and how far x lies beyond an open end."""
         low, high = self.breaks[0], self.breaks[-1]
         if self.periodic:
@@ -84,7 +97,7 @@ class Piecewise:
     def jet(self, x: Array) -> tuple[Array, Array, Array]:
         """Value, first and second derivative at any x; the second from the right at a joint."""
         shape, x = np.shape(x), np.ravel(np.asarray(x, dtype=float))
-        piece, t, beyond = self._locate(x)
+        piece, t, beyond = self.locate(x)
         c = self.powers[piece]
         value, first, second = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
         for k in range(c.shape[1] - 1, -1, -1):
@@ -149,13 +162,14 @@ class Piecewise:
         begin, rate = c[:, 0] + a * np.sin(p), c[:, 1] + a * w * np.cos(p)
         jumps = np.abs(value - np.roll(begin, -1)) + 2.0 * (slack + np.roll(slack, -1))
         bends = np.abs(slope - np.roll(rate, -1)) + 2.0 * (steep + np.roll(steep, -1))
+        bends[list(self.corners)] = 0.0
         last = None if self.periodic else -1
         jump, bend = float(jumps[:last].sum()), float(bends[:last].sum())
         return jump + self.period * bend, 2.0 * bend + jump / self.period
 
     def rounding(self, x: Array) -> tuple[Array, Array]:
         """Bounds of the error of computing the value and the first derivative at x (B,)."""
-        piece, t, beyond = self._locate(x)
+        piece, t, beyond = self.locate(x)
         c, degrees = np.abs(self.powers[piece]), np.arange(self.powers.shape[1])
         t = np.abs(t)
         powers = t[:, None] ** degrees

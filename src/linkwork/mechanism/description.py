@@ -26,6 +26,7 @@ from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.field_types import check_entries, check_field_types
+from linkwork.mechanism.input_law import formula_mistake, law_mistakes
 from linkwork.mechanism.question import Question
 from linkwork.mechanism.speed import speed_per_second
 
@@ -34,6 +35,7 @@ __all__ = ["Description", "Key", "Problems", "declared"]
 Key = tuple[str | int, ...]
 
 _MOST_ROWS = 10_000_000
+_LAW_STEPS = 360  # rows of a table over time, unless its step is given
 
 
 class Problems(list[Problem]):
@@ -168,15 +170,41 @@ class Description:
             for field, message in question.problems():
                 problems.add(("questions", k, field), message)
         for k, which in enumerate(self.inputs):
-            _check_rows(self, which, self.input_key(k), problems)
+            if which.law is None:
+                _check_rows(self, which, self.input_key(k), problems)
+            else:
+                _check_law(self, which, self.input_key(k), problems)
         self._check_lock_step(problems)
+        if self.timed:
+            self._check_times(taken, problems)
 
     def input_key(self, k: int) -> Key:
         """Key path of the k-th input in a file."""
         return ("input",) if len(self.inputs) == 1 else ("input", k)
 
+    @property
+    def timed(self) -> bool:
+        """Whether time drives the rows: an input has a law."""
+        return any(which.law is not None for which in self.inputs)
+
+    @cached_property
+    def times(self) -> Array:
+        """The table's times of a mechanism that time drives [s], (rows,)."""
+        ranged = [w for w in self.inputs if w.law is not None]
+        given = [w for w in ranged if (w.start, w.stop, w.step) != (None, None, None)]
+        return self.rows((given or ranged)[0])
+
+    def lasts(self) -> float:
+        """How long the shortest law of segments takes [s]; infinite for formulas."""
+        return min(
+            sum(segment.duration(self.numbers) for segment in which.law)
+            if isinstance(which.law, tuple)
+            else math.inf
+            for which in self.inputs
+        )
+
     def rows(self, which: Input) -> Array:
-        """The table's values of one input, in the file's unit, shape (rows,).
+        """The table's values of one input, in the file's unit, shape (rows,); times with a law.
 
         An input with a range of one value is constant and has one row, unlike the others.
         """
@@ -189,12 +217,16 @@ class Description:
     def _range(self, which: Input) -> tuple[float, float, float]:
         turn = self.angle.turn
         whole = (0.0, turn, turn / 360.0)
+        if which.law is not None:
+            whole = (0.0, self.lasts(), self.lasts() / _LAW_STEPS)
         given = (which.start, which.stop, which.step)
         start, stop, step = (
             default if number is None else self.numbers(number)
             for number, default in zip(given, whole, strict=True)
         )
-        if which.step is None and stop < start:
+        if which.law is not None and which.step is None and math.isfinite(stop - start):
+            step = (stop - start) / _LAW_STEPS
+        elif which.step is None and stop < start:
             step = -step
         return start, stop, step
 
@@ -204,8 +236,39 @@ class Description:
         start, stop, _ = self._range(which)
         return speed < 0 if speed is not None else stop < start
 
+    def _check_times(self, taken: Mapping[str, str], problems: Problems) -> None:
+        """One table of times, within all laws."""
+        if "t" in taken:
+            problems.add(
+                ("input",), f"t is the time of a law, and a name in {taken['t']}: call that t1"
+            )
+        if problems:
+            return
+        ranges = {}
+        for k, which in enumerate(self.inputs):
+            key = self.input_key(k)
+            if which.law is None and len(self.rows(which)) > 1:
+                message = "is missing: time drives the other inputs; without a law it is constant"
+                problems.add((*key, "law"), message)
+            given = (which.start, which.stop, which.step)
+            if which.law is not None and given != (None, None, None):
+                ranges[key] = self._range(which)
+        for key, own in ranges.items():
+            if own != next(iter(ranges.values())):
+                problems.add(key, "has other times than the first input: they share one table")
+        ends = (float(self.times.min()), float(self.times.max())) if not problems else (0.0, 0.0)
+        segments = any(isinstance(which.law, tuple) for which in self.inputs)
+        if segments and ends[0] < 0.0:
+            problems.add(("input",), f"begins at {ends[0]:g} s: a law of segments begins at 0")
+        if ends[1] > self.lasts() * (1.0 + 1e-9):
+            problems.add(
+                ("input",),
+                f"goes on to {ends[1]:g} s, but a law ends at {self.lasts():g} s: add a segment, "
+                'for example { law = "dwell", … }, or end the table there',
+            )
+
     def _check_lock_step(self, problems: Problems) -> None:
-        if problems or len(self.inputs) < 2:
+        if problems or len(self.inputs) < 2 or self.timed:
             return
         counts = [len(self.rows(which)) for which in self.inputs]
         first = next((k for k, count in enumerate(counts) if count > 1), 0)
@@ -217,6 +280,32 @@ class Description:
                     f"has {count} rows, {which} has {counts[first]}: "
                     "inputs move in lock-step and need equal row counts",
                 )
+
+
+def _check_law(description: Description, which: Input, key: Key, problems: Problems) -> None:
+    numbers = description.numbers
+    if which.speed is not None:
+        problems.add((*key, "speed"), "contradicts the law, which gives the speed: leave one out")
+    if isinstance(which.law, str):
+        mistake = formula_mistake(which.law, numbers)
+        if mistake is not None:
+            problems.add((*key, "law"), mistake)
+        if which.begin is not None:
+            problems.add((*key, "begin"), "is used with segments only: the formula has a value")
+        if which.stop is None:
+            problems.add((*key, "to"), "is missing: the last time [s], as a formula has no end")
+    else:
+        for below, message in law_mistakes(which.law or (), numbers):
+            problems.add((*key, "law", *below), message)
+    fields = {"from": which.start, "to": which.stop, "step": which.step, "begin": which.begin}
+    amounts = [
+        numbers.check_number(problems.add, (*key, field), number)
+        for field, number in fields.items()
+        if number is not None
+    ]
+    if any(problem.key[: len(key)] == key for problem in problems) or any(map(math.isnan, amounts)):
+        return
+    _check_steps(description, which, key, problems)
 
 
 def declared(table: str, names: Iterable[str]) -> Iterator[tuple[Key, str]]:
@@ -275,6 +364,10 @@ def _check_rows(description: Description, which: Input, key: Key, problems: Prob
         problems.add((*key, missing[0]), "is missing: an input length has no natural range")
     if (lengthy and missing) or any(amount != amount for amount in amounts):  # NaN
         return
+    _check_steps(description, which, key, problems)
+
+
+def _check_steps(description: Description, which: Input, key: Key, problems: Problems) -> None:
     start, stop, step = description._range(which)
     if start != stop and (step == 0 or (stop > start) != (step > 0)):
         problems.add((*key, "step"), f"a step of {step:g} does not lead from {start:g} to {stop:g}")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwork.foundation.value_types import check_values
+from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.input_law import LawSegment
 
 __all__ = ["Input"]
 
@@ -30,10 +31,15 @@ class Input:
         With ``link``: the link from which the angle is measured; by default ground.
     start, stop, step : number or formula, optional
         The input values in file units (``from``, ``to``, ``step`` in a file). An angle without them
-        makes one turn in steps of one degree.
+        makes one turn in steps of one degree. With a law they are times [s].
     speed : str or number, optional
         ``"300 rpm"``, ``"25 rad/s"``, ``"90 deg/s"``, for lengths ``"50 mm/s"``; a number is in
         file units per second.
+    law : tuple of LawSegment, or str, optional
+        How the input moves in time: segments one after the other from t = 0, or its value as a
+        formula of t.
+    begin : number or formula, optional
+        With segments: its value at t = 0, by default that of the sketch or guess.
 
     Examples
     --------
@@ -54,8 +60,12 @@ class Input:
     stop: Number | None = None
     step: Number | None = None
     speed: Number | None = None
+    law: tuple[LawSegment, ...] | str | None = None
+    begin: Number | None = None
 
     def __post_init__(self) -> None:
+        if self.law is not None and is_listed(self.law):
+            object.__setattr__(self, "law", tuple(self.law))
         check_values(self)
 
     @property

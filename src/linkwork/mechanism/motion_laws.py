@@ -1,4 +1,4 @@
-"""Motion laws of cam followers: rises from 0 to 1 while x goes from 0 to 1.
+"""Motion laws of cam followers and inputs: rises from 0 to 1 while x goes from 0 to 1.
 
 A law is a polynomial, or is integrated from rest from accelerations α + A sin(ω t + ψ) (Norton, Cam
 Design and Manufacturing Handbook, chapters 3 and 4; VDI 2143).
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["LAWS", "Piece", "pieces_of"]
+__all__ = ["INPUT_LAWS", "LAWS", "Piece", "pieces_of"]
 
 
 @dataclass(frozen=True)
@@ -56,12 +56,22 @@ _ACCELERATIONS: dict[str, tuple[_Accelerated, ...]] = {
 
 #: The laws by name; a dwell has no pieces.
 LAWS = ("dwell", *_ACCELERATIONS, *_POLYNOMIALS)
+_ACCELERATIONS["trapezoid"] = (
+    _Accelerated(1 / 3, 1.0),
+    _Accelerated(1 / 3, 0.0),
+    _Accelerated(1 / 3, -1.0),
+)
+#: Further laws of inputs, which a cam could not follow: its follower would be thrown off. A ramp
+#: begins at the speed of the segment before it.
+INPUT_LAWS = (*LAWS, "constant", "ramp", "trapezoid")
 
 
 def pieces_of(law: str) -> tuple[Piece, ...]:
     """The pieces of a law in order."""
     if law == "dwell":
         return (Piece(1.0, (0.0,)),)
+    if law == "constant":
+        return (Piece(1.0, (0.0, 1.0)),)
     if law in _POLYNOMIALS:
         return (Piece(1.0, _POLYNOMIALS[law]),)
     found, place, speed = [], 0.0, 0.0

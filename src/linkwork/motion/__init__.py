@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         start_in_configuration as start_in_configuration,
     )
     from linkwork.motion.extremes import check_quantities as check_quantities
+    from linkwork.motion.higher_rates import derivatives_of as derivatives_of
     from linkwork.motion.iterating import (
         guessed_points as guessed_points,
         iterates as iterates,

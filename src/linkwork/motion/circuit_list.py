@@ -58,10 +58,13 @@ def circuits(
     Raises
     ------
     InputError
-        If the mechanism has no input.
+        If the mechanism has no input, or several that time drives.
     """
     check_flags(progress, certify=certify)
-    work = _Circuits(model, certify)
+    if model.untimed is not None and len(model.untimed.equations.inputs) > 1:
+        raise InputError("several inputs with laws have no common circuit: leave out the laws")
+    # circuits are those of the mechanism's own input, whatever drives it
+    work = _Circuits(model.untimed or model, certify)
     work.seeding.look(progress)
     return work.result()
 

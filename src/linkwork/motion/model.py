@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
+from linkwork.equations.input_motion import driven_by_time
 from linkwork.equations.model import LoopEquations, Output, Variable
 from linkwork.expression.tree import Name, names_in
 from linkwork.foundation.arrays import Array
@@ -36,7 +37,8 @@ from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
 from linkwork.results import quantities
 from linkwork.results.position import Position
-from linkwork.results.quantities.definition import MechanismNames, RowQuantity
+from linkwork.results.quantities.asked import Asked
+from linkwork.results.quantities.definition import MechanismNames, RowQuantity, Solved
 from linkwork.results.quantities.registry import Quantities
 from linkwork.results.quantity import Kind, Units
 
@@ -47,7 +49,8 @@ __all__ = ["Model", "model_of"]
 class Model:
     """Everything that solving needs, derived once from a description.
 
-    ``branch``: the name of the branch that the guess lies on.
+    ``branch``: the name of the branch that the guess lies on. ``untimed``: of a mechanism that
+    time drives, the same with its own inputs, whose variables have the same order.
     """
 
     description: Description
@@ -55,6 +58,7 @@ class Model:
     compiled: Compiled
     skeleton: Skeleton
     branch: str = "circuit 1 branch 1"
+    untimed: Model | None = None
 
     def from_start_of(self, other: Model) -> Model:
         """The model with the guess of another one of the same equations."""
@@ -117,6 +121,17 @@ class Model:
             return ()
         return presenter(Model.force_quantities)(self)
 
+    def derivatives(self, solved: Solved, asked: Asked, order: int) -> Array:
+        """The derivatives of a quantity with respect to the leading input, from the first to one of
+        any order, in radians and lengths, (order, B).
+
+        Raises
+        ------
+        InputError
+            For plain equations, for formulas, and for a family.
+        """
+        return presenter(Model.derivatives)(self, solved, asked, order)
+
     @cached_property
     def motion_quantities(self) -> Quantities:
         """The quantities that need no forces."""
@@ -142,6 +157,7 @@ class Model:
                 points=tuple(getattr(self.description, "points", {})),
                 by=self.derivative_unit,
                 lead=lead,
+                series=self.derivatives,
             )
         )
 
@@ -168,6 +184,8 @@ class Model:
     @cached_property
     def rows_in_file_units(self) -> Array:
         """The table's input values as asked, in file units, (rows, p)."""
+        if self.untimed is not None:
+            return self.description.times[:, None]
         columns = [self.description.rows(which) for which in self.description.inputs]
         if not columns:
             return np.zeros((1, 0))
@@ -207,9 +225,11 @@ class Model:
 
     @cached_property
     def speed(self) -> float | None:
-        """Rate of the leading input, [rad/s] or [length/s]."""
+        """Rate of the leading input, [rad/s] or [length/s]; 1 if that is the time."""
         if not self.description.inputs:
             return None
+        if self.untimed is not None:
+            return 1.0
         return input_speed(self.description, self.equations.inputs, self.rows)
 
     def input_values(self, at: dict[str, float]) -> Array:
@@ -272,6 +292,10 @@ def model_of(description: Description) -> Model:
     check_redundancy(compiled, where)
     skeleton = replace(skeleton, questions=description.questions)
     model = Model(description, equations, compiled, skeleton)
+    if description.timed:
+        equations = driven_by_time(equations, description)
+        compiled = compile_equations(equations, where)
+        model = Model(description, equations, compiled, skeleton, untimed=model)
     _check_outputs(model, where)
     # what cannot be read is an error of the file, found with the others
     _ = model.speed

@@ -9,9 +9,9 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import name_series
-from linkwork.motion.redundancy import FITS, largest_misfits, misfit
+from linkwork.motion.redundancy import FITS, has_corners, largest_misfits, misfit
 from linkwork.numerics.rows import SolvedRows
-from linkwork.results.motion import Motion
+from linkwork.results.motion import Limit, Motion
 
 __all__ = ["fitting", "message_of", "motion_of_rows"]
 
@@ -54,6 +54,8 @@ def motion_of_rows(model: Model, rows: SolvedRows, message: str, added: BoolArra
 
 def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
     """Rows at which redundant links fit; the others have no position."""
+    if has_corners(model.equations):
+        rows = rows.demote(Certification.MOTION_NOT_PROVED)
     if not model.equations.redundant:
         return rows
     fits = misfit(model.equations, rows.v) <= FITS
@@ -62,15 +64,32 @@ def fitting(model: Model, rows: SolvedRows) -> SolvedRows:
     return rows.put(np.flatnonzero(lost), nothing).demote(Certification.SUBSET_CERTIFIED)
 
 
-def message_of(motion: Motion) -> str:
+def message_of(motion: Motion, model: Model) -> str:
     """The message of the start if all rows were found, else every limit once."""
     asked = motion.asked
     missing = int((asked & ~motion.found).sum())
     if not missing:
         return motion.message
     name, unit = next(iter(motion.input_units.items()))
-    told = (f"{limit.kind.word} at {limit.told(name, unit)}" for limit in motion.limits)
+    told = (
+        f"{limit.kind.word} at {limit.told(name, unit)}{_driven_to(motion, model, limit)}"
+        for limit in motion.limits
+    )
     misses = [status.value for status in motion.counts if not status.ok]
     return "; ".join(
         [f"{missing} of {int(asked.sum())} positions were not found", *misses, *dict.fromkeys(told)]
+    )
+
+
+def _driven_to(motion: Motion, model: Model, limit: Limit) -> str:
+    """The values of the inputs at a limit that a law of time leads to."""
+    if model.untimed is None:
+        return ""
+    row = int(np.argmin(np.abs(motion.inputs[next(iter(motion.inputs))] - limit.input)))
+    names = [variable.name for variable in model.untimed.equations.inputs]
+    values = [
+        f"{name} = {motion[name][row]:.10g} {motion.quantity(name).unit}".rstrip() for name in names
+    ]
+    return (
+        f", {', '.join(values)}" if np.isfinite([motion[name][row] for name in names]).all() else ""
     )

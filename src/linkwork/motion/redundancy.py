@@ -21,6 +21,7 @@ from linkwork.numerics.newton import NewtonOptions
 __all__ = [
     "FITS",
     "check_redundancy",
+    "has_corners",
     "largest_misfits",
     "lengths_found",
     "misfit",
@@ -58,7 +59,14 @@ def largest_misfits(equations: LoopEquations, v: Array) -> dict[str, float]:
 
 def without_redundant(equations: LoopEquations, proved: Certification) -> Certification:
     """The certification of the mechanism from that of its equations."""
+    if proved.certified and has_corners(equations):
+        proved = Certification.MOTION_NOT_PROVED
     return Certification.SUBSET_CERTIFIED if equations.redundant and proved.certified else proved
+
+
+def has_corners(equations: LoopEquations) -> bool:
+    """Whether the speed of an input changes at once: no proof leads past that."""
+    return any(law.law.corners for law in equations.laws)
 
 
 def _redundant(equations: LoopEquations) -> tuple[list[int], Array]:

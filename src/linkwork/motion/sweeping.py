@@ -12,6 +12,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import BoolArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
 from linkwork.foundation.value_types import check_flags, given_or
@@ -89,6 +90,8 @@ def sweep(
     policy = ChangePointPolicy.of(change_points)
     check_flags(progress, certify=certify, through=through)
     _ = model.rows  # without an input there is nothing to sweep: an error
+    if through and model.untimed is not None:
+        raise InputError("time does not turn back at dead points: leave out through, or the law")
     quantities = check_quantities(model, limits_of)
     opt = given_or(NewtonOptions(), "options", options)
     wants_track = through or bool(quantities)
@@ -375,7 +378,7 @@ class _Sweep:
             output_limits=tuple(self.output_limits),
             circuit=self.circuit,
         )
-        return replace(motion, message=message_of(motion))
+        return replace(motion, message=message_of(motion, self.model))
 
 
 def _no_rows(model: Model) -> SolvedRows:

@@ -21,10 +21,10 @@ __all__ = ["leading_scale", "track_to", "turns_freely"]
 
 def leading_scale(model: Model, lead: int) -> float:
     """The natural size of a step of the leading input: a radian, the longest link, or for a plain
-    number a tenth of the way over its table and its guess.
+    number or time a tenth of the way over its table and its guess.
     """
     solver = model.compiled.solver
-    if model.equations.inputs[lead].kind == "number":
+    if model.equations.inputs[lead].kind in ("number", "time"):
         # a plain number has no natural size, and a table of one row at the guess no span
         span = float(np.ptp([*model.rows[:, lead], model.start_inputs[lead]]))
         return span / 10.0 or float(solver.variable_scale[solver.unknowns + lead])

@@ -128,9 +128,13 @@ class BlockSolver:
         return np.where(finite, v + change, v)
 
     def rates(
-        self, v: Array, input_rate: Array, linear: Sequence[Linearised] | None = None
+        self,
+        v: Array,
+        input_rate: Array,
+        linear: Sequence[Linearised] | None = None,
+        input_bend: Array | float = 0.0,
     ) -> SolvedRows:
-        """First and second derivative of all variables when the inputs move at a constant rate.
+        """First and second derivative of all variables, as the inputs move.
 
         J x' = -F_u u';  J x'' = -D²F[(x', u'), (x', u')]: one inverse of J serves both and the
         condition number.
@@ -139,10 +143,12 @@ class BlockSolver:
         ----------
         v : (B, N)
             Converged positions.
-        input_rate : (p,)
-            u' of the inputs; u'' = 0.
+        input_rate : (p,) or (B, p)
+            u' of the inputs.
         linear : list of Linearised, optional
             ``linearise(v)``, if computed already.
+        input_bend : (B, p), optional
+            u''; by default the rate is constant.
 
         Returns
         -------
@@ -154,6 +160,7 @@ class BlockSolver:
         first = np.zeros((count, self.variables))
         second = np.zeros((count, self.variables))
         first[:, self.unknowns :] = input_rate
+        second[:, self.unknowns :] = input_bend
         condition, nearness = np.ones(count), np.ones(count)
         orientation = np.zeros((count, len(self.blocks)), dtype=np.int8)
         for k, block in enumerate(self.blocks):

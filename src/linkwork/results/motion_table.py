@@ -49,7 +49,8 @@ def table_of(motion: Motion, *names: str) -> Table:
     everything |= motion.outputs
     for name, series in everything.items():
         add(name, series.value, units.of(series.quantity.kind))
-    asked = [rate for rate in Rate if not (rate.by_time and motion.speed is None)]
+    known = (rate for rate in Rate if not rate.needs_series)
+    asked = [rate for rate in known if not (rate.by_time and motion.speed is None)]
     for pair in (asked[:2], asked[2:]):
         for name, series in everything.items():
             kind = series.quantity.kind

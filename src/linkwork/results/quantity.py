@@ -22,6 +22,7 @@ class Kind(Enum):
     LENGTH = "length"
     PER_LENGTH = "per length"
     NUMBER = "number"
+    TIME = "time"
     FORCE = "force"
     MOMENT = "moment"
     ENERGY = "energy"
@@ -44,11 +45,15 @@ class Units:
         if kind in _OF_FORCE:
             work = f"{self.force}·{self.length}"
             return {Kind.FORCE: self.force, Kind.POWER: f"{work}/s"}.get(kind, work)
+        if kind is Kind.TIME:
+            return "s"
         return self.angle.value if kind is Kind.ANGLE else self._of_length(kind)
 
     def of_rate(self, kind: Kind) -> str:
         """The unit of the quantity in derivatives: radians or lengths."""
-        return {Kind.ANGLE: "rad", Kind.NUMBER: "1"}.get(kind) or self._of_length(kind)
+        return {Kind.ANGLE: "rad", Kind.NUMBER: "1", Kind.TIME: "s"}.get(kind) or self._of_length(
+            kind
+        )
 
     def _of_length(self, kind: Kind) -> str:
         if kind is Kind.LENGTH or not self.length:
@@ -70,7 +75,8 @@ class Quantity:
 
 class Rate(Enum):
     """A rate of a quantity: ``B.x.d1`` and ``B.x.d2`` are derivatives with respect to the leading
-    input, ``B.x.velocity`` and ``B.x.acceleration`` those with respect to time.
+    input, ``B.x.velocity``, ``B.x.acceleration``, ``B.x.jerk`` and ``B.x.snap`` those with respect
+    to time.
 
     Angles are in radians.
     """
@@ -79,6 +85,8 @@ class Rate(Enum):
     SECOND = "d2"
     VELOCITY = "velocity"
     ACCELERATION = "acceleration"
+    JERK = "jerk"
+    SNAP = "snap"
 
     @classmethod
     def split(cls, name: str) -> tuple[str, Rate | None]:
@@ -89,13 +97,19 @@ class Rate(Enum):
 
     @property
     def order(self) -> int:
-        """The order of the derivative, 1 or 2."""
-        return 1 if self in (Rate.FIRST, Rate.VELOCITY) else 2
+        """The order of the derivative, 1 to 4."""
+        higher = {Rate.JERK: 3, Rate.SNAP: 4}
+        return 1 if self in (Rate.FIRST, Rate.VELOCITY) else higher.get(self, 2)
+
+    @property
+    def needs_series(self) -> bool:
+        """Whether it is beyond the two derivatives that all positions have."""
+        return self.order > 2
 
     @property
     def by_time(self) -> bool:
         """Whether the input needs a speed."""
-        return self in (Rate.VELOCITY, Rate.ACCELERATION)
+        return self not in (Rate.FIRST, Rate.SECOND)
 
     @property
     def measure(self) -> str:
@@ -113,6 +127,10 @@ class Rate(Enum):
         """
         if self.by_time and speed is None:
             by_input = Rate.FIRST if self.order == 1 else Rate.SECOND
+            if self.needs_series:
+                raise UnknownNameError(
+                    f'"{name}.{self.value}" needs the speed of the input: set speed in [input]'
+                )
             raise UnknownNameError(
                 f'"{name}.{self.value}" needs the speed of the input: set speed in [input], or '
                 f'use "{name}.{by_input.value}", the derivative with respect to the input'
@@ -129,5 +147,5 @@ class Rate(Enum):
 
     def unit(self, kind: Kind, units: Units, by: str) -> str:
         """The unit of the rate; ``by`` is the unit of the input in derivatives."""
-        power = "" if self.order == 1 else "^2"
+        power = "" if self.order == 1 else f"^{self.order}"
         return f"{units.of_rate(kind)}/{'s' if self.by_time else by}{power}"

@@ -6,7 +6,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwork.foundation.file_keys import Key, Kind, ListOf, Named, Number, Table, Tables, Text
+from linkwork.foundation.file_keys import (
+    Formula,
+    Key,
+    Kind,
+    ListOf,
+    Named,
+    Number,
+    Table,
+    Tables,
+    TablesOrFormula,
+    Text,
+)
 
 __all__ = ["Entry", "entries", "measured_by"]
 
@@ -45,7 +56,9 @@ def measured_by(kind: Number, row: Mapping[str, Any]) -> str:
     match kind.of:
         case "lift":
             return "angle" if "link" in row else "length"
-        case "driven":
+        case "ranged" if "law" in row:
+            return "number"
+        case "driven" | "ranged":
             turns, slides = {"link", "joint"} & row.keys(), {"slider", "cylinder"} & row.keys()
             return "angle" if turns else "length" if slides else ""
         case "stiffness":
@@ -64,7 +77,9 @@ def _inside(given: Any, kind: Kind, path: Path, row: Mapping[str, Any]) -> Itera
             yield from entries(given, keys, path, given if len(path) == 1 else row)
         case Tables(keys) if isinstance(given, Mapping):
             yield from entries(given, keys, path, given)
-        case Tables(keys) if isinstance(given, list):
+        case TablesOrFormula() if isinstance(given, str):
+            yield Entry(path=path, kind=Formula(), given=given, row=row)
+        case Tables(keys) | TablesOrFormula(keys) if isinstance(given, list):
             for k, each in enumerate(given):
                 if isinstance(each, Mapping):
                     yield from entries(each, keys, (*path, k), each if len(path) == 1 else row)

@@ -21,10 +21,12 @@ from linkwork.foundation.file_keys import (
     Speed,
     Table,
     Tables,
+    TablesOrFormula,
     Text,
 )
 from linkwork.foundation.units import FORCES, MASSES
 from linkwork.mechanism.friction import FRICTION_KEYS
+from linkwork.mechanism.input_law import LAW_KEYS
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
@@ -135,18 +137,24 @@ _GUESS = Key(
     required=True,
 )
 _RANGE = (
-    Key("from", Number("driven"), "First input value"),
-    Key("to", Number("driven"), "Last input value"),
+    Key("from", Number("ranged"), "First input value; with a law the first time [s]"),
+    Key("to", Number("ranged"), "Last input value; with a law the last time [s]"),
     Key(
         "step",
-        Number("driven"),
-        "Step between input values; its sign points from the first value to the last",
+        Number("ranged"),
+        "Step between input values, or times; its sign points from the first to the last",
     ),
     Key(
         "speed",
         Speed(),
         'Speed of the input, "300 rpm"; a plain number is in file units per second',
     ),
+    Key(
+        "law",
+        TablesOrFormula(LAW_KEYS),
+        "How the input moves in time: segments from t = 0, or a formula of t",
+    ),
+    Key("begin", Number("driven"), "With segments: input value at t = 0; default: the sketch's"),
 )
 _DRIVES = (
     Key("link", Text(of="link"), "The link whose angle is driven"),

@@ -11,6 +11,7 @@ from linkwork.foundation.errors import MechanismError, MechanismFileError, Probl
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.friction import Friction
+from linkwork.mechanism.input_law import LawSegment
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.mass import Gravity, Mass
@@ -255,4 +256,7 @@ def _question(table: dict[str, Any]) -> Question:
 
 def _input(table: dict[str, Any]) -> Input:
     renamed = {"from": "start", "to": "stop"}
-    return Input(**{renamed.get(key, key): entry for key, entry in table.items()})
+    fields = {renamed.get(key, key): entry for key, entry in table.items()}
+    if isinstance(fields.get("law"), list):
+        fields["law"] = tuple(LawSegment(**segment) for segment in fields["law"])
+    return Input(**fields)

@@ -21,6 +21,7 @@ from linkwork.foundation.file_keys import (
     Speed,
     Table,
     Tables,
+    TablesOrFormula,
     Text,
     Whole,
 )
@@ -117,6 +118,8 @@ def _schema(kind: Kind) -> dict[str, Any]:
         case Tables(keys, single):
             many = {"type": "array", "items": _fields(keys)}
             return {"anyOf": [_fields(keys), many]} if single else many
+        case TablesOrFormula(keys):
+            return {"anyOf": [{"type": "array", "items": _fields(keys)}, _FORMULA]}
         case ListOf(of, _, least, most):
             found = {"type": "array", "items": _schema(of), "minItems": least}
             return found if most is None else {**found, "maxItems": most}

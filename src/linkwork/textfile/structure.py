@@ -23,6 +23,7 @@ from linkwork.foundation.file_keys import (
     Speed,
     Table,
     Tables,
+    TablesOrFormula,
     Text,
     Whole,
 )
@@ -95,6 +96,8 @@ class Structure:
                 return self._sub_table(entry, keys, path)
             case Tables():
                 return self._tables(entry, kind, path)
+            case TablesOrFormula(keys) if not isinstance(entry, str):
+                return self._listed_tables(entry, keys, path)
             case Named():
                 return self._named(entry, kind, path)
             case ListOf():
@@ -162,6 +165,13 @@ class Structure:
             self._wrong(path, f"must be written as {wanted}, got {_shown(entry)}")
             return []
         return [self._table(each, kind.keys, (*path, k)) for k, each in enumerate(entry)]
+
+    def _listed_tables(self, entry: Any, keys: tuple[Key, ...], path: Path) -> list[dict[str, Any]]:
+        if not isinstance(entry, list) or not all(isinstance(each, dict) for each in entry):
+            wanted = f"a formula in quotes or a list of tables, {path[-1]} = [{{ … }}, …]"
+            self._wrong(path, f"must be {wanted}, got {_shown(entry)}")
+            return []
+        return [self._table(each, keys, (*path, k)) for k, each in enumerate(entry)]
 
     def _named(self, entry: Any, kind: Named, path: Path) -> dict[str, Any]:
         if not isinstance(entry, dict):

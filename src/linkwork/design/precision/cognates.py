@@ -18,7 +18,7 @@ def third_pivot(linkage: ComplexArray) -> ComplexArray:
     """c and c̄ of linkages (B, 8), (B, 2)."""
     x, a, y, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
     with np.errstate(all="ignore"):
-        pivot: ComplexArray = a + x / (x - y) * (b - a)  # eq. (104)
+        pivot: ComplexArray = a + x / (x - y) * (b - a)  # eq. (113)
     return pivot
 
 

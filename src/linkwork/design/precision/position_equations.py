@@ -137,7 +137,7 @@ def position_equations(given: PrecisionPositions) -> PositionEquations:
     one = place()
     writer = _Writer()
     for k, ((left, right), delta) in enumerate(zip(moving, deltas, strict=True)):
-        writer.leg(left, x, a, delta)  # eq. (105)
+        writer.leg(left, x, a, delta)  # eq. (114)
         writer.leg(right, y, b, delta)
         if k < len(turns):
             writer.equal_products(left, one, turns[k], x)

@@ -197,7 +197,7 @@ def _leg_numbers(leg: Sequence[Any], d: Any, d_bar: Any) -> tuple[Any, Any, Any]
     """p, q and r of a leg x, x̄, a, ā."""
     x, x_bar, a, a_bar = leg
     p, q = (a_bar - d_bar) * x, (a - d) * x_bar
-    return p, q, d * (a_bar - x_bar) + d_bar * (a - x) - d * d_bar  # eq. (102)
+    return p, q, d * (a_bar - x_bar) + d_bar * (a - x) - d * d_bar  # eq. (111)
 
 
 def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any]) -> list[_Row]:
@@ -218,7 +218,7 @@ def _pose_rows(linkage: Sequence[Any], pose: Sequence[Any], rate: Sequence[Any])
         change = change + (a_bar - x_bar - d_bar - x_bar * g_bar) * d_rate
         change = change + (a - x - d - x * g) * d_bar_rate
         slopes = [*own, *[0.0] * 4] if first == 0 else [*[0.0] * 4, *own]
-        rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (101)
+        rows.append((p * g + q * g_bar + r, slopes, change))  # eq. (110)
     return rows
 
 
@@ -241,7 +241,7 @@ def _point_row(linkage: Sequence[Any], point: Sequence[Any], rate: Sequence[Any]
     ]  # fmt: skip
     by_d = fr * (a_bar - x_bar - d_bar) - fq * x_bar + fw * (b_bar - y_bar - d_bar) - fv * y_bar
     by_d_bar = fr * (a - x - d) - fp * x + fw * (b - y - d) - fu * y
-    return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (103)
+    return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (112)
 
 
 def _random_turns(rng: np.random.Generator, count: int) -> ComplexArray:

@@ -8,12 +8,12 @@ from linkwork.results.quantity import Rate
 
 __all__ = ["axis_label", "printed_unit", "rate_label", "size_label", "with_unit"]
 
-_BY_TIME = {Rate.VELOCITY: "velocity", Rate.ACCELERATION: "acceleration"}
+_BY_TIME = {rate: rate.value for rate in Rate if rate.by_time}
 
 
 def printed_unit(unit: str) -> str:
     """A unit as printed: ``mm/rad^2`` → ``mm/rad²``."""
-    return unit.replace("^2", "²")
+    return unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
 
 
 def with_unit(text: str, unit: str) -> str:

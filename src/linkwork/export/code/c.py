@@ -11,14 +11,6 @@ _WORDS = """
     inline int long register restrict return short signed sizeof static struct switch typedef
     union unsigned void volatile while bool true false nan infinity null main
 """
-_OWN = """
-    n m k derived_count rate_count block_count largest rows stretches units sizes block_unknowns
-    block_size tolerance most_iterations most_change largest_misfit shortest_step closure sides
-    solve newton follow rates misfits derived derived_rates table starts shown columns
-    linkwork_position row largest_change f j u q v w d1 d2 v1 v2 e pi radians degrees y0 y1 yn
-    j0 j1 jn gamma index position printf isnan sin cos tan asin acos atan atan2 sqrt fabs exp
-    log log10 hypot fmin fmax pow double_t float_t time signal remove rename div abs exit abort
-"""
 _SIDES = """\
 /* {{about}}: F differentiated {times}, without the {left} derivatives of its own unknowns. */
 static void {left}_sides_{{k}}(const double u[M], const double q[], const double d1[],
@@ -81,5 +73,6 @@ C = Syntax(
     row=("{", ", ", "}"),
     rows=("{\n    ", ", ", "\n}"),
     empty="0",
-    reserved=frozenset((_WORDS + _OWN).split()),
+    words=frozenset(_WORDS.split()),
+    comments=r"/\*.*?\*/",
 )  # fmt: skip

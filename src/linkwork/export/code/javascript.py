@@ -13,13 +13,6 @@ _WORDS = """
     package private protected public return short static super switch synchronized this throw
     throws transient true try typeof undefined var void volatile while with yield nan infinity
 """
-_OWN = """
-    units sizes block_unknowns tolerance most_iterations most_change largest_misfit
-    shortest_step blocks newton follow solve rates misfits derived derived_rates table starts
-    shown columns position row main largest largestchange largestmisfit changed f j u q v w d1
-    d2 v1 v2 k e math console module require radians degrees matrix object number array process
-    exports
-"""
 _CLOSURE = """\
 /** {about}: F, and the Jacobian by its unknowns. */
 function closure{k}(u, q) {{
@@ -82,7 +75,8 @@ JAVASCRIPT = Syntax(
     string='"{}"',
     row=("[", ", ", "]"),
     rows=("[\n  ", ", ", ",\n]"),
-    reserved=frozenset((_WORDS + _OWN).split()),
+    words=frozenset(_WORDS.split()),
+    comments=r"/\*.*?\*/|//[^\n]*",
     indent="  ",
     padded=False,
 )  # fmt: skip

@@ -12,12 +12,6 @@ _WORDS = """
     if methods otherwise parfor persistent properties return spmd switch try until
     unwind_protect unwind_protect_cleanup while
 """
-_OWN = """
-    closure sides newton follow rates misfits derived derived_rates table starts shown columns
-    position row numbers constants f j u q v w d1 d2 v1 v2 k c p e i pi eps inf nan ans radians
-    degrees sin cos tan asin acos atan atan2 sqrt abs exp log log10 hypot min max zeros units
-    sizes blocks varargin nargin block order ok number number_of
-"""
 _SIDES = """\
 function F = {order}_sides_{{k}}(u, q, d1, d2, p)
   % {{about}}: F differentiated {times}, without the {order} derivatives of its own unknowns.
@@ -71,7 +65,8 @@ OCTAVE = Syntax(
     string="'{}'",
     row=("[", ", ", "]"),
     rows=("[\n  ", "; ", "\n]"),
-    reserved=frozenset((_WORDS + _OWN).split()),
+    words=frozenset(_WORDS.split()),
+    comments=r"%[^\n]*",
     indent="  ",
     padded=False,
     shared="p.{name}",

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 
 from linkwork.export.code.solver_program import BlockProgram, Lets, SolverProgram, Stretch
 from linkwork.export.code.syntax import FormulaText, Syntax
@@ -45,8 +44,6 @@ class ProgramText:
         heading : sequence of str
             Lines of its first comment.
         """
-        folder = resources.files("linkwork.export.code") / "templates"
-        template = (folder / self.syntax.template).read_text("utf-8")
         sections = {**self.sections, "heading": "\n".join(map(_as_comment, heading))}
 
         def fill(found: re.Match[str]) -> str:
@@ -55,7 +52,7 @@ class ProgramText:
             lines = ((space + line).rstrip() for line in text.split("\n"))
             return "\n".join(lines) if found[2] else text
 
-        return _SECTION.sub(fill, template)
+        return _SECTION.sub(fill, self.syntax.text)
 
     @cached_property
     def _formula(self) -> FormulaText:

@@ -8,13 +8,6 @@ from linkwork.export.code.syntax import Syntax
 
 __all__ = ["PYTHON"]
 
-_OWN = """
-    acos asin atan atan2 cos degrees exp hypot log log10 pi radians sin sqrt tan sys np abs min
-    max float int len range zip dict print units sizes block_unknowns tolerance most_iterations
-    most_change shortest_step closures sides derived derived_rates newton follow rates table
-    starts columns position row main f j w misfits largest_misfit largest_change shown columns u
-    q v d1 d2 v1 v2 k start first last e
-"""
 _CLOSURE = '''\
 def closure_{k}(u, q):
     """{about}: F, and the Jacobian by its unknowns."""
@@ -98,5 +91,6 @@ PYTHON = Syntax(
     string='"{}"',
     row=("[", ", ", "]"),
     rows=("[\n    ", ", ", ",\n]"),
-    reserved=frozenset(map(str.lower, [*keyword.kwlist, *_OWN.split()])),
+    words=frozenset(map(str.lower, keyword.kwlist)),
+    comments=r'""".*?"""|#[^\n]*',
 )

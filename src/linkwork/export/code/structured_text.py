@@ -23,13 +23,6 @@ _WORDS = """
     var_global var_in_out var_input var_output var_temp while with word wstring xor ld st en eno
     jmp cal ret s r n
 """
-_OWN = """
-    u q v w d1 d2 v1 v2 f j p goal ok found good started det size change done h there next signs
-    own units sizes table starts block_size block_unknowns b c i k pivot factor x order moved
-    main first last row radians degrees solve closure sides misfits derived derived_rates
-    numbers tolerance most_iterations most_change largest_misfit shortest_step iteration start
-    previous e pi here begin machine lines reset alive
-"""
 _HEAD = """\
 (* {about} *)
 FUNCTION @{{{{name}}}}_{kind} : BOOL
@@ -111,7 +104,8 @@ STRUCTURED_TEXT = Syntax(
     row=("[", ", ", "]"),
     rows=("[\n    ", ", ", "\n  ]"),
     inner=("", ", ", ""),
-    reserved=frozenset((_WORDS + _OWN).split()),
+    words=frozenset(_WORDS.split()),
+    comments=r"\(\*.*?\*\)",
     indent="",
     empty="0",
     shared="p.{name}",

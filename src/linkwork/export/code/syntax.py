@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
 
 from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.expression.precedence import STRENGTH, strength
@@ -50,8 +53,10 @@ class Syntax:
         A text between its marks.
     row, rows : tuple of str
         Beginning, separator and end of a list of numbers, and of a list of such lists.
-    reserved : frozenset of str
-        Words that are no identifiers, in lower case.
+    words : frozenset of str
+        Words of the language, in lower case.
+    comments : str
+        A regular expression of comments in the template.
     indent : str
         Before a statement in a function.
     padded : bool
@@ -79,12 +84,26 @@ class Syntax:
     string: str
     row: tuple[str, str, str]
     rows: tuple[str, str, str]
-    reserved: frozenset[str]
+    words: frozenset[str]
+    comments: str
     indent: str = "    "
     padded: bool = True
     empty: str = ""
     shared: str = "{name}"
     inner: tuple[str, str, str] | None = None
+
+    @cached_property
+    def text(self) -> str:
+        """The template."""
+        folder = resources.files("linkwork.export.code") / "templates"
+        return (folder / self.template).read_text("utf-8")
+
+    @cached_property
+    def reserved(self) -> frozenset[str]:
+        """What is no free identifier: the language's words and the names of the fixed parts."""
+        fixed = [self.text, *self.sections.values(), *self.functions.values()]
+        code = (re.sub(self.comments, " ", part, flags=re.DOTALL).lower() for part in fixed)
+        return self.words.union(*(re.findall(r"[a-z]\w*", part) for part in code))
 
     def number(self, value: float) -> str:
         """A number by all its digits, with a decimal point; NaN does not occur in programs."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.expression.grammar import CONSTANTS
 from linkwork.expression.lane_functions import FUNCTIONS
-from linkwork.expression.precedence import ATOM, STRENGTH, strength
+from linkwork.expression.precedence import ATOM, COMPARISONS, STRENGTH, strength
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.angles import AngleUnit
 
@@ -65,6 +65,10 @@ class _Writer:
                 return "-" + self._inside(node.operand, least)
             case Call():
                 return self._call(node.function, [self.text(part) for part in node.arguments])
+            case Binary() if node.operator in COMPARISONS:
+                # a comparison alone would be TRUE, not 1
+                left, right = self.text(node.left), self.text(node.right)
+                return f"IF({left}{node.operator}{right},1,0)"
             case Binary("^"):
                 left, right = (self._inside(part, ATOM) for part in (node.left, node.right))
                 return f"{left}^{right}"
@@ -133,4 +137,5 @@ def _value(node: Node, names: Mapping[str, Any], radians: float) -> Any:
 
 _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "^": np.power,
+    "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal,
 }  # fmt: skip

@@ -10,6 +10,7 @@ import numpy as np
 from linkwork.equations.writing import EquationSheet
 from linkwork.export.workbook.book import CYCLE, FIRST, Book, column_name
 from linkwork.export.workbook.cycle_columns import CycleColumns
+from linkwork.export.workbook.load_cells import force_problem
 from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.export.workbook.status_formulas import statement
 from linkwork.foundation.certification import Certification
@@ -150,6 +151,9 @@ def notices(book: Book) -> Iterator[str]:
             f"{held} rows: Newton-Raphson does not converge there, as at a change point; they "
             "contain Linkwork's values until something changes"
         )
+    problem = force_problem(book)
+    if problem:
+        yield f"no sheets of forces: {problem}"
     lost = book.count - int(book.iterations.found.sum())
     if lost:
         yield f"rows without a position, with Linkwork's reason in their status: {lost}"

@@ -32,6 +32,7 @@ __all__ = [
     "CYCLE",
     "DIMENSIONS",
     "FIRST",
+    "FORCES",
     "LINKWORK",
     "NEWTON",
     "NO_VALUE",
@@ -43,7 +44,7 @@ __all__ = [
 ]
 
 DIMENSIONS, CYCLE, VELOCITIES = "Dimensions", "Cycle", "Velocities"
-NEWTON, LINKWORK = "Newton", "Linkwork"
+NEWTON, LINKWORK, FORCES = "Newton", "Linkwork", "Forces"
 NO_VALUE = "#N/A"
 FIRST = 6  # rows above the first position, on sheets with a row for every position
 

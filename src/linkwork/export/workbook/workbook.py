@@ -15,6 +15,7 @@ from linkwork.export.workbook.about_page import notices, write_about
 from linkwork.export.workbook.book import (
     CYCLE,
     DIMENSIONS,
+    FORCES,
     LINKWORK,
     NEWTON,
     VELOCITIES,
@@ -25,9 +26,12 @@ from linkwork.export.workbook.cycle_columns import planned_cycle
 from linkwork.export.workbook.cycle_page import write_cycle
 from linkwork.export.workbook.dimension_page import write_dimensions
 from linkwork.export.workbook.drawing_page import SHEET as DRAWING, has_drawing, write_drawing
+from linkwork.export.workbook.equilibrium_page import EQUILIBRIUM, write_equilibrium
 from linkwork.export.workbook.fast_cells import FastCells
+from linkwork.export.workbook.force_page import write_forces
 from linkwork.export.workbook.iterations import iterated
 from linkwork.export.workbook.linkwork_page import write_linkwork
+from linkwork.export.workbook.load_cells import LOADS, force_problem, write_loads
 from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.page_layout import set_up_page
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
@@ -97,6 +101,10 @@ def workbook_of(
     names = ["About", DIMENSIONS, CYCLE, VELOCITIES, DRAWING, "Charts", NEWTON, LINKWORK]
     if not has_drawing(book):
         names.remove(DRAWING)
+    if force_problem(book) is None:
+        names[-2:-2] = [LOADS, FORCES]
+        if DRAWING in names:
+            names[-2:-2] = [EQUILIBRIUM]
     sheets = {name: workbook.add_worksheet(name, sheet_class) for name in names}
     _write_sheets(book, sheets, version, progress)
     large = [sheets[name] for name in (CYCLE, VELOCITIES, NEWTON, LINKWORK)]
@@ -126,6 +134,11 @@ def _write_sheets(
     write_velocities(book, sheets[VELOCITIES], velocities, newton)
     if DRAWING in sheets:
         write_drawing(book, sheets[DRAWING], columns.of)
+    if LOADS in sheets:
+        cells = write_loads(book, sheets[LOADS])
+        forces = write_forces(book, sheets[FORCES], cells)
+        if EQUILIBRIUM in sheets:
+            write_equilibrium(book, sheets[EQUILIBRIUM], cells, forces, columns.of)
     write_charts(book, sheets["Charts"], columns.of)
     write_linkwork(book, sheets[LINKWORK])
     write_about(book, sheets["About"], columns, version)

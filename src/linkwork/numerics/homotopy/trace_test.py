@@ -60,7 +60,7 @@ class _Moving:
         values, slopes, changes = (list(part) for part in self.system.equations(z, given, rates))
         given[last], rates[last] = c[own:-1], rate[own:-1]
         chart = self.system.equations(z, given, rates)
-        values[-1] = values[-1] + s * chart[0][-1]  # eq. (106)
+        values[-1] = values[-1] + s * chart[0][-1]  # eq. (115)
         slopes[-1] = [a + s * b for a, b in zip(slopes[-1], chart[1][-1], strict=True)]
         changes[-1] = changes[-1] + s * chart[2][-1] + s_rate * chart[0][-1]
         return values, slopes, changes

@@ -86,6 +86,18 @@ class Asked:
         own = self.row.needs if self.row else self.names.output_needs.get(self.own.name, 0)
         return own + (self.rate.order if self.rate else 0)
 
+    @property
+    def has_series(self) -> bool:
+        """Whether it has derivatives of any order."""
+        plain = (Group.UNKNOWN, Group.LINK, Group.SLIDER, Group.COORDINATE)
+        return self.names.series is not None and self.group in plain
+
+    def derivatives(self, solved: Solved, order: int, speed: Array | float) -> Array:
+        """The derivatives with respect to time from the first to an order, (order, B)."""
+        assert self.names.series is not None
+        found = self.names.series(solved, self, order)
+        return np.stack([part * speed**k for k, part in enumerate(found, start=1)])
+
     def check_rate(self, speed: Array | float | None) -> None:
         """Raise an error for an unknown rate, or for a time derivative without a speed.
 
@@ -97,6 +109,8 @@ class Asked:
         if self.rate is None:
             return
         self.rate.check(self.own.name, speed)
+        if self.rate.needs_series and self.has_series:
+            return
         # checked by name, before anything is computed
         if self.needs > 2:
             raise UnknownNameError(
@@ -116,6 +130,10 @@ class Asked:
 
     def values(self, solved: Solved, speed: Array | float | None) -> Array:
         """The values of the quantity, or of its rate if one was requested."""
+        if self.rate is not None and self.rate.needs_series:
+            assert speed is not None
+            found: Array = self.derivatives(solved, self.rate.order, speed)[-1]
+            return found if np.ndim(solved.own(self.own.name).v) else found[0]
         if self.group is Group.POINT:
             assert self.rate is not None
             place = solved.place(self.own.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -51,6 +51,9 @@ class MechanismNames:
         The leading input, the first one that changes from row to row; "" without an input.
     further : tuple of RowQuantity
         Quantities that this mechanism alone has, of no part: those of its forces.
+    series : callable, optional
+        From solved positions, the requested quantity and an order: its derivatives with respect to
+        the leading input from the first to this one, in radians and lengths, (order, B).
     """
 
     units: Units
@@ -65,6 +68,7 @@ class MechanismNames:
     by: str = ""
     lead: str = ""
     further: tuple[RowQuantity, ...] = ()
+    series: Callable[[Solved, Any, int], Array] | None = None
 
     @cached_property
     def dyads(self) -> tuple[Dyad, ...]:

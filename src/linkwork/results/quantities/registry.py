@@ -37,6 +37,8 @@ _RATES = {
     Rate.SECOND: "second derivative with respect to the input",
     Rate.VELOCITY: "first derivative with respect to time; the input needs a speed",
     Rate.ACCELERATION: "second derivative with respect to time; the input needs a speed",
+    Rate.JERK: "third derivative with respect to time; the input needs a speed",
+    Rate.SNAP: "fourth derivative with respect to time; the input needs a speed",
 }
 
 

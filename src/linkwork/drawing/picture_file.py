@@ -1,0 +1,84 @@
+"""Pictures as files: PNG, SVG and PDF by Matplotlib, TikZ for LaTeX documents."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from linkwork.drawing import matplotlib_writer
+from linkwork.drawing.charts.chart import Chart
+from linkwork.drawing.charts.pgfplots_writer import pgfplots_picture
+from linkwork.drawing.charts.theme import ChartTheme
+from linkwork.drawing.scene import Scene
+from linkwork.drawing.sheet import Sheet
+from linkwork.drawing.theme import LIGHT, Theme
+from linkwork.drawing.tikz_writer import tikz_picture
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
+
+__all__ = ["FORMATS", "render", "write"]
+
+_TIKZ = "tikz"
+#: File formats by suffix.
+FORMATS = (*matplotlib_writer.FORMATS, _TIKZ)
+
+
+def write(
+    scene: Scene | Chart | Sheet,
+    path: str | Path,
+    *,
+    dpi: float = 200.0,
+    theme: Theme | ChartTheme = LIGHT,
+) -> Path:
+    """Write a scene, a chart or a sheet to a file; the suffix of ``path`` chooses the format.
+
+    The file is written completely or not at all; the same scene gives the same bytes.
+
+    Raises
+    ------
+    InputError
+        If the suffix is not a known format, or the file cannot be written.
+    MissingPackageError
+        If Matplotlib is not installed.
+    """
+    target = as_path(path)
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        known = ", ".join(f".{name}" for name in FORMATS)
+        raise InputError(f'cannot draw "{target.name}": its suffix must be one of {known}')
+    page = render(scene, kind, dpi=dpi, theme=theme)
+    part = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(page)
+        part.replace(target)
+    except OSError as error:
+        raise InputError(f'cannot write "{target}": {error.strerror or error}') from error
+    finally:
+        part.unlink(missing_ok=True)
+    return target
+
+
+def render(
+    scene: Scene | Chart | Sheet,
+    kind: str,
+    *,
+    dpi: float = 200.0,
+    theme: Theme | ChartTheme = LIGHT,
+) -> bytes:
+    """A scene, chart or sheet as the content of a file of one of :data:`FORMATS`.
+
+    Raises
+    ------
+    InputError
+        If the format is unknown, a drawing has a theme of charts, or several drawings are to be
+        one TikZ picture.
+    """
+    if kind not in FORMATS:
+        raise InputError(f'there is no format "{kind}" (formats: {", ".join(FORMATS)})')
+    if kind != _TIKZ:
+        return matplotlib_writer.image(scene, kind, dpi=dpi, theme=theme)
+    if isinstance(scene, Chart):
+        return pgfplots_picture(scene, theme).encode()
+    if isinstance(scene, Sheet) or isinstance(theme, ChartTheme):
+        raise InputError("a TikZ picture shows one position or a chart: draw each position alone")
+    return tikz_picture(scene, theme).encode()

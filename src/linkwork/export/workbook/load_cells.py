@@ -1,0 +1,203 @@
+"""The sheet of loads: cells for masses, gravity, forces, torques and springs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwork.equations.compiling import coordinate_name
+from linkwork.export.formulas.cell_formula import CellFormula
+from linkwork.export.formulas.rate_formulas import rate_key
+from linkwork.export.workbook.book import Book
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.tree import Node, names_in
+from linkwork.foundation.names import GROUND, canonical
+from linkwork.foundation.units import force_of_inertia
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.joint import JointKind
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.load import Load
+from linkwork.mechanism.part.part import Part
+
+__all__ = ["LOADS", "LoadCells", "force_problem", "write_loads"]
+
+LOADS = "Loads"
+_GUIDES = (JointKind.PRISMATIC, JointKind.PIN_IN_SLOT)
+_DOWN = -math.pi / 2.0
+
+
+def force_problem(book: Book) -> str | None:
+    """Why a loaded mechanism has no sheets of forces; ``""`` without loads, ``None`` with them."""
+    linkage = book.model.description
+    if not isinstance(linkage, Linkage) or not linkage.loaded or not linkage.inputs:
+        return ""
+    if len(linkage.inputs) > 1:
+        return "forces of several inputs have no cells"
+    others = [part for part in linkage.parts if not _has_cells(part)]
+    if others:
+        return f"forces of {others[0].title.lower()}s have no cells"
+    if any(spring.links is not None for spring in LoadCells(book, None).pulling):
+        return "torsion springs have no cells"
+    if linkage.friction:
+        return "friction has no cells"
+    if any(not sides for sides in book.rates.sides):
+        return "velocities without formulas give no forces"
+    for load in linkage.loads:
+        for _, number in load.formulas:
+            if isinstance(number, str):
+                for name in names_in(parse(number, comparing=True)):
+                    if _key(book, name.name) is None:
+                        return f'the load "{number}" uses {name.spelling}, which has no cell'
+    return None
+
+
+def _has_cells(part: Part) -> bool:
+    """Whether the sheet of the equilibrium has the reactions of a part."""
+    if part.kind is None:  # a cylinder is a body
+        return not part.body
+    return part.kind in _GUIDES
+
+
+def _key(book: Book, name: str) -> str | None:
+    """The key of the cell that a load's formula means; "" for a constant."""
+    if name in CONSTANTS or name == "t":
+        return ""
+    for variable in book.variables:
+        if canonical(name) in (canonical(variable.name), variable.symbol):
+            return variable.symbol
+        for word, order in (("velocity", 1), ("acceleration", 2)):
+            if canonical(name) == canonical(f"{variable.name}.{word}"):
+                return rate_key(variable.symbol, order)
+    known = {canonical(d.name): d.key for d in book.dimensions if d.kind == "dimensions"}
+    if canonical(name) in known:
+        return known[canonical(name)]
+    points = {coordinate_name(point, axis) for point in book.closure.points for axis in "xy"}
+    return name if name in points else None
+
+
+@dataclass
+class LoadCells:
+    """The keys of the cells of a load sheet."""
+
+    book: Book
+    sheet: Any
+    row: int = 3
+    loads: list[tuple[Load, tuple[CellFormula, ...], dict[str, str]]] = field(default_factory=list)
+
+    @property
+    def linkage(self) -> Linkage:
+        """The mechanism."""
+        found = self.book.model.description
+        assert isinstance(found, Linkage)
+        return found
+
+    @property
+    def masses(self) -> Iterator[str]:
+        """The moving links with masses."""
+        return (link for link in self.linkage.masses if link != GROUND)
+
+    @property
+    def pulling(self) -> tuple[Any, ...]:
+        """The springs with a stiffness or a damping."""
+        return tuple(spring for spring in self.linkage.springs if spring.pulls)
+
+    def number(self, key: str, wanted: str, value: float, unit: str, about: str) -> None:
+        """A yellow cell with a name."""
+        book, style = self.book, self.book.style
+        cell = book.names.claim(key, wanted)
+        self.sheet.write(self.row, 0, cell, style["head_left"])
+        self.sheet.write_number(self.row, 1, value, style["input"])
+        self.sheet.write(self.row, 2, unit, style["unit_right"])
+        self.sheet.write(self.row, 3, about, style["note"])
+        book.define(key, LOADS, f"$B${self.row + 1}")
+        book.values[key] = value
+        self.row += 1
+
+
+def write_loads(book: Book, sheet: Any) -> LoadCells:
+    """Write the cells of all loads."""
+    cells = LoadCells(book, sheet)
+    linkage, numbers = cells.linkage, book.model.description.numbers
+    for column, width in enumerate((24, 16, 18, 60)):
+        sheet.set_column(column, column, width)
+    book.title(sheet, "masses, loads and springs")
+    note = "Edit a yellow cell: the sheets Forces and Equilibrium follow."
+    sheet.write(1, 0, note, book.style["note"])
+    moving = 0.0 if book.motion.speed is None else 1.0
+    cells.number("moving", "moving", moving, "", "1: masses have inertia; 0: at rest")
+    if linkage.masses:
+        scale = force_of_inertia(linkage.mass, linkage.length, linkage.force)
+        unit = f"{linkage.force} per {linkage.mass}·{linkage.length}/s²"
+        cells.number("force unit", "force_unit", scale, unit, "force of a unit of inertia")
+        gravity = linkage.gravity
+        size = 0.0 if gravity is None else gravity.acceleration(numbers, linkage.length)
+        given = None if gravity is None else gravity.angle
+        angle = _DOWN if given is None else numbers(given) * linkage.angle.radians
+        for axis, part in (("x", math.cos(angle)), ("y", math.sin(angle))):
+            part = 0.0 if abs(part) < 1e-16 else part
+            about = f"gravity along {axis}"
+            cells.number(
+                f"gravity {axis}", f"gravity_{axis}", size * part, f"{linkage.length}/s²", about
+            )
+    _write_masses(cells)
+    force, length = linkage.force, linkage.length
+    for spring in cells.pulling:
+        for word, value, unit in (
+            ("stiffness", spring.stiffness, f"{force}/{length}"),
+            ("free", spring.free, length),
+            ("damping", spring.damping, f"{force}·s/{length}"),
+        ):
+            key = f"{spring.name} {word}"
+            cells.number(key, f"{spring.name}_{word}", numbers(value), unit, "spring")
+    for k, load in enumerate(linkage.loads, start=1):
+        _write_load(cells, k, load)
+    return cells
+
+
+def _write_masses(cells: LoadCells) -> None:
+    linkage = cells.linkage
+    mass_unit, length = linkage.mass, linkage.length
+    for link in cells.masses:
+        mass, numbers = linkage.masses[link], linkage.numbers
+        cells.number(
+            f"mass {link}", f"mass_{link}", numbers(mass.mass), mass_unit, f"mass of {link}"
+        )
+        if mass.shape is not None:
+            continue  # a rod follows its length
+        for axis, part in zip("xy", mass.center or (0.0, 0.0), strict=True):
+            about = f"centre of mass of {link}, in its own frame"
+            key = f"center {link} {axis}"
+            cells.number(key, f"center_{link}_{axis}", numbers(part), length, about)
+        unit, about = f"{mass_unit}·{length}²", f"moment of inertia of {link} about its centre"
+        cells.number(f"inertia {link}", f"inertia_{link}", numbers(mass.inertia), unit, about)
+
+
+def _write_load(cells: LoadCells, k: int, load: Load) -> None:
+    """A load: cells of its numbers; formulas go to the sheet Forces."""
+    linkage = cells.linkage
+    unit = linkage.force if load.torque is None else f"{linkage.force}·{linkage.length}"
+    parts, names = [], {}
+    for (word, number), own in zip(_components(load), "xy", strict=False):
+        formula = number if isinstance(number, str) else None
+        if formula is None:
+            key = f"load {k} {word}"
+            name = f"load{k}_{own}" if load.torque is None else f"load{k}_torque"
+            cells.number(key, name, linkage.numbers(number), unit, load.label)
+            parts.append(CellFormula(parse("q")))
+            names[f"q {len(parts)}"] = key
+            continue
+        tree: Node = parse(formula, comparing=True)
+        parts.append(CellFormula(tree, linkage.angle))
+        for node in names_in(tree):
+            key_of = _key(cells.book, node.name)
+            if key_of:
+                names[node.name] = key_of
+    cells.loads.append((load, tuple(parts), names))
+
+
+def _components(load: Load) -> list[tuple[str, Number]]:
+    if load.torque is not None:
+        return [("torque", load.torque)]
+    return [("x", (load.force or (0, 0))[0]), ("y", (load.force or (0, 0))[1])]

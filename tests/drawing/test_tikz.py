@@ -1,0 +1,89 @@
+"""Pictures and charts as TikZ: the same places, colours and numbers as in every other format."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.drawing.charts.plotting import motion_plot
+from linkwork.drawing.picture_file import write
+from linkwork.drawing.scene import Disc, Text
+from linkwork.drawing.tikz_writer import as_latex, picture_scale, tikz_picture
+from tests.library_mechanisms import read_example
+
+_ROUNDED = 0.00051  # mm: coordinates have three digits after the point
+_CIRCLE = re.compile(r"\(([-\d.]+),([-\d.]+)\) circle\[radius=([-\d.]+)\]")
+_NODE = re.compile(r"at \(([-\d.]+),([-\d.]+)\) \{(.*)\};")
+
+
+def test_a_picture_has_the_places_of_the_scene_in_the_true_scale() -> None:
+    scene = read_example("four-bar").scene(at=60)
+    text = tikz_picture(scene)
+    assert "scale 1:1:" in text
+    discs = np.array([(*disc.centre, disc.radius) for disc in scene.select(Disc)])
+    drawn = np.array(_CIRCLE.findall(text), dtype=float)
+    assert np.abs(drawn - discs).max() <= _ROUNDED
+    names = {name: (float(x), float(y)) for x, y, name in _NODE.findall(text)}
+    for label in scene.select(Text):
+        assert names[as_latex(label.text)] == pytest.approx(label.start, abs=_ROUNDED)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "said"),
+    [
+        ("mm", 1.0, "scale 1:1"),
+        ("m", 1.0, "scale 1:1000"),
+        ("in", 1.0, "scale 1:20"),
+        ("mm", 0.1, "scale 10:1"),
+        ("", 1.0, "scale 1:1, a unit of length taken as 1 mm"),
+    ],
+)
+def test_the_scale_is_the_nearest_round_one_that_fits(unit: str, factor: float, said: str) -> None:
+    bar = lw.linkage(
+        length=unit,
+        points={"O": (0, 0), "A": (100 * factor, 30 * factor)},
+        links={"ground": ["O"], "crank": ["O", "A"]},
+        inputs=lw.Input(link="crank"),
+    )
+    scene = bar.scene()
+    scale, shown = picture_scale(scene)
+    assert shown == said
+    assert 25 <= scale * max(scene.box.width, scene.box.height) <= 150
+
+
+def test_text_is_escaped() -> None:
+    assert as_latex("50 % of θ₂_a & {x} ∠ 3°") == (
+        r"50 \% of $\theta$$_2$\_a \& \{x\} $\angle$ 3$^\circ$"
+    )
+
+
+def test_a_chart_contains_the_numbers_of_its_curves(tmp_path: Path) -> None:
+    motion = read_example("four-bar").sweep()
+    file = write(motion_plot(motion, ["rocker"]), tmp_path / "rocker.tikz")
+    text = file.read_text("utf-8")
+    table = re.search(r"table \{\n(.*?)\};", text, re.DOTALL)
+    assert table is not None
+    numbers = np.array([line.split() for line in table[1].strip().splitlines()], dtype=float)
+    assert numbers[:, 0] == pytest.approx(motion["crank"], abs=1e-9)
+    assert numbers[:, 1] == pytest.approx(motion["rocker"], abs=1e-9)  # twelve digits
+    assert text.count("\\begin{") == text.count("\\end{") == 2
+
+
+def test_every_kind_of_chart_is_written(tmp_path: Path) -> None:
+    motion = read_example("four-bar").sweep(step=10)
+    for kind, names in (("polar", ["rocker"]), ("path", ["B"]), ("transmission", []),
+                        ("hodograph", ["B"])):  # fmt: skip
+        file = write(motion_plot(motion, names, kind=kind), tmp_path / f"{kind}.tikz")
+        text = file.read_text("utf-8")
+        assert text.count("\\addplot") >= 1
+        assert ("polaraxis" in text) is (kind == "polar")
+
+
+def test_a_sheet_of_several_positions_is_refused(tmp_path: Path) -> None:
+    sheet = lw.drawing.configuration_sheet(read_example("four-bar").configurations(at=60))
+    with pytest.raises(lw.InputError, match="a TikZ picture shows one position or a chart"):
+        write(sheet, tmp_path / "all.tikz")

@@ -1,0 +1,102 @@
+"""The sheets of forces of a workbook come to Linkwork's efforts and reactions, and follow edits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
+from tests.described import described_as
+from tests.export.coarse import coarse
+from tests.forces.random_loads import loaded
+from tests.oracles.spreadsheet import Spreadsheet
+
+_NEAR = 1e-9  # relative to the largest value: rows solved by other iterations
+
+
+def written(tmp_path: Path, mechanism: Any) -> Spreadsheet:
+    path = tmp_path / "forces.xlsx"
+    mechanism.to_excel(path, mechanism.sweep(certify=False))
+    return Spreadsheet(path)
+
+
+def reactions(sheet: Spreadsheet) -> tuple[dict[str, float], list[float]]:
+    """The values of the reactions by name, and the sums of all free bodies."""
+    cells = sheet.book["Equilibrium"]
+    found: dict[str, float] = {}
+    sums: list[float] = []
+    part = ""
+    for row in range(1, cells.max_row + 1):
+        name = cells.cell(row, 1).value
+        if name in ("reaction", "sum") or str(name).startswith("free body"):
+            part = str(name)
+        elif part == "reaction" and name and not str(name).endswith("virtual work"):
+            found[str(name)] = float(sheet["Equilibrium", f"B{row}"])
+        if name == "sum":
+            sums += [float(sheet["Equilibrium", f"{column}{row}"]) for column in "BCD"]
+    return found, sums
+
+
+def check(sheet: Spreadsheet, mechanism: lw.Mechanism) -> None:
+    """Efforts of all rows, and all reactions of the selected one."""
+    motion = mechanism.sweep(certify=False)
+    forces = mechanism.forces(motion=motion)
+    (effort,) = forces.efforts
+    wanted = np.asarray(forces[effort])
+    found = np.array(sheet.column("Forces", effort), dtype=float)
+    # the efforts of a balanced mechanism are differences of larger numbers
+    loads = [np.abs(v).max() for name, v in forces.values.items() if ".load." in name]
+    size = max([np.abs(wanted).max(), *loads])
+    assert found == pytest.approx(wanted, rel=0, abs=_NEAR * size)
+    row = int(sheet["Equilibrium", "B3"]) - 1
+    by_name, sums = reactions(sheet)
+    own = [name for name in forces.values if name in by_name]
+    # every pin, guide and weld, and the effort
+    assert {"effort"} < {part for name in own for part in name.split(".")[1:2]}
+    assert len(own) >= len(by_name) - 2  # the first link of a pin of three is a sum
+    largest = max(abs(by_name[name]) for name in own)
+    for name in own:
+        value = float(np.asarray(forces[name])[row])
+        assert by_name[name] == pytest.approx(value, rel=0, abs=_NEAR * largest), name
+    assert sums == pytest.approx([0.0] * len(sums), abs=_NEAR * largest * 100)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["crank-press", "balanced-lamp", "four-bar", "whitworth", "scotch-yoke", "elliptic-trammel"],
+)
+def test_forces_are_linkworks(name: str, tmp_path: Path) -> None:
+    mechanism = lw.example(name)
+    if not described_as(Linkage, mechanism).loaded:
+        mechanism = loaded(mechanism, seed=3)
+    mechanism = coarse(mechanism, 6)
+    check(written(tmp_path, mechanism), mechanism)
+
+
+def test_forces_follow_a_changed_mass_load_and_dimension(tmp_path: Path) -> None:
+    press = coarse(lw.example("crank-press"), 8)
+    sheet = written(tmp_path, press)
+    sheet.set("mass_rod", 21.0)
+    sheet.set("gravity_y", -1620.0)
+    sheet.set("oa", 66.0)
+    masses = dict(described_as(Linkage, press).masses)
+    masses["rod"] = replace(masses["rod"], mass=21.0)
+    changed = press.changed(masses=masses, gravity=lw.Gravity(size=1620)).with_dimensions(
+        {"O A": 66.0}
+    )
+    check(sheet, changed)
+
+
+def test_a_mechanism_whose_forces_have_no_cells_says_so(tmp_path: Path) -> None:
+    gears = coarse(loaded(lw.example("geared-five-bar")), 3)
+    path = tmp_path / "forces.xlsx"
+    gears.to_excel(path, gears.sweep(certify=False))
+    sheet = Spreadsheet(path)
+    assert "Forces" not in sheet.book.sheetnames
+    texts = [str(cell.value) for row in sheet.book["About"].iter_rows() for cell in row]
+    assert any("no sheets of forces: forces of gear pairs have no cells" in t for t in texts)
