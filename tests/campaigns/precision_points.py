@@ -15,6 +15,7 @@ from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
 from linkwork.design.precision.start_sets import SHIPPED_PROBLEMS, start_member
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 
 __all__ = ["precision_campaign"]
 
@@ -31,10 +32,8 @@ def precision_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
         problem = others[(k // 4) % len(others)] if k % 4 == 3 else SHIPPED_PROBLEMS[0]
         original = None
         if k % 4 < 2:
-            free = np.full(9, np.nan)
-            task = PrecisionPositions.of(
-                rng.normal(size=(9, 2)) @ [1.0, 1.0j], free, np.zeros(0, dtype=complex)
-            )
+            points, none = normal_numbers(rng, 9), np.zeros(0, dtype=complex)
+            task = PrecisionPositions.of(points, np.full(9, np.nan), none)
         else:
             original, points, turns = _random_four_bar(rng, 1 + problem.poses + problem.points)
             posed = rng.permutation(len(points))[: problem.poses + 1 if problem.poses else 0]

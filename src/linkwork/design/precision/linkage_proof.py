@@ -62,7 +62,7 @@ def prove_linkages(given: PrecisionPositions, linkage: ComplexArray) -> ProvedLi
     jacobian, inverse = (np.empty((count, n, n)) for _ in range(2))
     live = np.arange(count)
     with np.errstate(all="ignore"):
-        for _ in range(_ROUNDS):
+        for _ in range(_ROUNDS if count else 0):
             v[live] = [[float(z) * unit for z in whole[k]] for k in live]
             f[live] = [_rounded(equations.exact_residual(whole[k]), bits) for k in live]
             jacobian[live] = equations.jacobian(v[live])
@@ -110,7 +110,10 @@ def _prove(
     w = scale
     for _ in range(3):
         w = np.maximum(scale, 4.0 * matrix_vector(defect, w))
-    rest = np.abs(f) * (1.0 + (n + 4.0) * UNIT_ROUNDOFF) + _TURN_ERROR * np.abs(v).max() ** 2
+    rest = (
+        np.abs(f) * (1.0 + (n + 4.0) * UNIT_ROUNDOFF)
+        + _TURN_ERROR * np.abs(v).max(initial=0.0) ** 2
+    )
     y = (matrix_vector(own, rest) / w).max(axis=1) * inside
     z = (matrix_vector(defect, w) / w).max(axis=1) * inside
     omega = (matrix_vector(own, equations.curvature(w)) / w).max(axis=1) * inside
