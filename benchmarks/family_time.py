@@ -31,6 +31,7 @@ _GEARS = {
 }
 _RAPIER = 3.0
 _SECOND_CORE = 1 / 1.8
+_EFFORT = 2.0
 
 
 def measure(repeats: int = 9) -> bool:
@@ -47,9 +48,36 @@ def measure(repeats: int = 9) -> bool:
             held = bar(f"four-bars, {what} / pylinkage Ensemble", ratios, limit) and held
         ratios = _ratios(harder, ours, repeats, time.process_time)
         held = bar(f"rapier drives / four-bars, {what}", ratios, _RAPIER) and held
+    held = _effort(repeats) and held
     if cores() > 1:
         held = _two_cores(four_bars, repeats) and held
     return held
+
+
+def _effort(repeats: int) -> bool:
+    """Slider-cranks with the torque at the crank, against the same family without it."""
+    family = _loaded_slider_cranks(20_000)
+    without = partial(family.reduced, ["max(d)"], threads=1)
+    with_effort = partial(family.reduced, ["max(d)", "max(crank.effort)"], threads=1)
+    ratios = _ratios(with_effort, without, repeats, time.process_time)
+    return bar("slider-cranks, certified, with effort / without", ratios, _EFFORT)
+
+
+def _loaded_slider_cranks(designs: int) -> Family:
+    """Masses on all links, gravity and a load on the slider; 37 rows."""
+    crank = lw.example("slider-crank").changed(
+        masses={
+            "crank": lw.Mass(mass=1.0, center=(15, 0), inertia=300),
+            "rod": lw.Mass(mass=0.8, center=(50, 3), inertia=900),
+            "block": lw.Mass(mass=0.5),
+        },
+        gravity=lw.Gravity(),
+        loads=[lw.Load(point="B", force=(-100, 0))],
+        inputs=[lw.Input(link="crank", start=0, stop=360, step=10, speed="300 rpm")],
+    )
+    rng = np.random.default_rng(1)
+    sizes = {"O2 A": rng.normal(40, 0.5, designs), "B A": rng.normal(120, 1, designs)}
+    return crank.family(sizes)
 
 
 def rapier_family(designs: int, rows: int) -> Family:

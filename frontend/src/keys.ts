@@ -43,7 +43,11 @@ export function press(commands: readonly Command[], event: KeyboardEvent): boole
 /** Show all keys in a dialog over a page. */
 export function showKeys(page: Element): void {
   const dialog = html("dialog", { class: "lw-keys", "aria-labelledby": "lw-keys-title" }, page);
-  html("h2", { id: "lw-keys-title" }, dialog, "Keys");
+  const head = html("header", {}, dialog);
+  html("h2", { id: "lw-keys-title" }, head, "Keys");
+  // at the top: the list begins in sight where it gets the focus
+  const close = html("button", { type: "button", autofocus: "" }, head, "Close");
+  close.addEventListener("click", () => dialog.close());
   const groups = html("div", { class: "lw-keys-groups" }, dialog);
   for (const [group, commands] of declared) {
     const box = html("section", {}, groups);
@@ -55,8 +59,6 @@ export function showKeys(page: Element): void {
       html("dd", {}, list, does);
     }
   }
-  const close = html("button", { type: "button", autofocus: "" }, dialog, "Close");
-  close.addEventListener("click", () => dialog.close());
   dialog.addEventListener("close", () => dialog.remove());
   dialog.showModal();
 }

@@ -5,6 +5,7 @@ import { Charts } from "./charts";
 import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
 import { Drawing } from "./drawing";
+import { keepFitted } from "./equation_size";
 import { Ghost } from "./ghost";
 import { InWords } from "./in_words";
 import { declareKeys, press, showKeys, type Command } from "./keys";
@@ -169,6 +170,7 @@ class Page implements Mounted {
     this.table = new RowTable(facts, 1e-10 * (data.view[2]! - data.view[0]!));
     this.whole = new MotionNumbers(facts);
     this.equationBox = html("div", {}, facts);
+    keepFitted(this.equationBox, this.gone.signal);
     this.equations();
     this.layOut();
     this.places = { head, stage, canvas, side, toggles, drawing: this.drawing };

@@ -29,6 +29,7 @@ export const LEAST_ANGLE = 1e-9;
 
 /** A value with its unit: 60°, 12.5 mm. */
 export function measured(value: number, unit: string): string {
+  if (!Number.isFinite(value)) return "–";
   const text = shortNumber(value, 6, unit === "deg" || unit === "rad" ? LEAST_ANGLE : 0);
   if (unit === "deg") return `${trimmed(text)}°`;
   return unit ? `${text} ${unit}` : text;

@@ -85,7 +85,6 @@ export interface PackedColumn {
 /** The complete data of a page. `view` is left, bottom, right, top of the drawing. */
 export interface PageData {
   readonly format: number;
-  readonly version: string;
   readonly title: string;
   readonly length_unit: string;
   readonly derivative_unit: string;

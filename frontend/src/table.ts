@@ -53,10 +53,10 @@ export class RowTable {
     view.series.forEach(({ shown, unit, firstUnit }, k) => {
       const line = html("tr", {}, body);
       html("th", { scope: "row" }, line, shown);
-      this.cell(line, (row) => shortNumber(this.view.series[k]!.values[row]!, 6, least(unit)) + unitText(unit));
+      this.cell(line, (row) => withUnit(this.view.series[k]!.values[row]!, 6, least(unit), unitText(unit)));
       this.cell(line, (row) => {
         const first = this.view.series[k]!.first;
-        return first ? `${shortNumber(first[row]!, 4, least(unit))} ${firstUnit}` : "";
+        return first ? withUnit(first[row]!, 4, least(unit), ` ${firstUnit}`) : "";
       });
     });
   }
@@ -103,6 +103,11 @@ export class RowTable {
     html("dt", {}, this.proof, name);
     this.cells.push({ element: html("dd", { "data-fact": name }, this.proof), fill });
   }
+}
+
+/** What has no value has no unit either. */
+function withUnit(value: number, digits: number, rounding: number, unit: string): string {
+  return shortNumber(value, digits, rounding) + (Number.isFinite(value) ? unit : "");
 }
 
 function hasBranches(view: MotionView): boolean {

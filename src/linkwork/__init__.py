@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd
@@ -97,8 +98,17 @@ if TYPE_CHECKING:
         Position as Position,
     )
     from linkwork.results.reactions import ForceStatus as ForceStatus, Reactions as Reactions
+    from linkwork.results.sensitivity import (
+        Sensitivity as Sensitivity,
+        SensitivityStatus as SensitivityStatus,
+    )
     from linkwork.results.series import Series as Series
     from linkwork.results.stall import Stall as Stall
     from linkwork.results.table import Table as Table
+    from linkwork.results.tolerance import (
+        Contribution as Contribution,
+        Sampled as Sampled,
+        Tolerance as Tolerance,
+    )
 else:
     __getattr__ = loader(__name__)

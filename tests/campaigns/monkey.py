@@ -51,6 +51,7 @@ class Monkey:
     def __init__(self, page: Any, bench: Workbench, seed: int) -> None:
         self.page, self.bench, self.rng = page, bench, random.Random(seed)
         self.begun = bench.text
+        self.file = page.evaluate("() => window.seen.state.file")
         self.done: list[str] = []
 
     def act(self) -> None:
@@ -67,7 +68,9 @@ class Monkey:
         quiet = f"() => {_of_page('quiet')}()"
         try:
             self.page.wait_for_function(quiet, timeout=_PATIENCE)
-        except TimeoutError:
+        except Exception as error:
+            if type(error).__name__ != "TimeoutError":  # that of Playwright
+                raise
             waiting = self.page.evaluate("() => [...window.seen.pending.values()]")
             raise AssertionError(f"not answered: {waiting}") from None
 
@@ -86,10 +89,15 @@ class Monkey:
         if shown["lost"] or not shown["able"]:
             yield "no action is possible"
         yield from shown["mistakes"]
-        yield from self._places(shown)
+        wrong = list(self._places(shown))
+        if wrong:  # another drawing may be on its way: that of a sheet is not counted
+            self.page.wait_for_timeout(10 * _SOON)
+            self.settle()
+            wrong = list(self._places(self._ask("shown")))
+        yield from wrong
 
     def undone(self) -> Iterator[str]:
-        """Undo everything: the text is that of the beginning."""
+        """Undo everything: the text is that of the beginning, unless another file was opened."""
         for _ in range(400):
             self.settle()
             name = self.page.evaluate("() => window.seen.state.undo")
@@ -97,6 +105,8 @@ class Monkey:
                 break
             self._ask("undo")
         self.settle()
+        if self.page.evaluate("() => window.seen.state.file") != self.file:
+            return
         if self.bench.text != self.begun:
             yield "undoing everything does not give the text of the beginning"
         if self.page.evaluate("() => window.seen.state.text") != self.begun:
@@ -208,7 +218,10 @@ class Monkey:
 
     def _text(self) -> None:
         """Change a line of the text of the file by hand."""
-        self.page.get_by_role("tab", name="Build").evaluate("tab => tab.click()")
+        tab = self.page.get_by_role("tab", name="Build")
+        if not tab.count():  # a presentation has none
+            return
+        tab.evaluate("tab => tab.click()")
         area = self.page.locator(".lw-build textarea")
         lines = area.input_value().split("\n")
         k = self.rng.randrange(len(lines))

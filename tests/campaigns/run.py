@@ -17,6 +17,7 @@ from tests.campaigns.change_points import (
 from tests.campaigns.circuits import circuit_campaign
 from tests.campaigns.configurations import configuration_campaign
 from tests.campaigns.dead_points import dead_point_campaign
+from tests.campaigns.defects import defect_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
@@ -25,6 +26,7 @@ from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
+from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
@@ -34,7 +36,8 @@ from tests.campaigns.workbooks import workbook_campaign
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
-_OWN_PART = {"parallel-trains": 1, "precision-points": 4}  # what takes long by itself
+# every length of train is a part; tasks of poses are solved many at a time
+_OWN_PART = {"parallel-trains": 1, "poses": 1000, "precision-points": 4}
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,14 @@ def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
     return precision_campaign(part, _OWN_PART["precision-points"])
 
 
+def _poses(part: int) -> tuple[Counter[str], list[str]]:
+    return pose_campaign(part, _OWN_PART["poses"])
+
+
+def _defects(part: int) -> tuple[Counter[str], list[str]]:
+    return defect_campaign(part, _PART)
+
+
 #: What one part does, and how many things the whole campaign looks at.
 CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {
     "certificates": (_certificates, 10_000),
@@ -121,6 +132,8 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "links": (_links, 100_000),
     "forces": (_forces, 2_000),
     "precision-points": (_precision_points, 200),
+    "poses": (_poses, 100_000),
+    "defects": (_defects, 10_000),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -161,7 +161,7 @@ def test_an_unknown_suffix_is_refused_with_those_that_exist(scene: Scene, tmp_pa
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "picture.bmp")
     assert str(raised.value) == (
-        'cannot draw "picture.bmp": its suffix must be one of .png, .svg, .pdf'
+        'cannot draw "picture.bmp": its suffix must be one of .png, .svg, .pdf, .tikz'
     )
     with pytest.raises(InputError):
         write(scene, tmp_path / "picture")

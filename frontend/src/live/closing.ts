@@ -47,7 +47,7 @@ export function blank(file: FileState): PageData {
     turns: [], frames: [], parts: [], vectors: [], driven: [], evidence, limits: [], numbers: [], answers: [], view: [0, 0, 1, 1],
   };
   return {
-    format: 1, version: "", title: file.title, length_unit: file.length_unit, derivative_unit: "", input_unit: "",
+    format: 1, title: file.title, length_unit: file.length_unit, derivative_unit: "", input_unit: "",
     view: [0, 0, 1, 1], stroke: 0.003, pin: 0.01, text: 0.03, motions: [motion], light: theme, dark, forces: [], force_unit: "", equations: [], questions: [],
   };
 }

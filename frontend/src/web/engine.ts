@@ -20,12 +20,18 @@ export interface EngineFile {
 /** The place of the mark that archives are prepared. */
 const PREPARED = "engine/prepared";
 
+/** Python itself. */
+const MACHINE = "pyodide.asm.wasm";
+
 export type Files = Record<string, ArrayBuffer>;
 
-/** The files, and whether a visit that is now prepared could start faster. */
+/** The files, and whether a visit that is now prepared could start faster; `machine`: where the worker itself gets the
+ * machine code of Python, which the browser keeps compiled there.
+ */
 export interface Found {
   readonly files: Files;
   readonly prepare: boolean;
+  readonly machine: string | null;
 }
 
 /** All files, unpacked; `progress` gets the bytes received so far, and their number. */
@@ -34,12 +40,15 @@ export async function engineFiles(engine: Engine, progress: (bytes: number, all:
   let bytes = 0;
   const received = (more: number): void => progress((bytes += more), all);
   const cache = await kept(engine.build);
-  const contents = await Promise.all(
-    engine.files.map(async (file) => unpacked(file.url ? await fetched(file, cache, received) : contained(file, received))),
-  );
-  const files = Object.fromEntries(engine.files.map((file, k) => [file.name, contents[k]!]));
   const before = await cache?.match(PREPARED);
-  return { files, prepare: cache !== null && !before && engine.files.every((file) => file.url) };
+  const machine = before && navigator.serviceWorker?.controller ? engine.files.find(({ name }) => name === MACHINE)! : null;
+  const wanted = engine.files.filter((file) => file !== machine);
+  const contents = await Promise.all(
+    wanted.map(async (file) => unpacked(file.url ? await fetched(file, cache, received) : contained(file, received))),
+  );
+  const files = Object.fromEntries(wanted.map((file, k) => [file.name, contents[k]!]));
+  const prepare = cache !== null && !before && engine.files.every((file) => file.url);
+  return { files, prepare, machine: machine && new URL(machine.url, location.href).href };
 }
 
 /** Keep archives for the next visit: they replace those of the same names. */
@@ -49,7 +58,12 @@ export async function keepPrepared(engine: Engine, prepared: Files): Promise<voi
     const content = prepared[file.name];
     if (content) await cache?.put(file.url, new Response(content));
   }
-  if ("site.zip" in prepared) await cache?.put(PREPARED, new Response("1")); // the last one
+  if (!("site.zip" in prepared)) return;
+  const machine = engine.files.find(({ name }) => name === MACHINE)!;
+  const packed = await cache?.match(machine.url);
+  const headers = { "content-type": "application/wasm" };
+  if (packed) await cache?.put(machine.url, new Response(await unpacked(await packed.arrayBuffer()), { headers }));
+  await cache?.put(PREPARED, new Response("1")); // the last one
 }
 
 /** The store of earlier visits; none in a frame without an origin of its own. */

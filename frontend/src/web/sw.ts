@@ -16,10 +16,10 @@ declare const LINKWORK_BUILD: string;
 /** One for each folder of a host, as the page names it. */
 const OURS = `linkwork ${new URL("./", self.location.href).pathname} `;
 const NAME = `${OURS}${LINKWORK_BUILD}`;
-const PAGES = ["./", "index.html"];
+const PAGE = "./";
 
 self.addEventListener("install", (event) => {
-  const pages = caches.open(NAME).then((cache) => cache.addAll(PAGES));
+  const pages = caches.open(NAME).then((cache) => cache.add(PAGE));
   event.waitUntil(pages.then(() => self.skipWaiting()));
 });
 
@@ -44,7 +44,7 @@ async function answer(request: Request): Promise<Response> {
   try {
     return await fetch(request);
   } catch {
-    return (await kept.match(request, options)) ?? (await kept.match("./")) ?? Response.error();
+    return (await kept.match(request, options)) ?? (await kept.match(PAGE)) ?? Response.error();
   }
 }
 export {};

@@ -12,6 +12,8 @@ export interface Start {
   readonly kept: Kept | null;
   /** Whether the page can keep archives for its next start. */
   readonly prepare: boolean;
+  /** The address of Python's machine code, if it is not among the files. */
+  readonly machine: string | null;
 }
 
 /** To the page: events as JSON, or one of these. */
@@ -52,7 +54,7 @@ declare const loadPyodide: (options: object) => Promise<Python>;
 declare const self: {
   onmessage: (message: MessageEvent<Start | string>) => void;
   postMessage(message: string | Doing | Failed | Prepared, transfer?: ArrayBuffer[]): void;
-  fetch: unknown;
+  fetch: (url: URL | string) => Promise<Response>;
 };
 
 /** Pyodide asks for its files under this address; nothing leaves the worker. */
@@ -68,16 +70,11 @@ const PREPARED = "/tmp/prepared.zip";
 const REST = 3000;
 
 const BEGIN = `
-from pathlib import Path
-
 from linkwork_page import take, tell, turn
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
 from linkwork.viewer.live.browser_desk import BrowserDesk
-from linkwork.viewer.live.bytecode import with_bytecode
-
-STDLIB = Path("/lib/python313.zip")
 
 
 def pause():
@@ -87,6 +84,15 @@ def pause():
 
 desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
+`;
+
+const PREPARE = `
+from pathlib import Path
+
+from linkwork.viewer.live.bytecode import with_bytecode
+
+STDLIB = Path("/lib/python313.zip")
+
 steps = {
     "python_stdlib.zip": with_bytecode(STDLIB, STDLIB, Path("${PREPARED}")),
     "site.zip": with_bytecode(Path("${PACKED}"), Path("${PACKAGES}"), Path("${PREPARED}")),
@@ -110,9 +116,10 @@ self.onmessage = ({ data }) => {
   }
 };
 
-async function start({ engine, files, fragment, kept, prepare }: Start): Promise<void> {
+async function start({ engine, files, fragment, kept, prepare, machine }: Start): Promise<void> {
   say("Starting Python …", 0.35);
-  self.fetch = (url: URL | string) => Promise.resolve(own(String(url), files));
+  const { fetch } = self;
+  self.fetch = async (url: URL | string) => (machine && String(url).endsWith(".wasm") ? fetch(machine) : own(String(url), files));
   const python = await loadPyodide({ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME });
   say("Loading the solver …", 0.7);
   for (const { name, content } of storedEntries(files["site.zip"]!)) {
@@ -131,11 +138,13 @@ async function start({ engine, files, fragment, kept, prepare }: Start): Promise
   // with stack switching, long work lets newer messages in
   work = "Suspending" in WebAssembly ? () => one.callPromising() : () => Promise.resolve(one());
   await answer();
-  if (prepare) prepareArchives(python);
+  if (prepare) await prepareArchives(python);
 }
 
 /** Write archives with compiled modules, a module at a time while nothing is asked. */
-function prepareArchives(python: Python): void {
+async function prepareArchives(python: Python): Promise<void> {
+  await new Promise((done) => setTimeout(done, REST));
+  await python.runPythonAsync(PREPARE);
   const step = python.globals.get("prepare");
   const names = [...ARCHIVES];
   const goOn = (): void => {
@@ -152,7 +161,7 @@ function prepareArchives(python: Python): void {
       setTimeout(goOn);
     }
   };
-  setTimeout(goOn, REST);
+  goOn();
 }
 
 /** Answer all requests, one at a time. */

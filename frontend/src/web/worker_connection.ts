@@ -19,7 +19,7 @@ export class WorkerConnection implements Transport {
   constructor(private readonly hooks: TransportHooks) {}
 
   /** Start the worker; `doing` gets what it does until the first events arrive. */
-  start(engine: Engine, { files, prepare }: Found, doing: (what: Doing) => void): void {
+  start(engine: Engine, { files, prepare, machine }: Found, doing: (what: Doing) => void): void {
     const { "worker.js": script, ...rest } = files;
     const url = URL.createObjectURL(new Blob([script!], { type: "text/javascript" }));
     this.worker = new Worker(url);
@@ -32,7 +32,7 @@ export class WorkerConnection implements Transport {
     this.worker.onerror = (event) => this.failed(event.message);
     const kept = keptWork();
     this.saved = kept?.saved ?? null;
-    const start: Start = { engine, files: rest, fragment: location.hash, kept, prepare };
+    const start: Start = { engine, files: rest, fragment: location.hash, kept, prepare, machine };
     this.worker.postMessage(start, Object.values(rest));
     for (const message of this.early.splice(0)) this.worker.postMessage(message);
   }

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwork import batch, drawing, export, motion, textfile, viewer
 from linkwork.api import solving
-from linkwork.api.dynamic import DynamicMechanism
+from linkwork.api.designed import DesignedMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import as_names
 from linkwork.foundation.paths import as_path
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Mechanism"]
 
 
-class Mechanism(DynamicMechanism):
+class Mechanism(DesignedMechanism):
     """A planar mechanism: solve, sweep, check, draw, animate and export it.
 
     The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and

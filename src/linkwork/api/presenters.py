@@ -11,6 +11,8 @@ from linkwork.results.motion import Motion
 from linkwork.results.motion_summary import motion_text
 from linkwork.results.motion_table import table_of
 from linkwork.results.position import Position
+from linkwork.results.sensitivity import Sensitivity
+from linkwork.results.tolerance import Tolerance
 
 __all__ = ["register_presenters"]
 
@@ -28,4 +30,6 @@ def register_presenters() -> None:
     register_presenter(Position._repr_html_, lambda: viewer.position_html)
     register_presenter(Motion._repr_html_, lambda: viewer.motion_html)
     register_presenter(Configurations._repr_html_, lambda: viewer.configurations_html)
+    register_presenter(Sensitivity._repr_html_, lambda: viewer.sensitivity_html)
+    register_presenter(Tolerance._repr_html_, lambda: viewer.tolerance_html)
     register_presenter(Circuits._repr_html_, lambda: viewer.circuits_html)

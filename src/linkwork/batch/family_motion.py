@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.batch.design_efforts import design_efforts
 from linkwork.batch.design_values import DesignValues
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import FamilyLimits
@@ -162,11 +163,35 @@ class FamilyMotion:
             return np.broadcast_to(column, self.status.shape)
         if not asked.needs:
             return asked.values(self._values, None).T
+        efforts = self._efforts(asked)
+        if efforts is not None:
+            return efforts
         found = np.empty(self.status.shape)
         for part, values in self._moving():
             speed = None if self.speed is None else self.speed[part]
             found[part] = asked.values(values, speed).T
         return found
+
+    def _efforts(self, asked: Asked) -> Array | None:
+        """The effort of the input, (D, R), if one program computes it for all designs."""
+        if asked.group is not Group.DERIVED or asked.rate is not None:
+            return None
+        together = design_efforts(self.designs, self.rows, asked.name, self.threads)
+        if together is None:
+            return None
+        found = together.T
+        for k in self.rows.own:
+            own = self.take_rows(k)
+            found[k] = asked.values(own, None)[:, 0]
+        return found
+
+    def take_rows(self, k: int) -> DesignValues:
+        """Quantities with rates of one design, (R, 1)."""
+        part, rows = slice(k, k + 1), self.rows
+        return DesignValues(
+            self.designs.take(part), self.inputs, rows.v[:, :, part], rows.turns[:, part],
+            self._rates.take(part),
+        )  # fmt: skip
 
     def series(self, name: str) -> Series:
         """A quantity with both derivatives with respect to the leading input, (D, R) each.

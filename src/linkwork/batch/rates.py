@@ -25,7 +25,14 @@ from linkwork.motion.drive import Drive
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.speeds import leading_speeds
 
-__all__ = ["DesignEvidence", "DesignRates", "design_evidence", "design_rates", "design_speeds"]
+__all__ = [
+    "DesignEvidence",
+    "DesignRates",
+    "PlaceReading",
+    "design_evidence",
+    "design_rates",
+    "design_speeds",
+]
 
 _MOST_BYTES = 8 << 30  # limit for the rates of one family
 
@@ -78,7 +85,7 @@ def design_rates(designs: Designs, rows: DesignRows, threads: int = 1) -> Design
         )
     both = np.full((2, n, count, width), np.nan)
     if _together(designs, rows):
-        reading = _Reading.of(designs)
+        reading = PlaceReading.of(designs)
         program = rate_program(designs.base.compiled.table, reading.parts, reading.zeros)
         both = reading.run(program, rows, threads).reshape(both.shape)
         # at dead points J is singular: rates are infinite or noise
@@ -94,7 +101,7 @@ def design_evidence(designs: Designs, rows: DesignRows, threads: int = 1) -> Des
     """Condition number and residual of every position."""
     condition, residual = np.full((2, *rows.v.shape[1:]), np.nan)
     if _together(designs, rows):
-        reading, base = _Reading.of(designs), designs.base
+        reading, base = PlaceReading.of(designs), designs.base
         lengths = lines_of_lengths(base)
         program = evidence_program(base.compiled.table, reading.parts, lengths, reading.zeros)
         condition, residual = reading.run(program, rows, threads)
@@ -113,7 +120,7 @@ def _together(designs: Designs, rows: DesignRows) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Reading:
+class PlaceReading:
     """The arguments of programs run at the positions of a family."""
 
     designs: Designs
@@ -122,7 +129,7 @@ class _Reading:
     zeros: set[str]
 
     @classmethod
-    def of(cls, designs: Designs) -> _Reading:
+    def of(cls, designs: Designs) -> PlaceReading:
         coefficients = loop_coefficients(designs)
         zeros = zero_coefficients(designs, coefficients)
         coefficients["length"] = designs.length_scale

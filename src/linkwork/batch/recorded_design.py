@@ -11,6 +11,7 @@ from linkwork.batch.building import build_design, family_base, write_equations
 from linkwork.batch.design_sweep import TablePath
 from linkwork.batch.pattern import Coefficients, Pattern
 from linkwork.batch.recorded_number import Part, RecordedNumber, Recording, parts_of
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
@@ -50,6 +51,11 @@ class RecordedDesign:
     quantities: tuple[VariedNumber, ...]
     recorder: Recorder
     parts: Mapping[str, Part]
+
+    @property
+    def rates(self) -> Array:
+        """The rate of every input by the leading one."""
+        return self.path.rate
 
     @property
     def fixed(self) -> dict[str, float]:

@@ -6,19 +6,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from linkwork.batch.recorded_design import RecordedDesign
 from linkwork.batch.recorded_number import Part, RecordedNumber, Recording
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.operand import NotElementwise
 from linkwork.kernels.program.recorder import Recorder, Value
-from linkwork.motion.quantity_values import QuantityValues
+from linkwork.motion.model import Model
+from linkwork.motion.quantity_values import QuantityValues, term_jet
 
-__all__ = ["RecordedQuantities"]
+__all__ = ["HasParts", "RecordedQuantities"]
 
 _UNKNOWN = np.array([np.nan])
 
@@ -34,7 +34,7 @@ class _RowNumber(RecordedNumber):
     ) -> Any:
         if function is np.shape:
             return ()
-        if function is np.broadcast_to:
+        if function in (np.broadcast_to, np.atleast_1d):
             return self
         return self.arithmetic.apply(function, *given)
 
@@ -55,8 +55,8 @@ class _RowRecording(Recording):
         return self.apply(function, *inputs)
 
     def operand(self, number: object) -> RecordedNumber:
-        """The second operand, which may be an array of no axes."""
-        plain = number.item() if isinstance(number, np.ndarray) and not number.ndim else number
+        """The second operand, which may be an array of one number."""
+        plain = number.item() if isinstance(number, np.ndarray) and number.size == 1 else number
         found: RecordedNumber = super().operand(plain)
         return found
 
@@ -101,16 +101,37 @@ class _Column:
         return self.numbers[index[-1]]
 
 
+class HasParts(Protocol):
+    """A structure, its path of inputs, and its coefficients: numbers, or values that vary."""
+
+    @property
+    def base(self) -> Model:
+        """The structure."""
+
+    @property
+    def parts(self) -> Mapping[str, Part]:
+        """Coefficients by register."""
+
+    @property
+    def rates(self) -> Array:
+        """The rate of every input by the leading one."""
+
+
 class RecordedQuantities(QuantityValues):
     """Records quantities of a mechanism's position from ``v<k>``, ``first<k>`` and ``second<k>``.
 
     Parameters
     ----------
-    design : RecordedDesign
+    design : HasParts
+        A recorded design, or a family.
+    recorder : Recorder, optional
+        Records into a program that has begun.
     """
 
-    def __init__(self, design: RecordedDesign) -> None:
+    def __init__(self, design: HasParts, recorder: Recorder | None = None) -> None:
         self.design, self.recording = design, _RowRecording()
+        if recorder is not None:
+            self.recording.recorder = recorder
         self.recorder: Recorder = self.recording.recorder
         base, zero = design.base, np.zeros(())
         links = [self._part(f"link{k}") for k in range(len(base.equations.links))]
@@ -151,7 +172,7 @@ class RecordedQuantities(QuantityValues):
         rec, make = self.recorder, self.recording.make
         value: Any = make(None, rec.input(f"v{k}"))
         if k >= n:
-            return Jet(value, np.asarray(float(self.design.path.rate[k - n])), np.zeros(()))
+            return Jet(value, np.asarray(float(self.design.rates[k - n])), np.zeros(()))
         first: Any = make(None, rec.input(f"first{k}"))
         second: Any = make(None, rec.input(f"second{k}"))
         return Jet(value, first, second)
@@ -175,11 +196,6 @@ class RecordedQuantities(QuantityValues):
         mine = rows.phase_term == term
         for k, weight in zip(rows.phase_variable[mine], rows.phase_weight[mine], strict=True):
             turn = turn + self.variable(symbols[k]) * float(weight)
-        if mine.any():
-            c = c * (np.cos(turn.v) + 1j * np.sin(turn.v))
         length = int(rows.length[term])
         s = Jet.constant(1.0) if length < 0 else self.variable(symbols[length])
-        first = s.d1 + 1j * (s.v * turn.d1)  # derivative of eq. (1)
-        # eq. (3) with a = b
-        second = s.d2 - s.v * (turn.d1 * turn.d1) + 1j * (2.0 * (s.d1 * turn.d1) + s.v * turn.d2)
-        return Jet(c * s.v, c * first, c * second)
+        return term_jet(c, s, turn if mine.any() else None)

@@ -15,5 +15,15 @@ if TYPE_CHECKING:
     from linkwork.design.harmonic_analysis import harmonics as harmonics
     from linkwork.design.inflection import inflection_circle as inflection_circle
     from linkwork.design.motor_check import motor_check as motor_check
+    from linkwork.design.sensitivity import (
+        is_of_motion as is_of_motion,
+        sensitivity_of_motion as sensitivity_of_motion,
+        sensitivity_of_position as sensitivity_of_position,
+        sensitivity_of_rows as sensitivity_of_rows,
+    )
+    from linkwork.design.tolerance import (
+        deviations as deviations,
+        tolerance_of as tolerance_of,
+    )
 else:
     __getattr__ = loader(__name__)

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.equations.cam_program import FollowerPath, program
 from linkwork.equations.frames import Frames
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.foundation.elementwise import phase
+from linkwork.foundation.elementwise import copysign, phase, plain_value
 from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cam import Cam, follower_frame
@@ -68,7 +68,7 @@ def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> F
     offset = numbers(guide.offset) if isinstance(guide, Slider) else 0.0
     e = offset - center.imag
     base, roller = numbers(cam.base or 0), numbers(cam.radius)
-    sign = math.copysign(1.0, frames.start[guide.name] - center.real)
+    sign = plain_value(copysign(1.0, frames.start[guide.name] - center.real))
     flat = cam.contact == "flat"
     if not flat and base + roller <= abs(e):
         return (
@@ -132,7 +132,7 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
             "line"
         )
     pivot, center, tip = (linkage.sketched(q) for q in (cam.pivot, cam.center, cam.point))
-    sign = math.copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag)
+    sign = plain_value(copysign(1.0, ((tip - pivot) * (center - pivot).conjugate()).imag))
     line = phase(ground)
 
     def place(s: Array, s1: Array, s2: Array) -> tuple[ComplexArray, ...]:

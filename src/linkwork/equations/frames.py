@@ -16,13 +16,13 @@ from linkwork.equations.model import LinkAngle, Redundant, Term
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, Node
 from linkwork.foundation.elementwise import (
-    choose,
     cis,
     copysign,
     degrees,
     is_structurally_nonzero,
     phase,
     remainder,
+    snap,
 )
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.description import Problems
@@ -249,4 +249,4 @@ def _tidy(angle: float) -> float:
     reduced = remainder(angle, 2 * math.pi)
     square = round(reduced / (math.pi / 2)) * math.pi / 2
     # a right angle with rounding error would leave a tiny term in every equation
-    return choose(abs(reduced - square) < 1e-15, square, reduced)
+    return snap(abs(reduced - square) < 1e-15, square, reduced)

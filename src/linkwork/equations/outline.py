@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import plain_value
 from linkwork.kernels.piecewise import Piecewise
 
 __all__ = ["Outline", "spline"]
@@ -73,7 +74,7 @@ class Outline:
     def nearest(self, point: complex) -> float:
         """The parameter of the sample nearest to a point."""
         u = self.samples()
-        return float(u[np.abs(self.at(u) - point).argmin()])
+        return float(u[np.abs(self.at(u) - plain_value(point)).argmin()])
 
 
 def spline(u: Array, values: Array, closed: bool) -> Piecewise:

@@ -16,6 +16,7 @@ import numpy as np
 from linkwork.equations.frames import Frames
 from linkwork.equations.model import LawEquation, LinearEquation
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.elementwise import plain_value
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.rounding import RANK_TOLERANCE
 
@@ -92,9 +93,10 @@ def _stresses(
                 entries.append((k, name, -slope))
         if (body, point) in ends:
             bar = ends[body, point]
-            first = frames.places[body][bars[bar][1]].fixed
-            along = frames.places[body][point].fixed - first
-            turned = frames.angle[body].constant + frames.now(frames.angle[body])
+            first = plain_value(frames.places[body][bars[bar][1]].fixed)
+            along = plain_value(frames.places[body][point].fixed) - first
+            angle = frames.angle[body]
+            turned = plain_value(angle.constant + frames.now(angle))
             along *= cmath.exp(1j * turned) / abs(along)
             elongations[k, bar] = along.real
             elongations[len(incidences) + k, bar] = along.imag
@@ -119,7 +121,9 @@ def _stresses(
 
 
 def _fixed(frames: Frames) -> list[list[complex]]:
-    return [[place.fixed for place in places.values()] for places in frames.places.values()]
+    return [
+        [plain_value(place.fixed) for place in places.values()] for places in frames.places.values()
+    ]
 
 
 def _slopes(frames: Frames, body: str, point: str, scale: float) -> dict[str, complex]:
@@ -130,17 +134,20 @@ def _slopes(frames: Frames, body: str, point: str, scale: float) -> dict[str, co
     def add(name: str, value: complex) -> None:
         found[name] = found.get(name, 0j) + value
 
-    values = {canonical(name): value for name, value in frames.start.items()}
-    fixed = place.fixed / scale * cmath.exp(1j * (angle.constant + frames.now(angle)))
+    values = {canonical(name): plain_value(value) for name, value in frames.start.items()}
+    turned = plain_value(angle.constant + frames.now(angle))
+    fixed = plain_value(place.fixed) / scale * cmath.exp(1j * turned)
     if angle.variable is not None:
         add(canonical(angle.variable), 1j * fixed)
     for term in place.sliding:
-        turned = term.value * cmath.exp(1j * sum(w * values[n] for n, w in term.phase))
+        direction = plain_value(term.value) * cmath.exp(
+            1j * sum(w * values[n] for n, w in term.phase)
+        )
         length = 1.0 / scale if term.length is None else values[term.length] / scale
         for name, weight in term.phase:
-            add(name, 1j * weight * turned * length)
+            add(name, 1j * weight * direction * length)
         if term.length is not None:
-            add(term.length, turned)
+            add(term.length, direction)
     return found
 
 
@@ -148,7 +155,7 @@ def _gradient(frames: Frames, equation: LinearEquation | LawEquation) -> Mapping
     """Derivatives of a relation by its variables."""
     found = dict(equation.terms)
     if isinstance(equation, LawEquation):
-        values = {canonical(name): value for name, value in frames.start.items()}
+        values = {canonical(name): plain_value(value) for name, value in frames.start.items()}
         argument = sum(w * values[n] for n, w in equation.inner) + equation.offset
         slope = float(equation.law.jet(np.array([argument]))[1][0])
         for name, weight in equation.inner:

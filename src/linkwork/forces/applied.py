@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import cis
+from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
@@ -31,7 +33,7 @@ class Body:
     """
 
     link: str
-    centre: complex
+    centre: complex | Array
     place: ComplexArray
     force: ComplexArray
     torque: Array
@@ -56,6 +58,11 @@ class AppliedLoads:
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
 
+    @property
+    def moves(self) -> bool:
+        """Whether the leading input has a speed."""
+        return bool(np.any(np.not_equal(self.rate, 0.0)))
+
     def push(self, point: str, force: ComplexArray, link: str | None = None) -> None:
         """A force on a point, (B,), on the pin there or on one of its links."""
         self.forces.append((point, force, link))
@@ -68,19 +75,20 @@ class AppliedLoads:
         """A number or formula in all rows, (B,)."""
         geometry, model = self.geometry, self.geometry.model
         if not isinstance(number, str):
-            return np.full(geometry.rows, float(model.description.numbers(number)))
+            still: Array = np.zeros(geometry.shape) + geometry.numbers(number)
+            return still
         tree = parse(number, comparing=True)
         names = {node.name: self._named(node.name) for node in names_in(tree)}
         with np.errstate(all="ignore"):
             known = {name: jet for name, jet in names.items() if jet is not None}
             found = evaluate(tree, known, model.units.angle)
-        return np.array(np.broadcast_to(found.v, geometry.rows), dtype=float)
+        return np.zeros(geometry.shape) + found.v
 
     def _named(self, name: str) -> Jet | None:
         model = self.geometry.model
-        known: Mapping[str, float] = model.description.numbers.known
+        known: Mapping[str, float] = self.geometry.numbers.known
         if name in known:
-            return Jet.constant(known[name])
+            return _constant(known[name])
         # dimensions come first: a file may call one of them t
         if name == "t":
             return _constant(time_of(self.geometry))
@@ -96,10 +104,11 @@ class AppliedLoads:
         unit = force_of_inertia(loaded.mass, loaded.length, loaded.force)
         fall = 0j
         if loaded.gravity is not None:
-            size = loaded.gravity.acceleration(loaded.numbers, loaded.length)
+            numbers = self.geometry.numbers
+            size = loaded.gravity.acceleration(numbers, loaded.length)
             angle, way = loaded.gravity.angle, -1j
             if angle is not None:
-                way = cmath.exp(1j * loaded.numbers(angle) * loaded.angle.radians)
+                way = cis(numbers(angle) * loaded.angle.radians)
             fall = size * way
         for link, mass in loaded.masses.items():
             if link != GROUND:
@@ -107,19 +116,19 @@ class AppliedLoads:
 
     def _add_mass(self, link: str, given: Mass, unit: float, fall: complex) -> None:
         geometry = self.geometry
-        numbers = geometry.model.description.numbers
+        numbers = geometry.numbers
         mass, inertia = numbers(given.mass) * unit, numbers(given.inertia) * unit
-        centre = complex(*map(numbers, given.center or (0.0, 0.0)))
+        x, y = map(numbers, given.center or (0.0, 0.0))
+        centre: complex | Array = x + 1j * y
         # a rod's length follows from its points, which loops give row by row
         if given.shape is not None:
             first, second = geometry.links[link][:2]
-            span = abs(geometry.place(second).v - geometry.place(first).v)
-            length = float(np.nanmax(span)) if np.isfinite(span).any() else np.nan
-            centre, inertia = complex(length / 2.0), mass * length**2 / 12.0
+            length = np.abs(geometry.place(second).v - geometry.place(first).v)
+            centre, inertia = length / 2.0, mass * length**2 / 12.0
         place, turn, rate = geometry.local(link, centre), geometry.angle(link), self.rate
         velocity, bend, spin, turned = (
             # without a speed nothing moves, and rates need not exist
-            part * rate**order if rate else np.zeros(geometry.rows)
+            part * rate**order if self.moves else np.zeros(geometry.shape)
             for part, order in ((place.d1, 1), (place.d2, 2), (turn.d1, 1), (turn.d2, 2))
         )
         falling = mass * (velocity * np.conj(fall)).real
@@ -129,7 +138,7 @@ class AppliedLoads:
                 centre=centre,
                 place=place.v,
                 # weight and inertia of eq. (71) as one load
-                force=np.asarray(mass * (fall - bend), dtype=complex),
+                force=as_complex(mass * (fall - bend)),
                 torque=-inertia * turned,
                 weight_rate=falling,
                 kinetic_rate=mass * (velocity.conj() * bend).real + inertia * spin * turned,
@@ -138,6 +147,12 @@ class AppliedLoads:
         self.stored.append(-mass * (place.v * np.conj(fall)).real)
         self.stored_rates.append(-falling)
         self.kinetic.append(0.5 * (mass * np.abs(velocity) ** 2 + inertia * spin**2))
+
+
+def as_complex(force: Any) -> ComplexArray:
+    """A force that may be real where nothing moves."""
+    found: ComplexArray = force + 0j
+    return found
 
 
 def time_of(geometry: Geometry) -> Array:
@@ -150,6 +165,7 @@ def time_of(geometry: Geometry) -> Array:
     return np.asarray((geometry.lead - model.rows[0, lead]) / speed)
 
 
-def _constant(value: Array) -> Jet:
+def _constant(value: Any) -> Jet:
     zero = np.zeros(())
-    return Jet(value, zero, zero)
+    number: Any = value if is_batched(value) else np.asarray(value)
+    return Jet(number, zero, zero)

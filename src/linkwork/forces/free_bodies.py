@@ -6,7 +6,7 @@ divided by the longest link, so that they compare with forces.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -188,7 +188,7 @@ class FreeBodies:
         (B, E, n), E rows: two forces and a moment of every link, two forces of a free point.
         """
         # W of eq. (72)
-        rows = np.zeros((self.geometry.rows, self._equations, len(self.unknowns)))
+        rows = np.zeros((self.geometry.rows, self.equations, len(self.unknowns)))
         for k, acts in enumerate(self.unknowns):
             for act in acts:
                 self._add(rows[:, :, k], act)
@@ -196,29 +196,35 @@ class FreeBodies:
 
     def sums(self, acts: Iterable[Act]) -> Array:
         """The sums of forces and scaled moments of known acts, (B, E)."""
-        rows = np.zeros((self.geometry.rows, self._equations))
+        rows = np.zeros((self.geometry.rows, self.equations))
         for act in acts:
             self._add(rows, act)
         return rows
 
     @property
-    def _equations(self) -> int:
+    def equations(self) -> int:
+        """E."""
         return 3 * len(self.bodies) - len(self.free_points)
 
     def _add(self, rows: Array, act: Act) -> None:
+        for row, value in self.entries(act):
+            rows[:, row] += value
+
+    def entries(self, act: Act) -> Iterator[tuple[int, Array]]:
+        """What an act adds to the sums of forces and scaled moments, by row."""
         # ground is not free: nothing has to balance there
         if act.on.body == GROUND:
             return
         k = self.bodies.index(act.on.body)
         links = len(self.bodies) - len(self.free_points)
         first = 3 * k if k < links else 3 * links + 2 * (k - links)
-        rows[:, first] += act.force.real
-        rows[:, first + 1] += act.force.imag
+        yield first, act.force.real
+        yield first + 1, act.force.imag
         # a pin between cylinders has no moment to balance
         if k < links:
             arm = act.place - self._centre(act.on.body)
             turning = (arm.conj() * act.force).imag + act.moment
-            rows[:, first + 2] += turning / self.geometry.length
+            yield first + 2, turning / self.geometry.length
 
     def _centre(self, link: str) -> ComplexArray:
         """The place about which moments on a link are taken."""
@@ -230,7 +236,7 @@ class FreeBodies:
         total = np.zeros(self.geometry.rows, dtype=complex)
         for act in acts:
             if act.on.pin == pin:
-                total += act.force
+                total = total + act.force
         return total
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
@@ -44,6 +45,16 @@ class Geometry:
         """B."""
         first = next(iter(self.points), None)
         return 1 if first is None else len(self.place(first).v)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of values of all rows."""
+        return (self.rows,)
+
+    @property
+    def numbers(self) -> Numbers:
+        """Reads numbers and formulas of the file."""
+        return self.model.description.numbers
 
     @property
     def points(self) -> tuple[str, ...]:
@@ -95,7 +106,7 @@ class Geometry:
             span = self.place(points[1]) - self.place(points[0])
             return _times(span, 1.0 / np.abs(span.v))  # of constant length
         turn = self.angle(link)
-        unit = np.exp(1j * turn.v)
+        unit = np.cos(turn.v) + 1j * np.sin(turn.v)
         return Jet(unit, 1j * turn.d1 * unit, (1j * turn.d2 - turn.d1**2) * unit)
 
     def angle(self, link: str) -> Jet:
@@ -116,7 +127,7 @@ class Geometry:
         second = (unit.d2 / unit.v).imag
         return Jet(np.unwrap(np.angle(unit.v)), first.imag, second)
 
-    def local(self, link: str, place: complex) -> Jet:
+    def local(self, link: str, place: complex | Array) -> Jet:
         """A point given in the frame of a link."""
         return self.place(self.links[link][0]) + _times(self.direction(link), place)
 
@@ -167,7 +178,7 @@ class Geometry:
         k = names.index(variable) if variable in names else symbols.index(variable)
         return self._partials[1][:, :, k]
 
-    def partial_local(self, link: str, place: complex) -> ComplexArray:
+    def partial_local(self, link: str, place: complex | Array) -> ComplexArray:
         """Derivatives of a point in the frame of a link with respect to each input, (p, B)."""
         arm = 1j * self.direction(link).v * place
         found: ComplexArray = self.partial(self.links[link][0]) + self.turning(link) * arm

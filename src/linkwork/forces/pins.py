@@ -68,7 +68,7 @@ def read_first_links(bodies: FreeBodies, known: Sequence[Act]) -> None:
                     name=f"{point}.force.{links[0]}.{axis}",
                     kind=Kind.FORCE,
                     about=f"force of the pin {point} on {links[0]}",
-                    terms=tuple((k, part(force)) for k, force in forces if force.any()),
+                    terms=tuple((k, part(force)) for k, force in forces if np.any(force)),
                     constant=part(given),
                 )
             )

@@ -13,6 +13,7 @@ from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet
 from linkwork.expression.tree import names_in
 from linkwork.forces.system import ForceRows, solve_forces
+from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError, MechanismError, Problem
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops
@@ -71,6 +72,14 @@ class SolvedDesigns(Solved, Protocol):
         """Every design by itself; ``None`` for one without positions."""
 
 
+@runtime_checkable
+class SolvedForces(Solved, Protocol):
+    """Solved positions that compute forces in their own way."""
+
+    def force(self, name: str) -> Array:
+        """A quantity of forces by its exact name."""
+
+
 class _Solver:
     """Solves the forces of a motion once for all its quantities."""
 
@@ -120,6 +129,8 @@ class _Evaluation:
     name: str
 
     def __call__(self, names: MechanismNames, solved: Solved, part: str) -> Jet:
+        if isinstance(solved, SolvedForces):
+            return Jet(solved.force(self.name), UNKNOWN, UNKNOWN)
         places = solved.place(names.points[0]).v
         if not isinstance(places, np.ndarray | np.generic):
             raise TypeError("forces are computed from arrays, and cannot be recorded")

@@ -28,7 +28,15 @@ from linkwork.results.quantities.definition import Solved
 from linkwork.results.quantity import Kind
 from linkwork.results.reactions import ForceStatus
 
-__all__ = ["ForceRows", "ForceValue", "solve_forces"]
+__all__ = [
+    "ForceRows",
+    "ForceValue",
+    "free_bodies",
+    "free_bodies_of",
+    "known_acts",
+    "solve_forces",
+    "totals",
+]
 
 _UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
 _NO_WORK = 1e-12  # of the largest term
@@ -108,7 +116,7 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     with np.errstate(all="ignore"):
         applied.weigh(description)
         if isinstance(description, Linkage):
-            bodies = _free_bodies(description, geometry, applied)
+            bodies = free_bodies(description, geometry, applied)
         elif isinstance(description, Loops):
             for load in description.loads:
                 apply_load(load, applied)
@@ -127,7 +135,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             _add_losses(found, by_work, largest, rubbing)
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
-        _add_totals(found)
+        for name, kind, about, value in totals(geometry, applied):
+            found.add(name, kind, about, value)
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     status[lost] = ForceStatus.NO_POSITION.code
@@ -151,12 +160,23 @@ def _has_rates(by_work: Array, geometry: Geometry) -> BoolArray:
     return found
 
 
-def _free_bodies(linkage: Linkage, geometry: Geometry, applied: AppliedLoads) -> FreeBodies:
+def free_bodies(linkage: Linkage, geometry: Geometry, applied: AppliedLoads) -> FreeBodies:
+    """The links with the reactions of all joints, loads and springs."""
     bodies = FreeBodies(linkage, geometry, applied)
     join_pins(bodies)
     join_parts(bodies)
     drive_inputs(bodies)
     return bodies
+
+
+def free_bodies_of(model: Model, solved: Solved) -> FreeBodies:
+    """The free bodies of a linkage at solved positions, with all loads."""
+    description = model.description
+    assert isinstance(description, Linkage)
+    geometry = Geometry(model, solved)
+    applied = AppliedLoads(geometry, model.speed or 0.0)
+    applied.weigh(description)
+    return free_bodies(description, geometry, applied)
 
 
 def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
@@ -175,10 +195,10 @@ def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None
             if carrier not in linkage.links:
                 return None
             applied.forces[k] = (point, force, carrier)
-    return _free_bodies(linkage, own, applied)
+    return free_bodies(linkage, own, applied)
 
 
-def _known_acts(bodies: FreeBodies) -> list[Act]:
+def known_acts(bodies: FreeBodies) -> list[Act]:
     """Everything that acts on the bodies and is known."""
     geometry, applied = bodies.geometry, bodies.applied
     acts = [
@@ -195,7 +215,7 @@ def _known_acts(bodies: FreeBodies) -> list[Act]:
 
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     """All readings, from the unknowns and what follows from them."""
-    acts = _known_acts(bodies)
+    acts = known_acts(bodies)
     direction = _direction(found)
     forces = joint_forces(bodies, acts, direction)
     rubbing = forces.friction_efforts()
@@ -272,7 +292,7 @@ def _add_losses(found: _Solution, ideal: Array, largest: Array, rubbing: Frictio
 
 def _add_backward(found: _Solution, bodies: FreeBodies, ideal: Array) -> None:
     """Efforts for motion against the direction of the table: at rest any between holds."""
-    forces = joint_forces(bodies, _known_acts(bodies), -_direction(found))
+    forces = joint_forces(bodies, known_acts(bodies), -_direction(found))
     more = forces.friction_efforts()
     for k, variable in enumerate(found.geometry.driven.equations.inputs):
         value = np.where(forces.found, ideal[k] + more.efforts[k], np.nan)
@@ -281,11 +301,10 @@ def _add_backward(found: _Solution, bodies: FreeBodies, ideal: Array) -> None:
         found.add(f"{effort_name(variable.name)}.backward", kind, about, value, more.doubt)
 
 
-def _add_totals(found: _Solution) -> None:
-    """The force and the moment on the ground, energies and powers."""
-    geometry, applied = found.geometry, found.applied
-    force: ComplexArray = np.zeros(geometry.rows, dtype=complex)
-    moment = np.zeros(geometry.rows)
+def totals(geometry: Geometry, applied: AppliedLoads) -> Iterator[tuple[str, Kind, str, Array]]:
+    """The force and the moment on the ground, energies and powers: name, kind, about, (B,)."""
+    force: ComplexArray = np.zeros(geometry.shape, dtype=complex)
+    moment = np.zeros(geometry.shape)
     pushes = [(geometry.place(point).v, own) for point, own, _ in applied.forces]
     # internal forces cancel: loads, weights and inertia alone reach the ground
     for place, own in [*pushes, *((body.place, body.force) for body in applied.masses)]:
@@ -294,21 +313,21 @@ def _add_totals(found: _Solution) -> None:
     for torque in [own for _, own in applied.torques] + [body.torque for body in applied.masses]:
         moment = moment + torque
     for point in dict.fromkeys(point for point, _, _ in applied.forces):
-        total = np.zeros(geometry.rows, dtype=complex)
+        total = np.zeros(geometry.shape, dtype=complex)
         for own in (own for name, own, _ in applied.forces if name == point):
-            total += own
+            total = total + own
         for axis, part in (("x", total.real), ("y", total.imag)):
-            found.add(f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part)
-    found.add("shaking.x", Kind.FORCE, "force on the ground", force.real)
-    found.add("shaking.y", Kind.FORCE, "force on the ground", force.imag)
-    found.add("shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment)
+            yield f"{point}.load.{axis}", Kind.FORCE, f"loads and springs on {point}", part
+    yield "shaking.x", Kind.FORCE, "force on the ground", force.real
+    yield "shaking.y", Kind.FORCE, "force on the ground", force.imag
+    yield "shaking.moment", Kind.MOMENT, "moment on the ground about the origin", moment
     about = {
         "kinetic_energy": "energy of all masses in motion",
         "stored_energy": "energy of springs and weights",
         "load_power": "power of loads and dampers on the mechanism",
         "energy_rate": "rate of the kinetic and stored energy",
     }
-    if applied.rate:
+    if applied.moves:
         for name, value in energies(applied).items():
             kind = Kind.POWER if name in ("load_power", "energy_rate") else Kind.ENERGY
-            found.add(name, kind, about[name], value)
+            yield name, kind, about[name], value

@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.forces.applied import AppliedLoads
 from linkwork.foundation.arrays import AnyArray, Array
 
-__all__ = ["efforts", "energies"]
+__all__ = ["efforts", "energies", "work_terms"]
 
 
 def efforts(applied: AppliedLoads) -> tuple[Array, Array]:
@@ -21,14 +21,14 @@ def efforts(applied: AppliedLoads) -> tuple[Array, Array]:
     geometry = applied.geometry
     shape = (len(geometry.driven.equations.inputs), geometry.rows)
     total, largest = np.zeros(shape), np.zeros(shape)
-    for load, moved in _terms(applied):
+    for load, moved in work_terms(applied):
         # eq. (71)
         total -= (np.conj(load) * moved).real
         largest = np.maximum(largest, np.abs(load) * np.abs(moved))
     return total, largest
 
 
-def _terms(applied: AppliedLoads) -> Iterator[tuple[AnyArray, AnyArray]]:
+def work_terms(applied: AppliedLoads) -> Iterator[tuple[AnyArray, AnyArray]]:
     """Every load (B,), and what it moves per unit of every input, (p, B)."""
     geometry = applied.geometry
     for point, force, _ in applied.forces:
@@ -43,7 +43,7 @@ def _terms(applied: AppliedLoads) -> Iterator[tuple[AnyArray, AnyArray]]:
 def energies(applied: AppliedLoads) -> dict[str, Array]:
     """Energies, and the power of all loads that store none, (B,) each."""
     geometry, rate = applied.geometry, applied.rate
-    zero = np.zeros(geometry.rows)
+    zero = np.zeros(geometry.shape)
     found = {
         "kinetic_energy": sum(applied.kinetic, zero),
         "stored_energy": sum(applied.stored, zero),

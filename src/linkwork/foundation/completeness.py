@@ -40,6 +40,7 @@ class Completeness(Enum):
         "not proved: the mechanism can still move at this input, there are infinitely many "
         "configurations; isolated ones are listed"
     )
+    SAMPLED = "a sample: the conditions leave infinitely many solutions"
     NOT_LISTED = "not proved: configurations of plain equations cannot be listed"
 
     @property

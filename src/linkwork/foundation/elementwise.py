@@ -17,6 +17,7 @@ from linkwork.foundation.lanes import Lanes, Truths, is_batched
 
 __all__ = [
     "as_float",
+    "chained",
     "choose",
     "cis",
     "copysign",
@@ -27,15 +28,19 @@ __all__ = [
     "finite",
     "hypot",
     "is_fractional",
+    "is_steady",
     "is_structurally_nonzero",
     "largest",
     "leader_value",
     "phase",
+    "plain_value",
     "rect",
     "remainder",
     "remainders",
+    "replaced",
     "row_of",
     "smallest",
+    "snap",
     "sqrt",
     "uniform_value",
     "vector",
@@ -162,6 +167,22 @@ def choose(condition: bool, yes: _Number, no: _Number) -> _Number:
     return yes if condition else no
 
 
+def snap(near: bool, place: float, number: float) -> float:
+    """``place`` in lanes where the number is near it, else the number."""
+    found: float = replaced(choose(near, place, number), number)
+    return found
+
+
+def replaced(value: Any, number: Any) -> Any:
+    """A value in the place of a number very near to it, whose derivatives it keeps."""
+    return number.arithmetic.carry(value, number) if is_batched(number) else value
+
+
+def chained(value: Any, slope: Any, number: Any) -> Any:
+    """A function's value at a number, which has this slope there."""
+    return number.arithmetic.chain(value, slope, number) if is_batched(number) else value
+
+
 def everywhere(condition: bool) -> bool:
     """Whether a condition holds in all lanes that still agree; it excludes no lane."""
     truths: object = condition
@@ -211,6 +232,16 @@ def as_float(x: float) -> float:
 def leader_value(x: float) -> float:
     """The number in the leading lane."""
     return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
+
+
+def plain_value(x: _Number) -> _Number:
+    """A number as a plain one where its derivatives do not matter; lanes are refused."""
+    return x.arithmetic.value_of(x) if is_batched(x) else x
+
+
+def is_steady(x: float) -> bool:
+    """Whether a number has no derivatives; plain numbers have none."""
+    return x.arithmetic.is_steady(x) if is_batched(x) else True
 
 
 def uniform_value(x: float) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
-    "Constant", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number",
+    "Constant", "Either", "Flag", "Formula", "Key", "Kind", "ListOf", "Measured", "Named", "Number",
     "PlainNumber", "Several", "Speed", "Table", "Tables", "TablesOrFormula", "Text", "Whole",
 ]  # fmt: skip
 
@@ -126,6 +126,15 @@ class Several:
     wanted: str
 
 
+@dataclass(frozen=True)
+class Either:
+    """A text, or a list or table; ``wanted`` says so in a message."""
+
+    text: Text
+    other: ListOf | Table
+    wanted: str
+
+
 Kind = (
     Constant
     | Text
@@ -142,6 +151,7 @@ Kind = (
     | TablesOrFormula
     | Named
     | Several
+    | Either
 )
 
 

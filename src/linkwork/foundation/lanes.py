@@ -13,7 +13,7 @@ Functions annotated for ``float`` and ``complex`` accept lanes;
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, cast
 
 import numpy as np
@@ -74,6 +74,30 @@ class Consensus(Arithmetic[Any]):
     def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
         """One of two plain numbers, lane by lane."""
         return self.lanes(np.where(truths.values, yes, no))
+
+    def value_of(self, number: Any) -> Any:
+        """The value of a number that starts an iteration or decides a rank; lanes have many."""
+        raise NotElementwise
+
+    def is_steady(self, number: Any) -> bool:
+        """Whether a number has no derivatives, in arithmetics that know them."""
+        return True
+
+    def solve_shortest(
+        self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
+    ) -> Sequence[Any] | None:
+        """The shortest least-squares solution; ``None`` where lanes are solved as arrays."""
+        return None
+
+    def carry(self, value: Any, number: Any) -> Any:
+        """A value that replaces a number very near to it; arithmetics with derivatives keep those
+        of the number.
+        """
+        return value
+
+    def chain(self, value: Any, slope: Any, number: Any) -> Any:
+        """A function's value at a number, in arithmetics with derivatives."""
+        raise NotElementwise
 
     def apply(self, function: Callable[..., Any], *numbers: object) -> Lanes:
         """A NumPy function of plain numbers and lanes, lane by lane."""

@@ -51,6 +51,7 @@ class Bodies(LoadedBodies):
     lengths: Mapping[str, Number] = FrozenDict()
     angles: Mapping[str, Number] = FrozenDict()
     sketch: bool = False
+    clearances: Mapping[str, Number] = FrozenDict()
     #: The exact shape of every link in local coordinates, and the measured dimensions.
     shapes: Shapes = field(init=False, repr=False, compare=False)
 

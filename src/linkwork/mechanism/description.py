@@ -81,6 +81,8 @@ class Description:
         The configuration or branch to start from instead of the guess.
     questions : tuple of Question
         Questions asked on pages, with hidden answers.
+    tolerances : Mapping[str, number]
+        The standard deviation of numbers that can vary, in their own units.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class Description:
     family: str = ""
     configuration: str = ""
     questions: tuple[Question, ...] = ()
+    tolerances: Mapping[str, Number] = FrozenDict()
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -117,7 +120,7 @@ class Description:
         set_(self, "trace", tuple(self.trace))
         check_entries("questions", Question, self.questions)
         set_(self, "questions", tuple(self.questions))
-        for field in ("dimensions", "outputs"):
+        for field in ("dimensions", "outputs", "tolerances"):
             set_(self, field, FrozenDict.of(getattr(self, field)))
 
     @cached_property

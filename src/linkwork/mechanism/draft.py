@@ -51,6 +51,7 @@ class Draft(JoinedBodies):
         links = {name: tuple(map(same, points)) for name, points in self.links.items()}
         set_(self, "links", FrozenDict(links))
         set_(self, "masses", self.spelled_masses())
+        set_(self, "clearances", FrozenDict({same(p): c for p, c in self.clearances.items()}))
         rubbing = {same(name): friction for name, friction in self.friction.items()}
         set_(self, "friction", FrozenDict(rubbing))
         for which in ("lengths", "angles"):

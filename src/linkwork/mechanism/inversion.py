@@ -29,6 +29,7 @@ _CARRIED = frozenset(
         "links",
         "lengths",
         "angles",
+        "clearances",
         "inputs",
         "outputs",
         "trace",
@@ -65,8 +66,8 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
     The new ground's first point is the origin, its second lies on the positive x axis. Wheels and a
     ground of one point need a second point for their direction: see :func:`directed`. Every input
     drives the same relative angle, or the same length, as before, unless ``which`` is given.
-    Outputs keep their values: they are rewritten relative to the old ground. Masses, loads and
-    gravity are left out: they belong to the machine with the old ground.
+    Outputs keep their values: they are rewritten relative to the old ground. Masses, loads, gravity
+    and tolerances are left out: they belong to the machine with the old ground.
 
     Parameters
     ----------
@@ -91,7 +92,8 @@ def inverted(linkage: Linkage, link: str, places: Places, which: Input | None = 
         raise UnknownNameError(f'"{link}" is not a link of {linkage.name} {known}')
     if link == GROUND:
         return linkage if which is None else replace(linkage, inputs=(which,))
-    linkage = replace(linkage, masses=FrozenDict(), friction=FrozenDict(), gravity=None, loads=())
+    none: FrozenDict[str, Any] = FrozenDict()
+    linkage = replace(linkage, masses=none, friction=none, gravity=None, loads=(), tolerances=none)
     _check_carried(linkage)
     return _Inverting(linkage, link, places).done(which)
 

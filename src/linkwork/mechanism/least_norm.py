@@ -36,6 +36,9 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
             raise np.linalg.LinAlgError
         found: Array = np.linalg.lstsq(known, wanted, rcond=_CUT)[0]
         return [float(number) for number in found]
+    shortest = lanes.arithmetic.solve_shortest(matrix, right)
+    if shortest is not None:
+        return shortest
     a, b = _stacked(matrix, lanes), _stacked([right], lanes)[:, 0]
     finite: BoolArray = np.isfinite(np.concatenate([a, b[:, :, None]], axis=2)).all(axis=(1, 2))
     if lanes.holds(~finite):

@@ -13,6 +13,7 @@ from linkwork.foundation.elementwise import (
     cis,
     degrees,
     everywhere,
+    is_steady,
     largest,
     phase,
     rect,
@@ -65,7 +66,9 @@ class Distance:
         return (abs(z[self.b] - z[self.a]) - self.length) / self.length
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        return abs(self.error(z)) <= tolerance
+        error = self.error(z)
+        # one that agrees by chance would no longer if a number changed
+        return abs(error) <= tolerance and is_steady(error)
 
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
@@ -103,7 +106,9 @@ class VertexAngle:
         return phase(rays * cis(-self.angle)) if rays else math.inf
 
     def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        return abs(self.error(z)) <= tolerance
+        error = self.error(z)
+        # one that agrees by chance would no longer if a number changed
+        return abs(error) <= tolerance and is_steady(error)
 
     def shown(self, z: Mapping[str, complex]) -> str:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
@@ -337,14 +342,15 @@ def _gauss_newton(
     for k in range(steps):
         errors = [row.error(z) for row in rows]
         done = largest(abs(error) for error in errors) <= 1e-14
-        if everywhere(done):
+        steady = all(map(is_steady, errors))
+        if everywhere(done) and steady:
             break
         # in a family most designs need few steps: the others continue separately
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
         step = least_norm(_slopes(z, rows), errors)
         z = {
-            p: choose(done, place, place - vector(step[k], step[k + count]))
+            p: choose(done if steady else False, place, place - vector(step[k], step[k + count]))
             for k, (p, place) in enumerate(z.items())
         }
     return z

@@ -28,6 +28,8 @@ class Linkage(Draft):
         Exact angles in a link: ``"B A P"`` at A, from AB to AP, counter-clockwise.
     sketch : bool
         If true, dimensions are never measured from ``points``.
+    clearances : Mapping[str, number]
+        How far pins can move in their holes, by point: the difference of the radii.
     mass, force, gravity, masses
         Units of masses and forces, gravity, and the masses of links; see
         :class:`~linkwork.mechanism.loaded.LoadedBodies`.

@@ -30,6 +30,7 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.skeleton import DrivenPart, Skeleton
+from linkwork.mechanism.tolerances import tolerance_problems
 from linkwork.motion.guides_from_equations import rails_of
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.questions import question_problems
@@ -300,6 +301,7 @@ def model_of(description: Description) -> Model:
     # what cannot be read is an error of the file, found with the others
     _ = model.speed
     unknown = question_problems(description.questions, model.quantities)
+    unknown += tolerance_problems(description)
     if unknown:
         raise MechanismError(unknown, where)
     return model

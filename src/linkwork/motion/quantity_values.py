@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from linkwork.results import quantities
 from linkwork.results.quantities.asked import Group
 from linkwork.results.quantity import Kind
 
-__all__ = ["QuantityValues"]
+__all__ = ["QuantityValues", "term_jet"]
 
 
 class QuantityValues(ABC):
@@ -126,3 +127,24 @@ class QuantityValues(ABC):
     def _in_file_units(self, jet: Jet, kind: Kind) -> Jet:
         scale = 1.0 / self.model.units.scale(kind)
         return Jet(jet.v * scale, jet.d1 * scale, jet.d2 * scale)
+
+
+def term_jet(c: Any, length: Jet, turn: Jet | None) -> Jet:
+    """c s e^{iψ} with both derivatives, for numbers of any kind.
+
+    Parameters
+    ----------
+    c : complex
+    length : Jet
+        s, or the constant 1.
+    turn : Jet, optional
+        ψ; ``None`` for a fixed direction.
+    """
+    angle = Jet.constant(0.0) if turn is None else turn
+    if turn is not None:
+        c = c * (np.cos(angle.v) + 1j * np.sin(angle.v))  # eq. (1)
+    first = length.d1 + 1j * (length.v * angle.d1)  # derivative of eq. (1)
+    # eq. (3) with a = b
+    second = length.d2 - length.v * (angle.d1 * angle.d1)
+    second = second + 1j * (2.0 * (length.d1 * angle.d1) + length.v * angle.d2)
+    return Jet(c * length.v, c * first, c * second)

@@ -40,7 +40,7 @@ def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool
     """
     new = {canonical(name): copy for name, copy in names.items()}
     for link in edits.keys(("links",)):
-        points = [str(point) for point in edits.get(("links", link))]
+        points = edits.names(("links", link))
         if link == GROUND:
             added = [new[p] for p in map(canonical, points) if new.get(p) not in (None, *points)]
             if added:
@@ -52,8 +52,7 @@ def copy_selection(edits: TextEdits, names: Mapping[str, str], *, mirrored: bool
         _copy_dimensions(edits, table, new, mirrored)
     _copy_masses(edits, new, mirrored)
     _copy_parts(edits, new, mirrored)
-    if edits.has(("trace", "points")):
-        traced = [str(point) for point in edits.get(("trace", "points"))]
+    if traced := edits.names(("trace", "points")):
         copies = [new[p] for p in map(canonical, traced) if new.get(p) not in (None, *traced)]
         edits.put(("trace", "points"), [*traced, *copies])
 
@@ -72,7 +71,7 @@ def mirror_numbers(edits: TextEdits, points: set[str]) -> None:
     links = {
         canonical(link)
         for link in edits.keys(("links",))
-        if {canonical(str(point)) for point in edits.get(("links", link))} <= points
+        if set(map(canonical, edits.names(("links", link)))) <= points
     }
     within = points | links
     for table in PARTS:
@@ -84,10 +83,7 @@ def mirror_numbers(edits: TextEdits, points: set[str]) -> None:
 
 
 def _copy_dimensions(edits: TextEdits, table: str, new: Mapping[str, str], mirrored: bool) -> None:
-    links = [
-        {canonical(str(point)) for point in edits.get(("links", link))}
-        for link in edits.keys(("links",))
-    ]
+    links = [set(map(canonical, edits.names(("links", link)))) for link in edits.keys(("links",))]
     for key in edits.keys((table,)):
         words = key.split()
         copied = [new.get(canonical(word), word) for word in words]
@@ -101,10 +97,10 @@ def _copy_dimensions(edits: TextEdits, table: str, new: Mapping[str, str], mirro
 def _copy_masses(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> None:
     for link in edits.keys(("masses",)):
         if new.get(canonical(link)) not in (None, link):
-            mass = dict(edits.get(("masses", link)))
-            if mirrored and "center" in mass:
-                along, across = mass["center"]
-                mass["center"] = [along, _opposite(across)]
+            mass = edits.get(("masses", link))
+            if mirrored and edits.has(("masses", link, "center", 1)):
+                along, across, *_ = mass["center"]
+                mass = {**mass, "center": [along, _opposite(across)]}
             edits.put(("masses", new[canonical(link)]), mass)
 
 
@@ -138,11 +134,11 @@ def _copy_parts(edits: TextEdits, new: Mapping[str, str], mirrored: bool) -> Non
 
 def _copy_friction(edits: TextEdits, new: Mapping[str, str]) -> None:
     """The friction of copied parts, and of copied points that are pins again."""
-    carried = [point for link in edits.keys(("links",)) for point in edits.get(("links", link))]
+    carried = [point for link in edits.keys(("links",)) for point in edits.names(("links", link))]
     for name in edits.keys(("friction",)):
         copy = new.get(canonical(name), name)
         if copy != name and carried.count(copy) != 1:
-            edits.put(("friction", copy), dict(edits.get(("friction", name))))
+            edits.put(("friction", copy), edits.get(("friction", name)))
 
 
 def _references(table: str, row: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -165,5 +161,8 @@ def _mirrored(table: str, row: Mapping[str, Any]) -> dict[str, Any]:
     return {key: _opposite(row[key]) for key in _TURNED if key in row}
 
 
-def _opposite(number: float | str) -> float | str:
-    return f"-({number})" if isinstance(number, str) else 0 - number
+def _opposite(entry: Any) -> Any:
+    """A number or formula with the other sign; what is neither stays, a problem of the file."""
+    if isinstance(entry, str):
+        return f"-({entry})"
+    return 0 - entry if isinstance(entry, int | float) else entry

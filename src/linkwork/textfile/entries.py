@@ -65,7 +65,7 @@ def measured_by(kind: Number, row: Mapping[str, Any]) -> str:
             return "length" if "links" in row else "per length"
         case "free":
             return "angle" if "links" in row else "length"
-        case "named":
+        case "named" | "varied":
             return ""
         case of:
             return of

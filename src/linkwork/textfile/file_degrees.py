@@ -166,9 +166,18 @@ class FileDegrees:
     def _measured(self, kind: Number, entry: Entry) -> Degree:
         if word := measured_by(kind, entry.row):
             return _BY_WORD[word]
+        if kind.of == "varied":
+            return self._varied(str(entry.path[1]))
         by_input = entry.path[0] == "input"
         name = str(entry.row.get("variable", "")) if by_input else str(entry.path[1])
         return self._degrees.name(canonical(name))
+
+    def _varied(self, name: str) -> Degree:
+        """That of a number that can vary: a length, angle, coordinate, offset or dimension."""
+        words, own = name.split(), canonical(name)
+        if len(words) == 2 or "." in name:
+            return LENGTH
+        return ANGLE if len(words) == 3 else self._degrees.name(own)
 
     def _number(self, entry: Entry, given: float | str, degree: Degree, unit: str = "") -> None:
         if isinstance(given, str):

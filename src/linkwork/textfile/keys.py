@@ -31,6 +31,7 @@ from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import HIDDEN
+from linkwork.mechanism.tolerances import CLEARANCES, TOLERANCES
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
 
@@ -203,6 +204,8 @@ LINKAGE = Form(
         *_MASSES,
         _FRICTION,
         Key("input", Tables(_DRIVES, single=True), "The driven quantity and its range"),
+        TOLERANCES,
+        CLEARANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
@@ -240,6 +243,7 @@ LOOPS = Form(
         ),
         *_MASSES,
         Key("loads", Tables(Load.keys), Load.doc),
+        TOLERANCES,
         _TRACE,
         _OUTPUTS,
         _QUESTIONS,
@@ -260,6 +264,7 @@ EQUATIONS = Form(
         ),
         _GUESS,
         Key("input", Tables(_VARIABLE, single=True), 'The driven variable: variable = "x"'),
+        TOLERANCES,
         _OUTPUTS,
         _QUESTIONS,
     ),

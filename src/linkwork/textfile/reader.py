@@ -208,12 +208,15 @@ def _common_fields(content: dict[str, Any]) -> dict[str, Any]:
     }
     fields["inputs"] = tuple(map(_input, content.get("input", ())))
     fields["questions"] = tuple(map(_question, content.get("questions", ())))
+    deviations = content.get("tolerances", {}).items()
+    fields["tolerances"] = {name: table["deviation"] for name, table in deviations}
     fields["trace"] = tuple(content.get("trace", {}).get("points", ()))
     return fields
 
 
 def _linkage_fields(content: dict[str, Any]) -> dict[str, Any]:
-    tables = {key: content.get(key, {}) for key in ("points", "links", "lengths", "angles")}
+    named = ("points", "links", "lengths", "angles", "clearances")
+    tables = {key: content.get(key, {}) for key in named}
     parts = {
         table: tuple(map(kind.of_table, content.get(table, ()))) for table, kind in PARTS.items()
     }
@@ -243,7 +246,7 @@ def _without(
     wrong = {problem.key[:2] for problem in problems}
     kept = {key: entry for key, entry in content.items() if key not in lost}
     for key in lost & content.keys():
-        if isinstance(content[key], dict):
+        if isinstance(content[key], dict) and (key,) not in wrong:
             named = content[key].items()
             kept[key] = {name: entry for name, entry in named if (key, name) not in wrong}
     return kept

@@ -19,7 +19,7 @@ from linkwork.textfile.toml_text import data_of
 __all__ = ["names_in_file", "rename"]
 
 #: Tables whose keys consist of names of points.
-_OF_POINTS = ("points", "lengths", "angles")
+_OF_POINTS = ("points", "lengths", "angles", "clearances", "tolerances")
 
 
 def names_in_file(edits: TextEdits) -> dict[str, str]:
@@ -116,16 +116,19 @@ def _keys(
 ) -> Iterator[tuple[tuple[str, str], str]]:
     """Keys that contain the name, with the new keys."""
     tables = {
-        "point": (*_OF_POINTS, "friction"), "link": ("links", "masses"), "part": ("friction",),
+        "point": (*_OF_POINTS, "friction"), "link": ("links", "masses"),
+        "part": ("friction", "tolerances"),
     }[of]  # fmt: skip
     for table in tables:
         for key in edits.keys((table,)):
-            words = key.split()
-            if folded in map(canonical, words):
-                yield (
-                    (table, key),
-                    " ".join(new if canonical(word) == folded else word for word in words),
+            # "O4.x" and "d.offset" are numbers of a point and of a part
+            words = [word.partition(".") for word in key.split()]
+            if folded in (canonical(own) for own, _, _ in words):
+                renamed = (
+                    f"{new if canonical(own) == folded else own}{dot}{rest}"
+                    for own, dot, rest in words
                 )
+                yield (table, key), " ".join(renamed)
 
 
 def _names_in_formulas(of: str, name: str, new: str) -> dict[str, str]:

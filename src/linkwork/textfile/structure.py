@@ -10,6 +10,7 @@ from typing import Any
 from linkwork.foundation.errors import Problem, choices
 from linkwork.foundation.file_keys import (
     Constant,
+    Either,
     Flag,
     Formula,
     Key,
@@ -104,6 +105,8 @@ class Structure:
                 return self._list(entry, kind, path)
             case Several():
                 return self._several(entry, kind, path)
+            case Either():
+                return self._either(entry, kind, path)
             case Number():
                 self._check_number(entry, "a number or a formula in quotes", path)
             case PlainNumber():
@@ -139,6 +142,14 @@ class Structure:
         if isinstance(entry, list):
             return self._list(entry, kind.many, path)
         self._check_number(entry, kind.wanted, path, text=False)
+        return entry
+
+    def _either(self, entry: Any, kind: Either, path: Path) -> Any:
+        other = dict if isinstance(kind.other, Table) else list
+        if isinstance(entry, other):
+            return self._value(entry, kind.other, path)
+        if not isinstance(entry, str) or (kind.text.words and entry not in kind.text.words):
+            self._wrong(path, f"must be {kind.wanted}, got {_shown(entry)}")
         return entry
 
     def _check_number(self, entry: Any, wanted: str, path: Path, text: bool = True) -> None:
@@ -225,7 +236,11 @@ def _table_text(path: Path) -> str:
 
 
 def _list_text(kind: ListOf) -> str:
-    return "[x, y]" if isinstance(kind.of, Number) else '["A", "B"]'
+    if isinstance(kind.of, ListOf):
+        return f"[{_list_text(kind.of)}, …]"
+    if isinstance(kind.of, PlainNumber) and kind.least == 3:
+        return "[x, y, radius]"
+    return "[x, y]" if isinstance(kind.of, Number | PlainNumber) else '["A", "B"]'
 
 
 def _count_text(kind: ListOf) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from linkwork.foundation.errors import InputError, UnknownNameError, key_text
 from linkwork.foundation.names import canonical
+from linkwork.textfile.toml_text import data_of
 
 __all__ = ["TextEdits"]
 
@@ -25,7 +26,12 @@ class TextEdits:
     Parameters
     ----------
     text : str
-        Valid TOML; a BOM and Windows line ends are kept.
+        A BOM and Windows line ends are kept.
+
+    Raises
+    ------
+    MechanismFileError, InputError
+        If the text is not TOML.
     """
 
     def __init__(self, text: str) -> None:
@@ -35,7 +41,11 @@ class TextEdits:
         plain = text.removeprefix(_BOM)
         # CRLF is kept only if the file uses it throughout
         self._line_end = "\r\n" if plain.count("\r\n") == plain.count("\n") > 0 else "\n"
-        self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
+        try:
+            self._document: Any = tomlkit.parse(plain.replace("\r\n", "\n"))
+        except tomlkit.exceptions.TOMLKitError as error:
+            data_of(text, "the text")  # explains it with a remedy
+            raise InputError(f"the text cannot be edited: {error}") from error
 
     @property
     def text(self) -> str:
@@ -65,10 +75,18 @@ class TextEdits:
         return list(entry) if isinstance(entry, Mapping) else []
 
     def entries(self, table: str) -> Iterator[tuple[int, dict[str, Any]]]:
-        """The entries of a ``[[table]]`` with their indices, as plain data."""
-        if self.has((table,)):
-            found = self.get((table,))
-            yield from enumerate(found if isinstance(found, list) else [found])
+        """The entries of a ``[[table]]`` with their indices, as plain data; what is no table is
+        left out.
+        """
+        found = self.get((table,)) if self.has((table,)) else []
+        for k, entry in enumerate(found if isinstance(found, list) else [found]):
+            if isinstance(entry, dict):
+                yield k, entry
+
+    def names(self, path: KeyPath) -> list[str]:
+        """A list of names; none if there is no list."""
+        found = self.get(path) if self.has(path) else None
+        return [str(name) for name in found] if isinstance(found, list) else []
 
     def put(self, path: KeyPath, entry: Any) -> None:
         """Write a value; creates a missing table and keeps comments on the line."""

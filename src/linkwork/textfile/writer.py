@@ -22,7 +22,7 @@ from linkwork.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["save", "save_text", "write_text"]
+__all__ = ["save", "save_text", "write_tables", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
@@ -38,6 +38,25 @@ def write_text(description: Description) -> str:
     for key, entry in _head(description).items():
         document.add(key, entry)
     for name, table in _tables(description).items():
+        _add(document, name, table)
+    return tomlkit.dumps(document)
+
+
+def write_tables(tables: Mapping[str, Any]) -> str:
+    """Keys and tables as a TOML text: numbers and texts first, then tables and lists of tables."""
+    import tomlkit
+
+    document = tomlkit.document()
+    nested = {
+        name: entry
+        for name, entry in tables.items()
+        if isinstance(entry, dict)
+        or (isinstance(entry, list) and entry and isinstance(entry[0], dict))
+    }
+    for name, entry in tables.items():
+        if name not in nested:
+            document.add(name, _plain(entry))
+    for name, table in nested.items():
         _add(document, name, table)
     return tomlkit.dumps(document)
 
@@ -128,6 +147,10 @@ def _tables(description: Description) -> _Tables:
             found |= _inputs(description)
         case _:
             raise TypeError(f"a {type(description).__name__} has no file format")
+    deviations = description.tolerances.items()
+    found["tolerances"] = {name: {"deviation": number} for name, number in deviations}
+    if isinstance(description, Linkage):
+        found["clearances"] = dict(description.clearances)
     found["trace"] = {"points": description.trace} if description.trace else {}
     found["outputs"] = dict(description.outputs)
     found["questions"] = [_given(question) for question in description.questions]

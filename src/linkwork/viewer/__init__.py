@@ -20,6 +20,8 @@ if TYPE_CHECKING:
         mechanism_html as mechanism_html,
         motion_html as motion_html,
         position_html as position_html,
+        sensitivity_html as sensitivity_html,
+        tolerance_html as tolerance_html,
     )
     from linkwork.viewer.offline_page import offline_page as offline_page
     from linkwork.viewer.page_building import (

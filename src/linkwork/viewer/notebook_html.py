@@ -29,7 +29,9 @@ from linkwork.results.configurations import Configurations, configurations_summa
 from linkwork.results.motion import Motion
 from linkwork.results.motion_summary import motion_summary
 from linkwork.results.position import Position, position_summary
+from linkwork.results.sensitivity import Sensitivity, sensitivity_summary
 from linkwork.results.summary import Summary
+from linkwork.results.tolerance import Tolerance, tolerance_summary
 
 __all__ = [
     "circuits_html",
@@ -37,6 +39,8 @@ __all__ = [
     "mechanism_html",
     "motion_html",
     "position_html",
+    "sensitivity_html",
+    "tolerance_html",
 ]
 
 _CLASS = "linkwork-shown"
@@ -122,6 +126,16 @@ def circuits_html(circuits: Circuits) -> str:
             for circuit, (scene, _) in zip(drawn, scenes, strict=True)
         ]
     return _element(circuits_summary(circuits), pictures, inks)
+
+
+def sensitivity_html(found: Sensitivity) -> str:
+    """The derivatives of a quantity, the largest first."""
+    return _element(sensitivity_summary(found), [], Inks())
+
+
+def tolerance_html(found: Tolerance) -> str:
+    """A tolerance: worst case, root sum square, shares."""
+    return _element(tolerance_summary(found), [], Inks())
 
 
 def _position(

@@ -6,7 +6,7 @@ import base64
 import html
 import json
 import zlib
-from importlib import resources
+from importlib import metadata, resources
 
 from linkwork.viewer.page_data import PageData, SolverData, SolvingPage
 
@@ -37,7 +37,7 @@ def offline_page(page: PageData, solver: SolvingPage | None = None) -> str:
 <meta http-equiv="Content-Security-Policy" content="{_POLICY}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
-<meta name="generator" content="Linkwork {html.escape(page.version)}">
+<meta name="generator" content="Linkwork {html.escape(metadata.version("linkwork"))}">
 <title>{title}</title>
 <link rel="icon" href="data:,">
 <style>{style}</style>

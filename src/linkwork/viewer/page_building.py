@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from importlib.metadata import version
+from typing import TypeVar
 
 import numpy as np
 
@@ -39,7 +39,7 @@ from linkwork.viewer.page_questions import answers_of, questions_of
 from linkwork.viewer.page_shapes import shapes_of
 from linkwork.viewer.play_order import play_order
 
-__all__ = ["FORMAT", "MARGIN", "Loops", "drawn_page", "motion_page", "page_version", "themes"]
+__all__ = ["FORMAT", "MARGIN", "Loops", "drawn_page", "motion_page", "themes"]
 
 #: Gives the loop equations over a motion.
 Loops = Callable[[Motion], Sequence[MovingLoop]]
@@ -50,6 +50,8 @@ FORMAT = 1
 MARGIN = 0.05  # margin as a fraction of the drawing
 _NOTHING = -400.0  # exponent written for 0, below that of any float
 _COARSE = 0.001  # in decades: precision of residuals and radii
+
+_Kind = TypeVar("_Kind")
 
 
 def motion_page(
@@ -122,7 +124,6 @@ def drawn_page(
     light, dark = themes()
     return PageData(
         format=FORMAT,
-        version=page_version(),
         title=first.mechanism,
         length_unit=first.units.length,
         derivative_unit=first.derivative_unit,
@@ -148,12 +149,6 @@ def drawn_page(
         equations=tuple(Equation(label=label, mathml=mathml) for label, mathml in equations),
         questions=tuple(questions_of(first)),
     )
-
-
-@lru_cache
-def page_version() -> str:
-    """The version of this package."""
-    return version("linkwork")
 
 
 def _motion(
@@ -215,15 +210,15 @@ def _forces(motion: Motion, forces: Sequence[Force]) -> Iterator[ForceData]:
 
 def _evidence(motion: Motion, pack: Pack) -> RowEvidence:
     found, every = motion.found, np.ones(len(motion), dtype=bool)
-    status, status_texts = _numbered([s.value for s in motion.status])
-    proof, proof_texts = _numbered([c.value for c in motion.certification])
+    status, statuses = _numbered(motion.status)
+    proof, proofs = _numbered(motion.certification)
     branch, branch_names = _numbered(motion.branch)
     return RowEvidence(
         found=pack(found.astype(float), every, step=1.0),
         status=pack(status, every, step=1.0),
-        status_texts=status_texts,
+        status_texts=tuple(one.value for one in statuses),
         certification=pack(proof, every, step=1.0),
-        certification_texts=proof_texts,
+        certification_texts=tuple(one.value for one in proofs),
         certified=pack(motion.certified.astype(float), every, step=1.0),
         residual_log10=_log10(motion.residual, motion, pack),
         radius_log10=_log10(motion.radius, motion, pack),
@@ -239,10 +234,12 @@ def _log10(values: Array, motion: Motion, pack: Pack) -> PackedColumn:
     return pack(np.where(values == 0, _NOTHING, known), motion.found, step=_COARSE)
 
 
-def _numbered(texts: Iterable[str]) -> tuple[Array, tuple[str, ...]]:
+def _numbered(texts: Iterable[_Kind]) -> tuple[Array, tuple[_Kind, ...]]:
     listed = list(texts)
-    names = list(dict.fromkeys(listed))
-    return np.array([names.index(text) for text in listed], dtype=float), tuple(names)
+    if listed and listed.count(listed[0]) == len(listed):  # most tables have one status
+        return np.zeros(len(listed)), (listed[0],)
+    numbers = {text: k for k, text in enumerate(dict.fromkeys(listed))}
+    return np.array([*map(numbers.__getitem__, listed)], dtype=float), tuple(numbers)
 
 
 def _limits(motion: Motion) -> Iterator[LimitMark]:

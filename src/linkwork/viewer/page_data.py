@@ -168,7 +168,7 @@ class RowEvidence:
 
     found: PackedColumn
     status: PackedColumn
-    status_texts: tuple[str, ...]
+    status_texts: tuple[str, ...]  # noqa: V107
     certification: PackedColumn
     certification_texts: tuple[str, ...]
     certified: PackedColumn
@@ -270,7 +270,6 @@ class PageData:
     """The complete data of a page. ``view`` is left, bottom, right, top of the drawing."""
 
     format: int
-    version: str
     title: str
     length_unit: str
     derivative_unit: str

@@ -122,8 +122,8 @@ def places_of(shape: Primitive) -> tuple[XY, ...]:
 
 def _flat(line: ComplexArray, size: float) -> tuple[float, ...]:
     digits = _DIGITS - math.ceil(math.log10(size))
-    pairs = np.stack((line.real, line.imag), axis=1).ravel()
-    return tuple(float(number) + 0.0 for number in np.round(pairs, digits))
+    pairs = np.ascontiguousarray(line, dtype=complex).view(float)
+    return tuple((np.round(pairs, digits) + 0.0).tolist())
 
 
 def _course(course: ComplexArray, found: BoolArray, pack: Pack) -> Iterator[PackedColumn]:

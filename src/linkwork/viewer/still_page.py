@@ -15,7 +15,7 @@ from linkwork.foundation.arrays import BoolArray
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Units
 from linkwork.viewer.packing import unpressed
-from linkwork.viewer.page_building import FORMAT, MARGIN, page_version, themes
+from linkwork.viewer.page_building import FORMAT, MARGIN, themes
 from linkwork.viewer.page_data import MotionData, PackedColumn, PageData, PointData, RowEvidence
 from linkwork.viewer.page_shapes import still_shape
 
@@ -57,7 +57,6 @@ def still_page(
     light, dark = themes()
     return PageData(
         format=FORMAT,
-        version=page_version(),
         title=title,
         length_unit=units.length,
         derivative_unit="",

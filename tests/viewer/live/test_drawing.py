@@ -177,6 +177,20 @@ def test_a_six_bar_takes_twenty_actions_and_is_driven_at_either_crank(
     assert sheet.mechanism.sweep().found.any()
 
 
+def test_a_five_bar_is_driven_at_both_cranks_with_the_same_tool(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    for start, end in (((-60, -20), (-70, 20)), ((-70, 20), (0, 60)), ((0, 60), (70, 20))):
+        sheet.drag(start, end)
+    sheet.drag((70, 20), (60, -20))
+    sheet.remedy("Fix A and F")
+    sheet.key("d")
+    sheet.click((-65, 0))
+    sheet.click((65, 0))
+    assert [which.link for which in sheet.mechanism.description.inputs] == ["link2", "link5"]
+
+
 def test_gears_on_an_arm_take_nine_actions_and_are_changed_in_their_panel(
     open_sheet: Callable[..., Sheet],
 ) -> None:

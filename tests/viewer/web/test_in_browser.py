@@ -269,6 +269,28 @@ def test_the_second_visit_needs_no_network(open_web: Open, site: Site) -> None:
 
 
 @pytest.mark.extended
+def test_a_prepared_visit_streams_python_from_the_cache(open_web: Open, site: Site) -> None:
+    page = open_web(f"{site.address}#example=four-bar")
+    page.wait_for_selector(_READY)
+    page.evaluate("() => navigator.serviceWorker.ready.then(() => undefined)")
+    kept = """async () => {
+      const [name] = await caches.keys();
+      return (await (await caches.open(name)).match("engine/prepared")) !== undefined;
+    }"""
+    for _ in range(_PATIENCE // 1000):
+        if page.evaluate(kept):
+            break
+        page.wait_for_timeout(1000)
+    page.context.set_offline(True)
+    page.reload()
+    page.wait_for_selector(_READY)
+    (worker,) = page.workers
+    loaded = worker.evaluate("performance.getEntriesByType('resource').map(({ name }) => name)")
+    assert [name for name in loaded if "wasm" in name]  # the worker's own request
+    assert told(page, "motion_found")["missing"] == 0
+
+
+@pytest.mark.extended
 def test_all_driven_mechanisms_are_solved_as_in_python(
     open_web: Open, site: Site, tmp_path: Path
 ) -> None:

@@ -8,6 +8,7 @@ import { fill } from "../fields";
 import { typed } from "../ranges";
 import { PartPanel } from "./part_panel";
 import { partsOf } from "./symbols";
+import { driving } from "./tool_edits";
 
 export interface Chosen {
   readonly kind: "point" | "link" | "part";
@@ -108,7 +109,7 @@ export class Inspector {
     const drivable = file.drives.some((drive) => drive.name === name);
     const reason = driven ? "it is driven already" : drivable ? "" : "only moving links can be driven";
     this.actions([
-      { label: "Drive", edits: [{ kind: "set_input", drive: "link", name }], ...(reason ? { reason } : {}) },
+      { label: "Drive", edits: [driving(file, "link", name)], ...(reason ? { reason } : {}) },
       { label: "Turn direction", edits: [{ kind: "reverse_link", name }], ...(own.points.length < 2 ? { reason: "a link of one point has no direction" } : {}) },
       { label: "Delete", edits: [{ kind: "remove_link", name }] },
     ]);

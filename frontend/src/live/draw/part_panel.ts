@@ -4,6 +4,7 @@ import type { FileState, LiveEdit, PaletteField, PalettePart, PartShown } from "
 import { html } from "../../svg";
 import type { Desk } from "../asking";
 import { fill } from "../fields";
+import { driving } from "./tool_edits";
 
 /** Entries that name other things. */
 const NAMES = new Set(["point", "points", "link", "links", "slider"]);
@@ -57,7 +58,7 @@ export class PartPanel {
     const driven = file.inputs.some(({ name }) => name === part.name);
     const reason = driven ? "it is driven already" : drive ? "" : "drive one of its links";
     return [
-      { label: "Drive", edits: drive ? [{ kind: "set_input", drive: drive.kind, name: drive.name }] : [], ...(reason ? { reason } : {}) },
+      { label: "Drive", edits: drive ? [driving(file, drive.kind, drive.name)] : [], ...(reason ? { reason } : {}) },
       { label: "Delete", edits: [{ kind: "remove_part", name: part.name, whole: true }] },
     ];
   }

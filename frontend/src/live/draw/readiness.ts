@@ -23,7 +23,9 @@ export class Readiness {
 
   private entry(list: Element, lack: Lack): void {
     const line = html("li", {}, list);
-    const text = lack.key ? `${lack.key} ${lack.message}` : `${lack.message.slice(0, 1).toUpperCase()}${lack.message.slice(1)}`;
+    // a thing is the subject of its sentence; a key of the file names the place
+    const own = lack.kind ? " " : ": ";
+    const text = lack.key ? `${lack.key}${own}${lack.message}` : `${lack.message.slice(0, 1).toUpperCase()}${lack.message.slice(1)}`;
     html("span", {}, line, text);
     for (const { label, edits } of lack.remedies) {
       const button = html("button", { type: "button", class: "lw-remedy" }, line, label);

@@ -46,10 +46,17 @@ function isFixed(file: FileState, point: string): boolean {
 
 function driven(file: FileState, { link, point }: Anchor, part: string | undefined): LiveEdit[] {
   const symbol = point ? undefined : file.drives.find(({ kind, name }) => kind !== "link" && name === part);
-  if (symbol) return [{ kind: "set_input", drive: symbol.kind, name: symbol.name }];
+  if (symbol) return [driving(file, symbol.kind, symbol.name)];
   const own = file.links.filter(({ name, points }) => name !== "ground" && points.includes(point ?? ""));
   const name = link ?? own[0]?.name;
-  return name ? [{ kind: "set_input", drive: "link", name }] : [];
+  return name ? [driving(file, "link", name)] : [];
+}
+
+/** Drive something: one input more where a draft lacks one, otherwise instead of the first. */
+export function driving(file: FileState, drive: string, name: string): LiveEdit {
+  const offered = file.lacks.flatMap(({ remedies }) => remedies.flatMap(({ edits }) => edits));
+  const missing = offered.find((edit) => edit.kind === "set_input");
+  return { kind: "set_input", number: missing?.number ?? 0, drive, name };
 }
 
 /** The selected points moved. */

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Holder
-from linkwork.forces.part.contact import moving_most, normal_away, sliding
+from linkwork.forces.part.contact import moving_most, normal_away, of_input, sliding
 from linkwork.forces.part.guide import line_of
 from linkwork.forces.size import Sided
 from linkwork.foundation.arrays import ComplexArray
@@ -57,7 +57,7 @@ def _at(cam: Cam, bodies: FreeBodies, point: str) -> tuple[ComplexArray, Complex
     """The knife edge or the roller's centre, and the normal of its path on the cam."""
     geometry = bodies.geometry
     rates = sliding(geometry, point, cam.cam, cam.center)
-    along = np.take_along_axis(rates, moving_most(rates), axis=0)[0]
+    along = of_input(rates, moving_most(rates))
     place = geometry.place(point).v
     return place, normal_away(along, place - geometry.place(cam.center).v)
 
@@ -77,9 +77,9 @@ def _on_face(
     normal = normal_away(face, place - geometry.place(cam.center).v)
     turning = geometry.turning(follower.body) - geometry.turning(cam.cam)
     most = moving_most(turning)
-    rates = np.take_along_axis(sliding(geometry, base, cam.cam, cam.center), most, axis=0)[0]
+    rates = of_input(sliding(geometry, base, cam.cam, cam.center), most)
     # the rate of the base less that by which the follower turns it: n · (v + i ω s t) = 0
-    spin = np.take_along_axis(turning, most, axis=0)[0]
+    spin = of_input(turning, most)
     with np.errstate(all="ignore"):
         way = -(normal.conj() * rates).real / (normal.conj() * 1j * spin * face).real
     return place + way * face, normal

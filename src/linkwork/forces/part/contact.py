@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.forces.geometry import Geometry
-from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.arrays import AnyArray, ComplexArray, IndexArray
+from linkwork.foundation.lanes import is_batched
 
-__all__ = ["moving_most", "normal_away", "sliding"]
+__all__ = ["moving_most", "normal_away", "of_input", "sliding"]
 
 
 def sliding(geometry: Geometry, point: str, body: str, center: str) -> ComplexArray:
@@ -19,8 +20,18 @@ def sliding(geometry: Geometry, point: str, body: str, center: str) -> ComplexAr
     return found
 
 
-def moving_most(rates: ComplexArray | Array) -> IndexArray:
-    """Which input moves something most in every row, (1, B), for ``take_along_axis``."""
+def of_input(rates: AnyArray, which: IndexArray | None) -> AnyArray:
+    """Rates by the input that :func:`moving_most` has chosen in every row, (B,)."""
+    return rates if which is None else np.take_along_axis(rates, which, axis=0)[0]
+
+
+def moving_most(rates: AnyArray) -> IndexArray | None:
+    """Which input moves something most in every row, (1, B).
+
+    ``None`` for rates (B,) of one input, as of numbers on a tape.
+    """
+    if is_batched(rates) or rates.ndim == 1:
+        return None
     found: IndexArray = np.argmax(np.nan_to_num(np.abs(rates)), axis=0)[None, :]
     return found
 

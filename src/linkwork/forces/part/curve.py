@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from linkwork.equations.outline import Outline
@@ -9,6 +11,9 @@ from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.part.contact import sliding
 from linkwork.forces.size import Sided
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import chained
+from linkwork.foundation.lanes import is_batched
+from linkwork.kernels.piecewise import Piecewise
 from linkwork.mechanism.part.curve import Curve
 from linkwork.results.quantity import Kind
 
@@ -48,6 +53,12 @@ def _tangent(curve: Curve, bodies: FreeBodies) -> ComplexArray:
     points = [complex(numbers(x), numbers(y)) for x, y in curve.through]
     outline = Outline.through(points, closed=curve.closed)
     u = geometry.own(curve.name).v
-    local = outline.x.jet(u)[1] + 1j * outline.y.jet(u)[1]
+    local = _slope(outline.x, u) + 1j * _slope(outline.y, u)
     found: ComplexArray = local * geometry.direction(curve.on).v
     return found
+
+
+def _slope(law: Piecewise, u: Any) -> Any:
+    """The derivative of a coordinate; the next one is known too."""
+    _, first, second = law.jet(u.values if is_batched(u) else u)
+    return chained(first, second, u)

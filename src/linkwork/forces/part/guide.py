@@ -11,6 +11,7 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.contact import sliding
 from linkwork.forces.size import Size
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import plain_value
 from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["across_line", "along_line", "line_of", "rub_on_line", "side_of"]
@@ -26,7 +27,8 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
 def side_of(line: tuple[str, str], point: str, linkage: Linkage) -> float:
     """The side of a line on which a point is sketched: 1 for left, -1 for right."""
     start, end, place = map(linkage.sketched, (*line, point))
-    return math.copysign(1.0, ((place - start) * (end - start).conjugate()).imag)
+    across = plain_value(((place - start) * (end - start).conjugate()).imag)
+    return math.copysign(1.0, across)
 
 
 def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:

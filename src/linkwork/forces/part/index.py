@@ -14,14 +14,26 @@ from linkwork.forces.free_bodies import FreeBodies
 from linkwork.mechanism.part.index import part_module
 from linkwork.mechanism.part.part import Part
 
-__all__ = ["drive_part", "join_parts"]
+__all__ = ["drive_part", "join_loads", "join_parts"]
 
 
 def join_parts(bodies: FreeBodies) -> None:
     """Add the reactions of all parts."""
     for part in bodies.parts:
-        write: Callable[[Part, FreeBodies], None] = _room(part).write
-        write(part, bodies)
+        join_part(part, bodies)
+
+
+def join_loads(bodies: FreeBodies) -> None:
+    """Add the parts that load the links without joining them."""
+    linkage = bodies.linkage
+    for part in (*linkage.loads, *linkage.springs):
+        join_part(part, bodies)
+
+
+def join_part(part: Part, bodies: FreeBodies) -> None:
+    """Add the reactions of one part, or its loads."""
+    write: Callable[[Part, FreeBodies], None] = _room(part).write
+    write(part, bodies)
 
 
 def drive_part(bodies: FreeBodies, name: str) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Reading
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array
 from linkwork.mechanism.part.spring import Spring
 from linkwork.results.quantity import Kind
 
@@ -24,17 +26,18 @@ def write(spring: Spring, bodies: FreeBodies) -> None:
 
 
 def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
-    applied, numbers = bodies.applied, bodies.linkage.numbers
+    applied, numbers = bodies.applied, bodies.geometry.numbers
     start, end = map(bodies.geometry.place, between)
     span = end - start
     length = np.abs(span.v)
     with np.errstate(all="ignore"):
-        along: ComplexArray = np.asarray(span.v / length, dtype=complex)
+        along: Any = span.v / length
         rate = (along.conj() * span.d1).real
     tension = _force(spring, bodies, length - numbers(spring.free), rate)
-    along[length == 0.0] = 0.0  # a spring of no length has no direction
-    applied.push(between[0], tension * along)
-    applied.push(between[1], -tension * along)
+    # a spring of no length has no direction
+    pull: Any = tension * np.where(length == 0.0, 0.0, along)
+    applied.push(between[0], pull)
+    applied.push(between[1], -pull)
     about = "tension of the spring and its damper"
     name = f"{spring.name}.tension"
     bodies.readings.append(
@@ -44,9 +47,10 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
 
 def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
     linkage, geometry, applied = bodies.linkage, bodies.geometry, bodies.applied
+    numbers = geometry.numbers
     first, second = map(geometry.angle, links)
     turn = second - first
-    free = linkage.numbers(spring.free) * linkage.angle.radians
+    free = numbers(spring.free) * linkage.angle.radians
     start = linkage.sketched_angle(links[1]) - linkage.sketched_angle(links[0])
     # the sketch is within half a turn of the free angle; from there windings count
     free += FULL_TURN * round((start - free) / FULL_TURN)
@@ -62,9 +66,9 @@ def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
 
 def _force(spring: Spring, bodies: FreeBodies, stretch: Array, rate: Array) -> Array:
     """Stiffness times stretch and damping times its rate; the energy of the spring is noted."""
-    numbers, applied = bodies.linkage.numbers, bodies.applied
+    numbers, applied = bodies.geometry.numbers, bodies.applied
     stiffness, damping = numbers(spring.stiffness), numbers(spring.damping)
-    speed = rate * applied.rate if applied.rate else np.zeros_like(stretch)
+    speed = rate * applied.rate if applied.moves else np.zeros(bodies.geometry.shape)
     applied.stored.append(0.5 * stiffness * stretch**2)
     applied.stored_rates.append(stiffness * stretch * speed)
     found: Array = stiffness * stretch + damping * speed

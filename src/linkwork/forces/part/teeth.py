@@ -65,6 +65,6 @@ def _separating(side: float, pressure: float, slope: Array | float) -> Array:
     A tooth pushes along ± t + n tan α, t the common tangent and n its normal.
     """
     # eq. (74): p, the direction of the push in the frame of the line of centres
-    push = (side * 1j + np.tan(pressure)) * np.exp(1j * np.asarray(slope))
+    push = (side * 1j + np.tan(pressure)) * np.exp(1j * slope)
     found: Array = side * push.real / push.imag
     return found

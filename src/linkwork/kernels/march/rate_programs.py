@@ -18,7 +18,7 @@ with the rates of all variables that a block knows. Registers by name:
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
@@ -29,7 +29,14 @@ from linkwork.kernels.program.lowering import lower_program, reserve
 from linkwork.kernels.program.program import Program, Registers
 from linkwork.kernels.program.recorder import Recorder, Value
 
-__all__ = ["PlaceProgram", "drawn_program", "evidence_program", "rate_program", "row_program"]
+__all__ = [
+    "PlaceProgram",
+    "drawn_program",
+    "evidence_program",
+    "quantity_program",
+    "rate_program",
+    "row_program",
+]
 
 
 Number = Value | float
@@ -60,8 +67,8 @@ class _RateWriter:
 
     # ---------------------------------------------------------------- rates
 
-    def rates(self) -> list[str]:
-        """Write both derivatives of all unknowns; return the names of the registers."""
+    def derivatives(self) -> tuple[dict[int, Number], dict[int, Number]]:
+        """Both derivatives of all variables by the leading input."""
         inputs = range(self.table.variables - self.n)
         alone = len(inputs) == 1  # a single input leads
         first: dict[int, Number] = {
@@ -70,6 +77,11 @@ class _RateWriter:
         second: dict[int, Number] = {self.n + j: 0.0 for j in inputs}
         for closure in self.closures:
             self._block_rates(closure, first, second)
+        return first, second
+
+    def rates(self) -> list[str]:
+        """Write both derivatives of all unknowns; return the names of the registers."""
+        first, second = self.derivatives()
         for k in range(self.n):
             self.rec.write(f"first{k}", first[k])
             self.rec.write(f"second{k}", second[k])
@@ -196,6 +208,25 @@ def rate_program(
     """
     writer = _RateWriter(table, parts, zeros)
     return writer.finish(writer.rates())
+
+
+def quantity_program(
+    table: LoopTable,
+    parts: Sequence[BlockPart],
+    write: Callable[[Recorder, Mapping[int, Number], Mapping[int, Number]], Sequence[str]],
+    zeros: Set[str] = frozenset(),
+) -> PlaceProgram:
+    """What a function writes of the derivatives of all variables; see :func:`rate_program`.
+
+    Parameters
+    ----------
+    write : callable
+        Of the recorder, the first and the second derivatives by variable; it returns the names of
+        the registers that it has written.
+    """
+    writer = _RateWriter(table, parts, zeros)
+    first, second = writer.derivatives()
+    return writer.finish(write(writer.rec, first, second))
 
 
 def evidence_program(

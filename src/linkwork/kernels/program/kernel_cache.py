@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from platformdirs import user_cache_path
+from linkwork.foundation.cache_folder import user_cache
 
 __all__ = [
     "LOOPS",
@@ -69,7 +69,7 @@ def _was_compiled(loop: str) -> bool:
 def _indices(loop: str) -> Iterator[Path]:
     """Numba's index files of a loop."""
     given = os.environ.get("NUMBA_CACHE_DIR")
-    shared = Path(given) if given else user_cache_path("numba", appauthor=False)
+    shared = Path(given) if given else user_cache("numba", False)
     package = _package(loop)
     folders = list(shared.glob(f"{package}_*"))
     if not given:

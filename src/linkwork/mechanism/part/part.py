@@ -193,10 +193,10 @@ def carriers(linkage: Bodies) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {point: [] for point in linkage.points}
     for link, points in linkage.links.items():
         for point in points:
-            found[point].append(link)
+            found.setdefault(point, []).append(link)  # a draft may name points that it lacks
     for part in linkage.of(Part):
         for point in part.body:
-            found[point].append(part.label)
+            found.setdefault(point, []).append(part.label)
     return found
 
 

@@ -23,8 +23,11 @@ __all__ = [
     "MotionQuantity",
     "MotionRows",
     "RowQuantity",
+    "RowSlopes",
     "Solved",
+    "at_extreme",
     "cubic",
+    "cubic_weights",
     "folded",
 ]
 
@@ -174,6 +177,12 @@ class MotionRows:
         return found
 
 
+def cubic_weights(s: Array | float) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """The weights of ends and slopes in Hermite's cubic at s from 0 to 1."""
+    r = 1.0 - s
+    return (r**2 * (1.0 + 2.0 * s), s**2 * (1.0 + 2.0 * r)), (r**2 * s, -(s**2) * r)
+
+
 def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Array]) -> Array:
     """Hermite's cubic at s from 0 to 1; ``slopes`` are derivatives with respect to s."""
     r = 1.0 - s
@@ -189,6 +198,18 @@ def folded(angle: Jet, period: float) -> Jet:
     # where the angle is zero its size has a corner, and no derivative
     side = np.sign(rest)
     return Jet(np.abs(rest), side * angle.d1, side * angle.d2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RowSlopes:
+    """The derivatives of a number of one motion by what :class:`MotionRows` has, (R,) each.
+
+    For a path x + iy that by x plus i times that by y.
+    """
+
+    value: Array
+    first: Array | float = 0.0
+    second: Array | float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,6 +233,8 @@ class MotionQuantity:
     measures : str
         ``quantity``: the same as the quantity; ``input``: the same as the leading input;
         ``number``.
+    slopes : callable, optional
+        As ``evaluate``, its derivatives for one motion, (R,).
     """
 
     word: str
@@ -221,3 +244,17 @@ class MotionQuantity:
     numbers: tuple[str, ...] = ()
     needs: int = 0
     measures: str = "quantity"
+    slopes: Callable[[MotionRows, tuple[float, ...]], RowSlopes] | None = None
+
+
+def at_extreme(rows: MotionRows, side: float) -> Array:
+    """1 in the row with the largest value, for a negative side the smallest; NaN where several
+    positions have it, (R,).
+    """
+    value = side * rows.value
+    best = np.fmax.reduce(value)
+    there = value >= best - EQUAL_ROWS * np.abs(best)
+    # the first and the last row of a turn are one position
+    around = there.sum() == 2 and there[0] and there[-1] and bool(rows.cycle)
+    weight = 1.0 / there.sum() if there.sum() == 1 or around else np.nan
+    return np.where(there, weight, 0.0)

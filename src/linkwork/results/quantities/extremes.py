@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+from linkwork.results.quantities.definition import (
+    MotionQuantity,
+    MotionRows,
+    RowSlopes,
+    at_extreme,
+)
 
 __all__ = ["EXTREMES"]
 
@@ -27,8 +32,33 @@ def _mean(rows: MotionRows, _: tuple[float, ...]) -> Array:
     return mean
 
 
+def _least_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    return RowSlopes(value=at_extreme(rows, -1.0))
+
+
+def _most_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    return RowSlopes(value=at_extreme(rows, 1.0))
+
+
+def _mean_slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    there = ~np.isnan(rows.value)
+    return RowSlopes(value=there / max(int(there.sum()), 1))
+
+
 EXTREMES = (
-    MotionQuantity(word="min", about="smallest value at the rows found", evaluate=_least),
-    MotionQuantity(word="max", about="largest value at the rows found", evaluate=_most),
-    MotionQuantity(word="mean", about="mean of the values at the rows found", evaluate=_mean),
+    MotionQuantity(
+        word="min",
+        about="smallest value at the rows found",
+        evaluate=_least,
+        slopes=_least_slopes,
+    ),
+    MotionQuantity(
+        word="max", about="largest value at the rows found", evaluate=_most, slopes=_most_slopes
+    ),
+    MotionQuantity(
+        word="mean",
+        about="mean of the values at the rows found",
+        evaluate=_mean,
+        slopes=_mean_slopes,
+    ),
 )

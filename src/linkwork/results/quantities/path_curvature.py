@@ -18,6 +18,7 @@ import numpy as np
 
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.elementwise import replaced
 from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.results.quantity import Kind
 
@@ -44,7 +45,7 @@ def _bend(
     cross = (place.d1.conj() * place.d2).imag
     still, bent = np.abs(place.d1), np.abs(place.d2)
     # of a straight path only rounding is left of the cross product
-    cross = np.where(np.abs(cross) <= _STRAIGHT * still * bent, 0.0, cross)
+    cross = replaced(np.where(np.abs(cross) <= _STRAIGHT * still * bent, 0.0, cross), cross)
     reach = 1.0 if names.by == "rad" else np.nanmax(np.abs(place.v), initial=0.0)
     return place.v, place.d1, cross, still > _STILL * reach * bent
 

@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows
+from linkwork.results.quantities.definition import (
+    MotionQuantity,
+    MotionRows,
+    RowSlopes,
+    at_extreme,
+)
 
 __all__ = ["STROKE"]
 
@@ -15,4 +20,12 @@ def _stroke(rows: MotionRows, _: tuple[float, ...]) -> Array:
     return found
 
 
-STROKE = (MotionQuantity(word="stroke", about="largest less smallest value", evaluate=_stroke),)
+def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    return RowSlopes(value=at_extreme(rows, 1.0) - at_extreme(rows, -1.0))
+
+
+STROKE = (
+    MotionQuantity(
+        word="stroke", about="largest less smallest value", evaluate=_stroke, slopes=_slopes
+    ),
+)

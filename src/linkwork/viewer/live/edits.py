@@ -181,8 +181,7 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
             text.remove(("links", link))
         elif len(left) < len(points):
             text.put(("links", link), left)
-    if text.has(("trace", "points")):
-        traced = text.get(("trace", "points"))
+    if traced := text.names(("trace", "points")):
         left = [point for point in traced if canonical(point) != canonical(edit.name)]
         text.put(("trace", "points"), left)
     drop_loose_dimensions(text)
@@ -222,8 +221,8 @@ def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
 @applied.register
 def _(edit: ask.TracePoint, text: TextEdits, before: Before) -> Followed:
     check_point(text, edit.point)
-    traced = text.get(("trace", "points")) if text.has(("trace", "points")) else []
-    left = [point for point in traced if canonical(str(point)) != canonical(edit.point)]
+    traced = text.names(("trace", "points"))
+    left = [point for point in traced if canonical(point) != canonical(edit.point)]
     if edit.on:
         left.append(edit.point)
     if left:

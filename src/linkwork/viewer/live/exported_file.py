@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from linkwork import viewer  # loads films and pages when they are written
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.drawing.mechanism_scene import scene_of
 from linkwork.drawing.moving_scene import moving_scene
@@ -17,11 +18,8 @@ from linkwork.drawing.theme import DARK, LIGHT
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.csv_text import csv_text
 from linkwork.results.motion import Motion
-from linkwork.viewer.animation import FilmOptions, animation, check_animation
 from linkwork.viewer.live.solvable import Solvable
 from linkwork.viewer.live.subject import Subject
-from linkwork.viewer.offline_page import offline_page
-from linkwork.viewer.page_building import motion_page
 
 __all__ = ["ExportedFile", "exported_file"]
 
@@ -102,14 +100,14 @@ def exported_file(
         elif suffix == "html":
             equations = mechanism.equations().mathml()
             loops = mechanism.moving_loops
-            page = motion_page({"motion": motion}, equations=equations, loops=loops)
-            content = offline_page(page).encode()
+            page = viewer.motion_page({"motion": motion}, equations=equations, loops=loops)
+            content = viewer.offline_page(page).encode()
         elif suffix == "xlsx":
             content, notices = _workbook(mechanism, motion)
         else:
-            options = FilmOptions(theme=DARK if dark else LIGHT)
-            check_animation(f"film.{suffix}", options)
-            content = animation({"": motion}, suffix, options=options, progress=progress)
+            options = viewer.FilmOptions(theme=DARK if dark else LIGHT)
+            viewer.check_animation(f"film.{suffix}", options)
+            content = viewer.animation({"": motion}, suffix, options=options, progress=progress)
     return ExportedFile(
         suffix=suffix, media_type=_MEDIA_TYPES[suffix], content=content, notices=notices
     )

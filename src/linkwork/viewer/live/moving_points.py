@@ -68,7 +68,7 @@ def move_points(
     for table in ("lengths", "angles"):
         for key, number in getattr(linkage, table).items():
             names = key.split()
-            if not _is_cut(names, places):
+            if not _is_cut(names, places) or not linkage.points.keys() >= {*names}:
                 continue
             # a formula keeps its dependence on dimensions
             if isinstance(number, str) or not follow or _folded(key) in kept:

@@ -84,6 +84,9 @@ def _guided(part: object) -> Iterator[str]:
 
 def _of_problem(problem: Problem, draft: Draft, whole: Draft) -> Lack:
     kind, name = _thing(problem, whole)
+    remedies = tuple(_remedies(problem, draft, kind, name))
+    if name not in {"point": draft.points, "link": whole.links}.get(kind, (name,)):
+        kind = name = ""  # the page does not show it
     key = key_text(problem.key) if kind == "" or problem.key[0] not in ("points", "links") else name
     return Lack(
         message=problem.message,
@@ -91,7 +94,7 @@ def _of_problem(problem: Problem, draft: Draft, whole: Draft) -> Lack:
         line=problem.line,
         kind=kind,
         name=name,
-        remedies=tuple(_remedies(problem, draft, kind, name)),
+        remedies=remedies,
     )
 
 
@@ -110,9 +113,9 @@ def _thing(problem: Problem, draft: Draft) -> tuple[str, str]:
 
 def _remedies(problem: Problem, draft: Draft, kind: str, name: str) -> Iterator[Remedy]:
     carriers = draft.carriers()
-    if kind == "point" and name in draft.points and not carriers[name]:
+    if kind == "point" and not carriers.get(name):
         yield Remedy(label=f"Remove {name}", edits=(ask.RemovePoint(name=name),))
-    if kind == "link" and name in draft.links and len(draft.links[name]) < 2:
+    if kind == "link" and len(draft.links.get(name, ())) < 2:
         yield Remedy(label=f"Remove {name}", edits=(ask.RemoveLink(name=name),))
     if kind == "part":
         edit = ask.RemovePart(name=name, whole=True)

@@ -37,7 +37,7 @@ def points_of(text: TextEdits, link: str) -> list[str]:
     if not text.has(("links", link)):
         known = text.keys(("links",))
         raise UnknownNameError(f'there is no link "{link}" {choices("links", known, link)}')
-    return [str(point) for point in text.get(("links", link))]
+    return text.names(("links", link))
 
 
 def carry(text: TextEdits, link: str, point: str) -> None:

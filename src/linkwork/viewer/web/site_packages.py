@@ -11,16 +11,29 @@ from importlib.resources.abc import Traversable
 __all__ = ["site_packages"]
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
-#: What a page never imports: commands, and the front end (but for the pages that it exports).
+#: What a page never imports: commands, syntheses, studies, and the front end (but for the pages
+#: that it exports).
 _UNUSED = (
+    "batch/study",
     "cli",
+    "design/precision",
+    "export/code",
+    "kernels/gpu",
     "viewer/web",
     *(f"viewer/static/{name}.js" for name in ("live", "linkwork", "web", "web_worker", "widget")),
     "everyday.py",
     "__main__.py",
 )
-#: Parts of wheels that serve tests and compilers.
-_TOOLS = ("tests", "f2py", "conftest.py", "conftest.pyc", "RECORD")
+#: Parts of wheels that serve tests and compilers, or that a page never imports.
+_TOOLS = (
+    "tests",
+    "testing",
+    "f2py",
+    "sboms",
+    "conftest.py",
+    "conftest.pyc",
+    "RECORD",
+)
 _SOURCES = (".a", ".c", ".h", ".lib", ".pxd", ".pyi", ".pyx")
 
 

@@ -1,0 +1,204 @@
+"""Tasks as Python objects, and the mechanisms that do them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.api.mechanism import Mechanism
+from linkwork.design.synthesis import result, task, task_file
+from linkwork.design.synthesis.by_circuits import defects_by_circuits
+from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.synthesis.designs_table import designs_table
+from linkwork.design.synthesis.solving import solve_task
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.results.table import Table
+
+__all__ = ["Synthesis", "Task"]
+
+
+class Task:
+    """What a mechanism should do: poses, points or a function, with wishes.
+
+    The class methods make tasks; keyword arguments are the other keys and tables of a task file.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> poses = [(0, 0, 0), (2, 1, 20), (3, 3, 50), (2, 5, 80), (0, 6, 100)]
+    >>> task = lw.Task.motion(poses, wanted={"transmission": {"least": 10}})
+    >>> task.solve().real
+    2
+    """
+
+    def __init__(self, described: task.Task, name: str = "the task") -> None:
+        self.described = described
+        self._name = name
+
+    @classmethod
+    def motion(cls, poses: Sequence[Sequence[float]], **tables: Any) -> Self:
+        """A task of poses (x, y, angle), in order of travel and file units."""
+        positions = [{"point": list(pose[:2]), "angle": pose[2]} for pose in _rows(poses, 3)]
+        return cls._of("motion", positions=positions, **tables)
+
+    @classmethod
+    def path(
+        cls, points: Sequence[Sequence[float]], *, order: str = "as given", **tables: Any
+    ) -> Self:
+        """A task of points (x, y), passed in their order or, with ``order="any"``, in any."""
+        wanted = {"order": order, **tables.pop("wanted", {})}
+        positions = [{"point": list(point)} for point in _rows(points, 2)]
+        return cls._of("path", positions=positions, wanted=wanted, **tables)
+
+    @classmethod
+    def function(cls, of: str | Sequence[Sequence[float]], **tables: Any) -> Self:
+        """A task of a function: a formula of x, or pairs of input and output.
+
+        ``x``, ``input``, ``output``, ``positions``, ``spacing`` and ``fit`` are keys of the table
+        of the function; all others are tables of the task.
+        """
+        own = {key: tables.pop(key) for key in _OF_FUNCTIONS if key in tables}
+        own["of" if isinstance(of, str) else "pairs"] = of
+        return cls._of("function", function=own, **tables)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The task in a file.
+
+        Raises
+        ------
+        MechanismFileError
+            With every problem found: file, line, key.
+        """
+        return cls(task_file.read_task(path), str(path))
+
+    @classmethod
+    def loads(cls, text: str, name: str = "the task") -> Self:
+        """The task in the text of a task file; raises like :meth:`load`."""
+        return cls(task_file.read_task_text(text, name), name)
+
+    @classmethod
+    def _of(cls, kind: str, **tables: Any) -> Self:
+        return cls(task_file.task_of_tables({"task": kind, **tables}))
+
+    @property
+    def name(self) -> str:
+        """The name of the task."""
+        return self.described.name
+
+    def solve(self, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+        """All designs for the task, each with its defects.
+
+        Raises
+        ------
+        InputError
+            If the task has no solver, or its conditions contradict each other.
+        """
+        try:
+            found = solve_task(self.described, progress=progress)
+        except MechanismError as error:
+            raise task_file.located_task_error(error, self.described, self._name) from None
+        return Synthesis(**{f.name: getattr(found, f.name) for f in fields(found)})
+
+    def defects_of(
+        self, mechanism: Mechanism, inputs: Sequence[float], *, point: str | None = None
+    ) -> tuple[Defect, ...]:
+        """The circuit or branch defect of a mechanism of any kind that passes the positions.
+
+        Parameters
+        ----------
+        mechanism : Mechanism
+        inputs : sequence of float
+            Its input at the positions [file units].
+        point : str, optional
+            The guided point; by default the first traced point.
+
+        Raises
+        ------
+        InputError
+            If the number of inputs differs from that of the positions, or no point is named.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> bar = lw.example("four-bar")
+        >>> path = [bar.solve(at=angle).points["B"] for angle in (0, 90, 180)]
+        >>> lw.Task.path(path).defects_of(bar, (0, 90, 180), point="B")
+        ()
+        """
+        positions = self.described.positions
+        name = point or next(iter(mechanism.description.trace), None)
+        if name is None:
+            raise InputError(f'"{mechanism.name}" traces no point: name one, point="P"')
+        if len(inputs) != len(positions):
+            raise InputError(f"{len(positions)} positions need as many inputs, got {len(inputs)}")
+        places = [{name: complex(*position.point)} for position in positions]
+        return defects_by_circuits(mechanism.circuits(certify=False), inputs, places)
+
+    def __repr__(self) -> str:
+        return f'<Task "{self.name}": {self.described.kind}>'
+
+
+_OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
+
+
+def _rows(given: Any, count: int) -> list[list[float]]:
+    """Rows of numbers; rows of another length are refused by the keys of the task."""
+    rows = np.asarray(given, dtype=float).tolist() if isinstance(given, np.ndarray) else given
+    return [[*row, *[float("nan")] * (count - len(row))] for row in rows]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Synthesis(result.Synthesis):
+    """All designs for a task, sound ones first.
+
+    Attributes are those of a report: ``complex``, ``real`` and ``proved`` count solutions,
+    ``linkages`` mechanisms, ``defects`` designs by defect; ``completeness`` and ``message`` say
+    whether the list is complete; ``dyads`` and ``designs`` hold the details.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> task = lw.Task.function("log10(x)", x=(1, 2), input=(45, 105), output=(0, 90))
+    >>> found = task.solve()
+    >>> len(found.defect_free), found.completeness.name
+    (1, 'PROVED')
+    >>> round(found.defect_free[0].solve(at=75)["rocker"], 2)
+    52.65
+    """
+
+    @property
+    def defect_free(self) -> tuple[Mechanism, ...]:
+        """The delivered designs as mechanisms, best first."""
+        return tuple(Mechanism(design.linkage) for design in self.delivered)
+
+    def table(self) -> Table:
+        """All designs, one row each: numbers, points, and the first reason of refused ones."""
+        return designs_table(self)
+
+    def save(self, folder: str | Path, *, refused: bool = False) -> tuple[str, ...]:
+        """Write the delivered designs as mechanism files with their task beside them.
+
+        Parameters
+        ----------
+        folder : str or Path
+            A new or empty folder.
+        refused : bool
+            Whether to write the refused designs too, in its folder ``refused``.
+
+        Returns
+        -------
+        tuple of str
+            The files.
+
+        Raises
+        ------
+        InputError
+            If the folder is not empty, or cannot be written.
+        """
+        return tuple(write_designs(self, folder, FolderOptions(refused=refused)).values())

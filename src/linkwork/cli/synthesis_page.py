@@ -1,0 +1,117 @@
+"""A synthesis as a page of text: counts, defects by kind, dyads and delivered designs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
+from linkwork.cli.text_table import Column, significant, table_lines
+from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.verdicts import DefectKind
+
+__all__ = ["synthesis_lines"]
+
+_DIGITS = 5
+_MOST_DYADS = 8
+_MOST_REASONS = 5
+
+
+def synthesis_lines(found: Synthesis) -> list[str]:
+    """The page of a synthesis."""
+    lines = [*title_lines(found.task.name), *fields(_counts(found))]
+    if found.dyads and len(found.dyads) <= _MOST_DYADS:
+        lines += ["", *_dyad_lines(found)]
+    if found.delivered:
+        lines += ["", *_design_lines(found)]
+    lines += ["", *_verdict(found)]
+    return lines
+
+
+def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
+    yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
+    yield "real", str(found.real)
+    yield "proved", str(found.proved)
+    if found.triples:
+        yield "triples", str(found.triples)
+    yield "completeness", found.message
+    driven = len(found.designs)
+    yield "mechanisms", str(found.linkages)
+    yield "designs", f"{driven}, one for each link that can be driven"
+    for kind, count in found.defects.items():
+        yield kind.value, f"{count}"
+    yield "without defects", str(found.sound)
+    yield "delivered", str(len(found.delivered))
+
+
+def _dyad_lines(found: Synthesis) -> list[str]:
+    """The dyads: kind, pivots, proof."""
+    dyads, unit = found.dyads, found.task.length
+
+    def column(header: str, values: list[float]) -> Column:
+        return Column(
+            header=header, cells=[significant(v, _DIGITS + 1) for v in values], align="point"
+        )
+
+    return table_lines(
+        [
+            Column(header="dyad", cells=[dyad.kind for dyad in dyads]),
+            column(f"moving x [{unit}]", [dyad.moving[0] for dyad in dyads]),
+            column("y", [dyad.moving[1] for dyad in dyads]),
+            column(f"fixed x [{unit}]", [dyad.fixed[0] for dyad in dyads]),
+            column("y", [dyad.fixed[1] for dyad in dyads]),
+            Column(header="", cells=["proved" if dyad.proved else "not proved" for dyad in dyads]),
+        ]
+    )
+
+
+def _design_lines(found: Synthesis) -> list[str]:
+    """The delivered designs, best first."""
+    designs, task = found.delivered, found.task
+
+    def column(header: str, values: list[float]) -> Column:
+        return Column(header=header, cells=[significant(v, _DIGITS) for v in values], align="point")
+
+    columns = [
+        Column(header="", cells=[str(design.number) for design in designs], align="right"),
+        Column(header="mechanism", cells=[design.group.given.kind.value for design in designs]),
+        Column(header="driven at", cells=[design.drive.value for design in designs]),
+        column(f"transmission [{task.angle.value}]", [design.transmission for design in designs]),
+        column(f"size [{task.length}]", [design.size for design in designs]),
+    ]
+    if any(design.error for design in designs):
+        columns.append(column(f"error [{found.error_unit}]", [d.error for d in designs]))
+    columns.append(column("score", [design.score for design in designs]))
+    return table_lines(columns)
+
+
+def _verdict(found: Synthesis) -> list[str]:
+    """Whether there is a sound design; if not, the commonest reasons and the costliest wish."""
+    if found.delivered:
+        head = f"{found.sound} of {len(found.designs)} designs have no defect."
+        return sentence(good, head)
+    if not found.designs:
+        return sentence(bad, "No mechanism of the wanted kinds solves the task.")
+    lines = sentence(bad, "No design is free of defects.")
+    cost = found.costliest
+    if cost is not None:
+        wish, count = cost
+        told = f"The wish that costs most is {wish}: without it {count} would be sound."
+        lines += wrapped(told)
+    shown = _examples(found)
+    for design in shown:
+        reason = f"{design.group.given.kind.value} driven at {design.drive.value}: "
+        lines += wrapped(reason + design.defects[0].message, "  ", "    ")
+    more = len(found.refused) - len(shown)
+    if more > 0:
+        lines += wrapped(f"and {more} more; --json lists all reasons", "  ")
+    return lines
+
+
+def _examples(found: Synthesis) -> list[SynthesizedDesign]:
+    """All refused designs if they are few, else one for each kind of first defect."""
+    if len(found.refused) <= _MOST_REASONS:
+        return list(found.refused)
+    first: dict[DefectKind, SynthesizedDesign] = {}
+    for design in found.refused:
+        first.setdefault(design.kinds[0], design)
+    return list(first.values())

@@ -1,0 +1,72 @@
+"""``linkwork synthesize``"""
+
+from __future__ import annotations
+
+import click
+
+from linkwork.api.designs_folder import FolderOptions, prepare_folder, write_designs
+from linkwork.api.synthesis import Task
+from linkwork.cli.options import debug_option, json_option
+from linkwork.cli.synthesis_page import synthesis_lines
+from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
+
+__all__ = ["synthesize"]
+
+
+@click.command
+@click.argument("task", metavar="TASK")
+@click.option("-o", "--output", metavar="FOLDER", help="Folder for the designs.")
+@click.option("--all", "every", is_flag=True, help="Write refused designs too, in FOLDER/refused.")
+@click.option("--draw", is_flag=True, help="Draw every written design (SVG).")
+@click.option("--csv", is_flag=True, help="Write a table of all designs: FOLDER/designs.csv.")
+@click.option("--html", is_flag=True, help="Write a page of all designs: FOLDER/index.html.")
+@click.option("--fresh", is_flag=True, help="Replace the designs of an earlier synthesis.")
+@json_option
+@debug_option
+@click.pass_context
+def synthesize(
+    context: click.Context,
+    task: str,
+    output: str | None,
+    every: bool,
+    draw: bool,
+    csv: bool,
+    html: bool,
+    fresh: bool,
+    as_json: bool,
+) -> None:
+    """Find mechanisms for a task: poses, or a function.
+
+    Every solution is listed; designs that change branch or circuit, pass the
+    positions out of order or miss a wish are refused with their reason. The
+    others are written as mechanism files, best first.
+
+    \b
+      linkwork synthesize task.toml
+      linkwork synthesize task.toml -o designs --draw --html
+      linkwork synthesize task.toml -o designs --all --json
+    """
+    options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, fresh=fresh)
+    if output is None and any((every, draw, csv, html, fresh)):
+        raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
+    asked = Task.load(task)
+    if output is not None:
+        prepare_folder(as_path(output), options)
+    with progress("solving the task") as tell:
+        found = asked.solve(progress=tell)
+    files: dict[int, str] = {}
+    if output is not None:
+        with progress("writing designs") as tell:
+            files = write_designs(found, output, options, tell)
+    if as_json:
+        print_json(found.to_dict(files))
+    else:
+        lines = synthesis_lines(found)
+        if output is not None:
+            count = f"{len(files)} design{'' if len(files) == 1 else 's'}"
+            lines += ["", *wrapped(f"Wrote {count} and task.toml in {output}.")]
+        print_lines(lines)
+    if not found.delivered:
+        context.exit(1)

@@ -1,0 +1,266 @@
+"""Forces of differentiated rows: the same free bodies and virtual work, with taped numbers.
+
+The equilibrium W r + b = 0 is solved with plain numbers; one step from its solution,
+r - W⁻¹ (W r + b), then has the derivatives of the solution, with those of friction and of all that
+follows from r.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.differentiated_rows import DifferentiatedRows
+from linkwork.design.tape import Tape
+from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.drives import effort_name
+from linkwork.forces.free_bodies import Act, FreeBodies
+from linkwork.forces.geometry import Geometry
+from linkwork.forces.joint_forces import joint_forces
+from linkwork.forces.part.index import join_loads
+from linkwork.forces.part.load import apply_load
+from linkwork.forces.pins import read_first_links
+from linkwork.forces.system import free_bodies, free_bodies_of, known_acts, totals
+from linkwork.forces.virtual_work import work_terms
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.lanes import is_batched
+from linkwork.foundation.names import GROUND
+from linkwork.foundation.operand import NotElementwise
+from linkwork.mechanism.dimensions import Numbers
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.loops import Loops
+from linkwork.motion.named_quantities import RowValues
+
+__all__ = ["LoadedRows"]
+
+
+class TapedGeometry(Geometry):
+    """Places and rates on a tape; derivatives by each input as lists of (B,)."""
+
+    def __init__(self, rows: DifferentiatedRows) -> None:
+        super().__init__(rows.model, rows)
+        self.taped = rows
+
+    @property
+    def numbers(self) -> Numbers:
+        """Reads numbers and formulas of the file."""
+        return self.taped.description.numbers
+
+    def partial(self, point: str) -> Any:
+        """Derivatives of a point with respect to each input; (B,) of the only one."""
+        if self.alone:
+            return self.place(point).d1
+        return [moved.place(point).d1 for moved in self.taped.by_input]
+
+    def turning(self, link: str) -> Any:
+        """Derivatives of a link's angle with respect to each input; (B,) of the only one."""
+        if self.alone:
+            return self.angle(link).d1
+        if link == GROUND:
+            return [np.zeros(self.rows) for _ in self.model.equations.inputs]
+        return [Geometry(self.model, moved).angle(link).d1 for moved in self.taped.by_input]
+
+    def partial_local(self, link: str, place: Any) -> Any:
+        """Derivatives of a point in the frame of a link with respect to each input."""
+        arm = 1j * self.direction(link).v * place
+        if self.alone:
+            return self.partial(self.links[link][0]) + self.turning(link) * arm
+        pairs = zip(self.partial(self.links[link][0]), self.turning(link), strict=True)
+        return [moved + turned * arm for moved, turned in pairs]
+
+
+class LoadedRows(DifferentiatedRows):
+    """Differentiated rows with the forces of their loads; parameters as of the base class."""
+
+    def force(self, name: str) -> Any:
+        """An effort, reaction, energy or total on the tape, (B,).
+
+        Raises
+        ------
+        InputError
+            If its derivatives are not known.
+        """
+        try:
+            with np.errstate(all="ignore"):
+                for known in self._tables():
+                    if name in known:
+                        return known[name]
+        except (NotElementwise, TypeError, AttributeError):
+            pass  # a part whose reactions take decisions row by row
+        raise InputError(f'the derivatives of "{name}" are not known: sample its tolerance')
+
+    def _tables(self) -> Iterator[dict[str, Any]]:
+        """All quantities of forces; reactions last, for free bodies cost the most."""
+        yield self._efforts
+        yield self._totals
+        yield self._reactions
+
+    @cached_property
+    def _loads(self) -> AppliedLoads:
+        """All loads; those of a linkage are those of its free bodies."""
+        geometry, description = TapedGeometry(self), self.description
+        assert isinstance(description, LoadedBodies)
+        # where time drives the rows, inputs have rates and bends of their own
+        if self.model.untimed is not None:
+            raise NotElementwise
+        applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
+        applied.weigh(description)
+        if isinstance(description, Linkage):
+            bodies = FreeBodies(description, geometry, applied)
+            join_loads(bodies)
+        elif isinstance(description, Loops):
+            for load in description.loads:
+                apply_load(load, applied)
+        return applied
+
+    @cached_property
+    def _efforts(self) -> dict[str, Any]:
+        """Efforts of all inputs by virtual work, and their power."""
+        inputs = self.equations.inputs
+        found: list[Any] = [np.zeros(len(self.solution)) for _ in inputs]
+        alone = self._loads.geometry.alone
+        for load, moved in work_terms(self._loads):
+            for k, own in enumerate([moved] if alone else moved):
+                found[k] = found[k] - (np.conj(load) * own).real  # eq. (71)
+        if getattr(self.description, "friction", None):
+            if not alone:
+                raise NotElementwise
+            # rates of friction by each of several inputs are not on the tape
+            found[0] = found[0] + self._joints.friction_effort()
+        named = {effort_name(x.name): own for x, own in zip(inputs, found, strict=True)}
+        if self.speed is not None:
+            rates = zip(self._input_rate, found, strict=True)
+            named["power"] = sum((rate * own for rate, own in rates), 0.0) * self.speed
+        return named
+
+    @cached_property
+    def _totals(self) -> dict[str, Any]:
+        """Forces on the ground, energies and powers."""
+        applied = self._loads
+        return {name: value for name, _, _, value in totals(applied.geometry, applied)}
+
+    @cached_property
+    def _joints(self) -> _Equilibrium:
+        """The equilibrium of a linkage."""
+        description, geometry = self.description, TapedGeometry(self)
+        if not isinstance(description, Linkage):
+            raise NotElementwise
+        there = np.logical_not(self.lost)
+        plain = RowValues(self.model, self.solution, *self._rates, there)
+        nominal = free_bodies_of(self.model, plain)
+        applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
+        applied.weigh(description)
+        taped = free_bodies(description, geometry, applied)
+        return _Equilibrium(taped, nominal, self.tape)
+
+    @cached_property
+    def _reactions(self) -> dict[str, Any]:
+        """Reactions of all joints."""
+        return self._joints.readings()
+
+
+class _Equilibrium:
+    """The equilibrium of free bodies whose acts are on a tape, solved with plain numbers."""
+
+    def __init__(self, bodies: FreeBodies, nominal: FreeBodies, tape: Tape) -> None:
+        self.bodies, self.tape = bodies, tape
+        geometry, rate = nominal.geometry, nominal.applied.rate
+        way = geometry.table_direction if rate == 0.0 else np.sign(rate)
+        acts = known_acts(nominal)
+        # plain numbers decide about friction, self-stress and lift-off
+        self.solved = joint_forces(nominal, acts, np.broadcast_to(way, geometry.rows))
+        self.acts = known_acts(bodies)
+        self._solve()
+
+    def _solve(self) -> None:
+        """Unknowns and amounts of what follows from them, on the tape."""
+        bodies, solved, tape = self.bodies, self.solved, self.tape
+        r, amounts, inverse = solved.unknowns, solved.amounts, solved.balance.inverse
+        rest: list[Any] = [np.zeros(len(r)) for _ in range(bodies.equations)]
+        sums: list[tuple[list[Act], Any]] = [([act], 1.0) for act in self.acts]
+        sums += [(list(acts), r[:, k]) for k, acts in enumerate(bodies.unknowns)]
+        sums += [(list(own.acts), amounts[:, k]) for k, own in enumerate(bodies.following)]
+        for group, factor in sums:
+            for act in group:
+                for row, value in bodies.entries(act):
+                    rest[row] = rest[row] + value * factor
+        # eq. (126): the step that equilibrium takes, and that of the amounts with it
+        none = np.zeros(len(r))
+        step = [
+            tape.combine(none, [(-inverse[:, k, i], part) for i, part in enumerate(rest)])
+            for k in range(r.shape[1])
+        ]
+        changes = self._changes(step)
+        answers = solved.answers
+        self.unknowns = [
+            tape.combine(
+                r[:, k],
+                [
+                    (1.0, step[k]),
+                    *((own[:, k], c) for own, c in zip(answers, changes, strict=True)),
+                ],
+            )
+            for k in range(r.shape[1])
+        ]
+        self.amounts = [
+            tape.combine(amounts[:, k], [(1.0, change)]) for k, change in enumerate(changes)
+        ]
+
+    def _changes(self, step: list[Any]) -> list[Any]:
+        """The changes of all amounts, which depend on the unknowns that they change."""
+        bodies, solved, count = self.bodies, self.solved, len(self.bodies.following)
+        rows = len(solved.unknowns)
+        if not count:
+            return []
+        matrix = np.tile(np.eye(count), (rows, 1, 1))
+        sides: list[Any] = []
+        for k, follower in enumerate(bodies.following):
+            own = list(follower.size.unknowns)
+            u = solved.unknowns[:, own]
+            size: Any = follower.size.value(u)
+            # friction acts against the motion, whatever the tape says
+            sign = np.sign(solved.amounts[:, k]) * np.sign(_bare(size))
+            slope = sign[:, None] * solved.bodies.following[k].size.gradient(u)
+            side: Any = self.tape.combine(np.zeros(rows), [(sign, size)])
+            for place, j in enumerate(own):
+                side = side + slope[:, place] * step[j]
+                for other, answer in enumerate(solved.answers):
+                    matrix[:, k, other] -= slope[:, place] * answer[:, j]
+            sides.append(side)
+        inverse = np.linalg.inv(matrix)
+        return [
+            self.tape.combine(np.zeros(rows), [(inverse[:, k, j], x) for j, x in enumerate(sides)])
+            for k in range(count)
+        ]
+
+    def friction_effort(self) -> Any:
+        """What friction adds to the effort of the only input, (B,)."""
+        total: Any = 0.0
+        for amount, follower in zip(self.amounts, self.bodies.following, strict=True):
+            if follower.motion is not None:
+                total = total - amount * follower.motion
+        return total
+
+    def readings(self) -> dict[str, Any]:
+        """All named quantities."""
+        bodies, found = self.bodies, dict[str, Any]()
+        acts = list(self.acts)
+        for amount, follower in zip(self.amounts, bodies.following, strict=True):
+            acts += [Act(a.on, a.place, a.force * amount, a.moment) for a in follower.acts]
+        read_first_links(bodies, acts)
+        for reading in bodies.readings:
+            value = reading.constant + sum((f * self.unknowns[k] for k, f in reading.terms), 0.0)
+            if reading.follow is not None:
+                value = value + self.amounts[reading.follow]
+            found[reading.name] = value
+        return found
+
+
+def _bare(value: Any) -> Array:
+    """The values of a number that may be on a tape."""
+    return value.values if is_batched(value) else value

@@ -1,0 +1,284 @@
+"""Solved rows as functions of a mechanism's numbers, by the implicit function theorem.
+
+The equations are written once more with taped numbers. At a solved position one step of
+Newton-Raphson from the solution, v - J⁻¹ F(v; p), has the derivatives of the solution,
+dv = -J⁻¹ F_p. The derivatives of v by the input satisfy the same linear equations, differentiated
+once and twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from linkwork.batch.building import write_equations
+from linkwork.design.tape import Tape
+from linkwork.equations.model import LawEquation, LoopEquations, Term
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import names_in
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.elementwise import chained, vector
+from linkwork.foundation.lanes import is_batched
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.varied_number import VariedNumber, with_numbers
+from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
+from linkwork.motion.quantity_values import QuantityValues, term_jet
+from linkwork.motion.speeds import leading_speeds
+
+__all__ = ["DifferentiatedRows"]
+
+_ZERO = np.zeros(())
+
+
+class _Column:
+    """Numbers that are asked for as the last axis of an array."""
+
+    def __init__(self, numbers: Sequence[Any]) -> None:
+        self.numbers = numbers
+
+    def __getitem__(self, index: tuple[Any, int]) -> Any:
+        return self.numbers[index[-1]]
+
+
+class DifferentiatedRows(QuantityValues):
+    """Quantities of B solved rows on a tape.
+
+    Parameters
+    ----------
+    model : Model
+    numbers : sequence of VariedNumber
+        By which they are differentiated, P.
+    v : (B, N)
+        Solved variables, internal units; NaN where there is no position with a finite derivative.
+    order : int
+        How many derivatives by the leading input are differentiated too, 0 to 2.
+    plays : sequence of (link, point)
+        Points that move away from their pins, with two more numbers for each: x and y.
+
+    Raises
+    ------
+    NotElementwise
+        If the form of the equations depends on a number.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        numbers: Sequence[VariedNumber],
+        v: Array,
+        order: int,
+        plays: Sequence[tuple[str, str]] = (),
+    ) -> None:
+        self.tape = Tape()
+        description = model.description
+        taped = {q: self.tape.number(float(q.of(description))) for q in numbers}
+        # |x| in the builder shows x without its sign, which stands beside it
+        self.tape.writing = True
+        with np.errstate(all="ignore"):
+            self.description = with_numbers(description, taped) if taped else description
+            if plays:
+                self.description = self._with_plays(plays)
+            self.taped: LoopEquations = write_equations(self.description)
+        self.tape.writing = False
+        lost: BoolArray = np.logical_not(np.isfinite(v).all(axis=1))
+        still = np.where(lost, np.nan, 0.0)
+        links: Any = _Column([angle.constant for angle in self.taped.links.values()])
+        dimensions: Any = _Column(list(self.taped.dimensions.values()))
+        super().__init__(model, lost, still, links, dimensions)
+        self.count = len(self.equations.unknowns)
+        self.solution = np.where(lost[:, None], np.nan, v)
+        # without an input nothing moves, and there are no rates
+        self.order = order if self.equations.inputs else 0
+        self._symbols = [x.symbol for x in self.equations.variables]
+        self._points: dict[str, Jet] = {}
+
+    def _with_plays(self, plays: Sequence[tuple[str, str]]) -> Description:
+        """A copy in which points of links lie x + iy away from the pins, in the links' frames."""
+        # making a description anew would derive its shapes from lengths again
+        description = copy(self.description)
+        assert isinstance(description, Draft)
+        local = {link: dict(points) for link, points in description.shapes.local.items()}
+        for link, point in plays:
+            away = vector(self.tape.number(0.0), self.tape.number(0.0))
+            local[link][point] = local[link][point] + away
+        shapes = replace(description.shapes, local=local)
+        object.__setattr__(description, "shapes", shapes)
+        return description
+
+    @cached_property
+    def _rates(self) -> tuple[Array, Array]:
+        """First and second derivative of the variables by the leading input, (B, N) each."""
+        if not self.equations.inputs:
+            return np.zeros_like(self.solution), np.zeros_like(self.solution)
+        rows = self.model.compiled.solver.rates(self.solution, self._input_rate)
+        return rows.first, rows.second
+
+    @cached_property
+    def _input_rate(self) -> Array:
+        return leading_input(self.model.rows)[1]
+
+    @cached_property
+    def _inverse(self) -> Array:
+        """J⁻¹ (B, n, n); NaN in rows without a derivative."""
+        inverse = np.full((len(self.solution), self.count, self.count), np.nan)
+        fine = np.flatnonzero(~self.lost)
+        jacobian = self.model.compiled.table.jacobian(self.solution[fine])[:, :, : self.count]
+        try:
+            inverse[fine] = np.linalg.inv(jacobian)
+        except np.linalg.LinAlgError:
+            # one singular row would spoil all others
+            for row, matrix in zip(fine, jacobian, strict=True):
+                if np.linalg.matrix_rank(matrix) == self.count:
+                    inverse[row] = np.linalg.inv(matrix)
+        return inverse
+
+    # Solved variables on the tape
+
+    @cached_property
+    def variables(self) -> dict[str, Jet]:
+        """All variables by symbol, with as many derivatives on the tape as asked for."""
+        known = self.solution, *self._rates
+        columns: list[list[Any]] = [[part[:, k] for k in range(part.shape[1])] for part in known]
+        for order in range(self.order + 1):
+            # higher derivatives are not on the tape yet, and do not enter lower ones
+            jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
+            rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
+            parts = [(jet.v, jet.d1, jet.d2)[order] for jet in rows]
+            for k in range(self.count):
+                # eq. (120)
+                terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
+                columns[order][k] = self.tape.combine(known[order][:, k], terms)
+        jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
+        return dict(zip(self._symbols, jets, strict=True))
+
+    @cached_property
+    def by_input(self) -> list[Self]:
+        """The same rows with rates by each input alone instead of the leading one."""
+        return [self._moved_by(unit) for unit in np.eye(len(self.equations.inputs))]
+
+    def _moved_by(self, direction: Array) -> Self:
+        rates = self.model.compiled.solver.rates(self.solution, direction).first
+        first: list[Any] = [rates[:, k] for k in range(rates.shape[1])]
+        zero = np.zeros(len(rates))
+        values = [self.variables[symbol].v for symbol in self._symbols]
+
+        def jets() -> dict[str, Jet]:
+            parts = zip(self._symbols, values, first, strict=True)
+            return {symbol: Jet(value, rate, zero) for symbol, value, rate in parts}
+
+        parts = [row.d1 for row in self._residuals(jets())]
+        for k in range(self.count):
+            terms = [(-self._inverse[:, k, i], part) for i, part in enumerate(parts)]
+            first[k] = self.tape.combine(rates[:, k], terms)  # eq. (120)
+        # the copy shares all but variables and points
+        moved = copy(self)
+        moved._points = {}
+        moved.__dict__["variables"] = jets()
+        return moved
+
+    def _residuals(self, variables: Mapping[str, Jet]) -> list[Jet]:
+        """All equations in the order of the loop table, as jets."""
+        taped = self.taped
+        loops = [self._sum(loop.terms, variables) for loop in taped.loops]
+        rows = [Jet(z.v.real, z.d1.real, z.d2.real) for z in loops]
+        rows += [Jet(z.v.imag, z.d1.imag, z.d2.imag) for z in loops]
+        for line in taped.linear:
+            total = _constant(line.constant)
+            for symbol, weight in line.terms:
+                total = total + variables[symbol] * weight
+            rows.append(total)
+        with np.errstate(all="ignore"):
+            rows += [
+                self._formula(equation.left, variables) - self._formula(equation.right, variables)
+                for equation in taped.real
+            ]
+        return rows + [_law_jet(law, variables) for law in taped.laws]
+
+    def _formula(self, node: Any, variables: Mapping[str, Jet]) -> Jet:
+        known = dict(variables)
+        # lengths and dimensions in plain equations are numbers on the tape too
+        for used in {name.name for name in names_in(node)} - set(known):
+            if used in self.taped.symbols:
+                known[used] = _constant(self.taped.symbols[used])
+        return evaluate(node, known, self.taped.angle)
+
+    def _sum(self, terms: Sequence[Term], variables: Mapping[str, Jet]) -> Jet:
+        total = Jet(_ZERO, _ZERO, _ZERO)
+        for term in terms:
+            turn = None
+            for symbol, weight in term.phase:
+                part = variables[symbol] * weight
+                turn = part if turn is None else turn + part
+            one = Jet.constant(1.0)
+            length = one if term.length is None else variables[term.length]
+            total = total + term_jet(term.value, length, turn)
+        return total
+
+    # What quantities read
+
+    def variable(self, symbol: str) -> Jet:
+        """A variable by its symbol, internal units, (B,)."""
+        return self.variables[symbol]
+
+    def place(self, point: str) -> Jet:
+        """A point by its exact name, (B,)."""
+        if point not in self._points:
+            path = self.taped.points[point]
+            blank = self.still * (1.0 + 0j)
+            place = Jet(blank, blank, blank) if path.parent is None else self.place(path.parent)
+            self._points[point] = place + self._sum(path.terms, self.variables)
+        return self._points[point]
+
+    @cached_property
+    def speed(self) -> Any:
+        """The speed of the leading input, which numbers may change; ``None`` without."""
+        if self.model.speed is None:
+            return None
+        speeds = leading_speeds(self.description, self.equations.inputs, self.model.rows)
+        # time itself, where it drives the rows, has a speed of its own
+        return next(iter(speeds.values()), self.model.speed)
+
+    @cached_property
+    def misfits(self) -> list[Any]:
+        """The lengths of redundant links less their given lengths, (B,) each, on the tape."""
+        return [
+            self.variables[canonical(part.variable)].v - part.length
+            for part in self.taped.redundant
+        ]
+
+    @property
+    def leading_input(self) -> Any:
+        """The leading input, internal units."""
+        lead, _ = leading_input(self.model.rows)
+        return self.variables[self._symbols[self.count + lead]].v
+
+
+def _constant(number: Any) -> Jet:
+    """A number, taped or not, that does not move."""
+    return Jet(number, _ZERO, _ZERO)
+
+
+def _law_jet(law: LawEquation, variables: Mapping[str, Jet]) -> Jet:
+    """Σ a v + constant - f(Σ w v + offset), eq. (4)."""
+    straight, inner = (
+        sum((variables[s] * weight for s, weight in terms), _constant(constant))
+        for terms, constant in ((law.terms, law.constant), (law.inner, law.offset))
+    )
+    argument: Any = inner.v
+    x = argument.values if is_batched(argument) else np.asarray(argument)
+    f, first, second = law.law.jet(x)
+    # the second derivative by the input needs the third of the law
+    third = law.law.slope().jet(x)[2]
+    parts = (
+        chained(value, slope, argument)
+        for value, slope in ((f, first), (first, second), (second, third))
+    )
+    return straight - inner.chain(*parts)

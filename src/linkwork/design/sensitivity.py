@@ -1,0 +1,370 @@
+"""Sensitivities of quantities at a position, over a table, and of numbers of a whole motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.differentiable_numbers import chosen_numbers, groups_of
+from linkwork.design.differentiated_folds import DifferentiatedFolds
+from linkwork.design.differentiated_forces import LoadedRows
+from linkwork.design.differentiated_rows import DifferentiatedRows
+from linkwork.design.regular_rows import RegularRows, row_of, rows_of
+from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
+from linkwork.results.motion import LimitKind, Motion
+from linkwork.results.position import Position
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
+from linkwork.results.quantities.definition import MotionRows, RowSlopes
+from linkwork.results.quantity import Kind
+from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
+
+__all__ = [
+    "LIMITS",
+    "has_slopes",
+    "is_of_motion",
+    "play_of_motion",
+    "play_of_position",
+    "sensitivity_of_motion",
+    "sensitivity_of_position",
+    "sensitivity_of_rows",
+]
+
+#: The ends of the range of the leading input, as numbers of a motion.
+LIMITS = ("limit.lower", "limit.upper")
+
+_FITS = 1e-9  # longest links per unit of a number: a redundant link that follows still fits
+
+
+def is_of_motion(of: str) -> bool:
+    """Whether a name is that of a number of a whole motion."""
+    return "(" in of or of.strip() in LIMITS
+
+
+def has_slopes(model: Model, of: str) -> bool:
+    """Whether the derivatives of a number of a motion are known."""
+    if of.strip() in LIMITS:
+        return True
+    return model.quantities.find_of_motion(of).quantity.slopes is not None
+
+
+def sensitivity_of_position(
+    model: Model, position: Position, of: str, by: Iterable[str] | None = None
+) -> Sensitivity:
+    """The derivatives of a quantity at one position.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For a name that is not known, or a number that cannot vary.
+    """
+    inputs = {name: np.asarray(value) for name, value in position.input.items()}
+    return _of_rows(model, row_of(model, position), inputs, of, by, ())
+
+
+def play_of_position(
+    model: Model, position: Position, of: str, pins: Sequence[tuple[str, str]]
+) -> Array:
+    """The derivatives of a quantity by the displacement of points of links from their pins.
+
+    Their size is the force in the pin for a unit load at the quantity with the input held, eq.
+    (124).
+
+    Parameters
+    ----------
+    pins : sequence of (link, point)
+
+    Returns
+    -------
+    array (pins, 1, 2)
+    """
+    asked, row = model.quantities.find(of), row_of(model, position)
+    v = np.where((row.found & row.regular)[:, None], row.v, np.nan)
+    taped = LoadedRows(model, (), v, asked.needs, pins)
+    with np.errstate(all="ignore"):
+        # R of eq. (124)
+        rates = taped.tape.backward(asked.values(taped, taped.speed))
+    return np.broadcast_to(rates, (2 * len(pins), 1)).reshape(len(pins), 1, 2)
+
+
+def play_of_motion(model: Model, motion: Motion, of: str, pins: Sequence[tuple[str, str]]) -> Array:
+    """As :func:`play_of_position`, of a number of a motion, (pins, rows, 2).
+
+    A journal may lie differently in each row on which an extreme depends; where rates enter, such
+    as in the length of a path, it stays where it is in all rows.
+    """
+    _, _, parts = _asked_of_motion(model, motion, of)
+    found = []
+    for part in parts:
+        rates = part.rates(model, (), pins)
+        moved = rates.reshape(len(pins), 2, rates.shape[1]).swapaxes(1, 2)
+        found.append(moved if part.depends_on_values else moved.sum(axis=1, keepdims=True))
+    return np.concatenate(found, axis=1) if found else np.zeros((len(pins), 0, 2))
+
+
+def sensitivity_of_rows(
+    model: Model, motion: Motion, of: str, by: Iterable[str] | None = None
+) -> Sensitivity:
+    """The derivatives of a quantity in all rows of a motion; raises like
+    :func:`sensitivity_of_position`.
+    """
+    rows = rows_of(model, motion)
+    return _of_rows(model, rows, motion.inputs, of, by, (len(motion),))
+
+
+def _of_rows(
+    model: Model,
+    rows: RegularRows,
+    inputs: Mapping[str, AnyArray],
+    of: str,
+    by: Iterable[str] | None,
+    shape: tuple[int, ...],
+) -> Sensitivity:
+    asked = model.quantities.find(of)
+    _check(asked, of)
+    asked.check_rate(model.speed)
+    numbers, refused = _fitting_numbers(model, rows, by)
+    # rows without a derivative would spoil the inverses of the others
+    v = np.where((rows.found & rows.regular)[:, None], rows.v, np.nan)
+    derivatives: dict[str, Array] = {}
+    for group in groups_of(model.description, numbers):
+        taped = LoadedRows(model, group, v, asked.needs)
+        with np.errstate(all="ignore"):
+            rates = taped.tape.backward(asked.values(taped, taped.speed))
+        each = (len(group), len(v))
+        rates = np.broadcast_to(rates, each) + _fitting(taped, each)
+        derivatives |= dict(zip((q.name for q in group), rates, strict=True))
+    value = np.broadcast_to(np.atleast_1d(asked.values(rows.solved, model.speed)), len(v))
+    status = np.full(len(v), SensitivityStatus.FOUND.code)
+    corner = np.isnan(value)
+    for name, rates in derivatives.items():
+        # where the quantity itself does not exist its derivatives do not either
+        derivatives[name] = np.where(np.isfinite(value), rates, np.nan)
+        corner = corner | ~np.isfinite(derivatives[name])
+    status[corner] = SensitivityStatus.CORNER.code
+    status[~rows.regular] = SensitivityStatus.DEAD_POINT.code
+    status[~rows.found] = SensitivityStatus.NO_POSITION.code
+    return _result(model, of=asked.name, unit=asked.unit, inputs=inputs, value=value.reshape(shape),
+        derivatives={name: rates.reshape(shape) for name, rates in derivatives.items()},
+        numbers=numbers, statuses=SensitivityStatus.of_codes(status), refused=refused)  # fmt: skip
+
+
+def _fitting_numbers(
+    model: Model, rows: RegularRows, by: Iterable[str] | None
+) -> tuple[tuple[VariedNumber, ...], Mapping[str, str]]:
+    """The numbers that can vary alone, in a position of redundant links too; why others cannot.
+
+    Raises
+    ------
+    InputError
+        For a number asked for after which a redundant link does not fit.
+    """
+    numbers, refused = chosen_numbers(model, by)
+    # whether a redundant link follows is the same in all positions
+    there = np.flatnonzero(rows.found & rows.regular)
+    if not model.equations.redundant or not len(there):
+        return numbers, refused
+    for group in groups_of(model.description, numbers):
+        taped = DifferentiatedRows(model, group, rows.v[there[:1]], 0)
+        fits = np.isfinite(_fitting(taped, (len(group), 1)))[:, 0]
+        why = "a redundant link does not fit any more"
+        refused |= {q.name: why for q, own in zip(group, fits, strict=True) if not own}
+    wrong = [q.name for q in numbers if q.name in refused]
+    if by is not None and wrong:
+        raise InputError(f'"{wrong[0]}" cannot vary alone: {refused[wrong[0]]}')
+    return tuple(q for q in numbers if q.name not in refused), refused
+
+
+def _check(asked: Asked, of: str) -> None:
+    if asked.group is Group.EVIDENCE:
+        raise InputError(f'"{of}" measures how a position was found: it has no sensitivity')
+    if asked.needs > 2:
+        raise InputError(
+            f'the derivatives of "{of}" are not known: those of positions, velocities and '
+            "accelerations are"
+        )
+
+
+def _fitting(taped: DifferentiatedRows, shape: tuple[int, ...]) -> Array:
+    """0, or NaN for numbers whose change a redundant link does not follow, (P, B)."""
+    found = np.zeros(shape)
+    for misfit in taped.misfits:
+        rates = np.broadcast_to(taped.tape.forward([misfit])[0], shape)
+        found[np.abs(rates) > _FITS] = np.nan
+    return found
+
+
+def _result(
+    model: Model, *, of: str, unit: str, inputs: Mapping[str, AnyArray], value: Array,
+    derivatives: Mapping[str, Array], numbers: Sequence[VariedNumber],
+    statuses: tuple[SensitivityStatus, ...], refused: Mapping[str, str],
+) -> Sensitivity:  # fmt: skip
+    description = model.description
+    kinds = {x.name: x.kind for x in model.equations.variables}
+    return Sensitivity(
+        mechanism=description.name,
+        of=of,
+        unit=unit,
+        inputs={name: np.asarray(values) for name, values in inputs.items()},
+        input_units=model.input_units if inputs else {},
+        value=value,
+        derivatives={q.name: derivatives[q.name] for q in numbers},
+        units={q.name: q.unit(description, kinds) for q in numbers},
+        numbers={q.name: q.of(description) for q in numbers},
+        statuses=statuses,
+        refused=refused,
+    )
+
+
+# Numbers of a whole motion
+
+
+def sensitivity_of_motion(
+    model: Model, motion: Motion, of: str, by: Iterable[str] | None = None
+) -> Sensitivity:
+    """The derivatives of a number of a whole motion: ``stroke(d)``, ``limit.upper``.
+
+    Extremes need no derivative of the place where they are, except at dead points, which move.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        As :func:`sensitivity_of_position`; also for a number whose derivatives are not known.
+    """
+    numbers, refused = _fitting_numbers(model, rows_of(model, motion), by)
+    value, unit, parts = _asked_of_motion(model, motion, of)
+    rates = {q.name: np.zeros(()) for q in numbers}
+    for part in parts:
+        for group in groups_of(model.description, numbers):
+            own = np.sum(part.rates(model, group), axis=1)
+            for q, rate in zip(group, own, strict=True):
+                rates[q.name] = rates[q.name] + rate
+    found = all(np.isfinite(rate) for rate in rates.values()) and np.isfinite(value)
+    status = SensitivityStatus.FOUND if found else SensitivityStatus.CORNER
+    if not motion.found.any():
+        status = SensitivityStatus.NO_POSITION
+    return _result(model, of=of.strip(), unit=unit, inputs={}, value=np.asarray(value),
+        derivatives=rates, numbers=numbers, statuses=(status,), refused=refused)  # fmt: skip
+
+
+def _asked_of_motion(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
+    """The number, its unit, and the rows on which it depends."""
+    if of.strip() in LIMITS:
+        return _limit(model, motion, of.strip())
+    return _number(model, motion, of)
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """What some rows add to a number of a motion: Σ weight · column of a quantity."""
+
+    v: Array
+    weights: RowSlopes
+    of: AskedOfMotion | None
+    fold: bool
+
+    @property
+    def depends_on_values(self) -> bool:
+        """Whether no rates enter."""
+        weights = self.weights
+        return not (np.any(weights.first != 0.0) or np.any(weights.second != 0.0))
+
+    def rates(
+        self,
+        model: Model,
+        numbers: Sequence[VariedNumber],
+        plays: Sequence[tuple[str, str]] = (),
+    ) -> Array:
+        """The derivatives by numbers, or by displacements in pins, row by row, (P, B)."""
+        needs = 0 if self.of is None else self.of.needs
+        kind = DifferentiatedFolds if self.fold else LoadedRows
+        taped = kind(model, numbers, self.v, needs, plays)
+        with np.errstate(all="ignore"):
+            columns: Sequence[Any] = (
+                (taped.leading_input,) if self.of is None else self.of.columns(taped)
+            )
+            given = (self.weights.value, self.weights.first, self.weights.second)
+            total: Any = np.zeros(len(self.v))
+            for weight, column in zip(given, columns, strict=False):
+                if np.any(weight != 0.0):
+                    total = total + np.real(np.conj(weight) * column)
+            rates = taped.tape.backward(total)
+        shape = (len(taped.tape.inputs), len(self.v))
+        return np.broadcast_to(rates, shape) + _fitting(taped, shape)
+
+
+def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
+    asked = model.quantities.find_of_motion(of)
+    _check(asked.of, of)
+    if asked.quantity.slopes is None:
+        raise InputError(
+            f'the derivatives of "{of}" are not known: ask for min, max, mean, stroke or '
+            "path_length, or sample its tolerance"
+        )
+    if asked.of.rate is not None and asked.of.rate.by_time:
+        raise UnknownNameError(
+            f'"{of}" has no sensitivity: ask for it by the input, such as "{asked.of.own.name}.d1"'
+        )
+    value, rows = motion.value(of), rows_of(model, motion)
+    if asked.follows:
+        columns: tuple[Array, ...] = asked.columns(motion)
+    else:
+        columns = (motion[asked.of.name],)
+    whole = MotionRows(
+        input=motion.inputs[asked.names.lead] * model.input_scale[leading_input(model.rows)[0]],
+        value=columns[0],
+        first=columns[1] if asked.follows else np.full(len(motion), np.nan),
+        second=columns[2] if asked.follows else np.full(len(motion), np.nan),
+        unit=1.0,
+        turn=2.0 * np.pi if asked.names.inputs[asked.names.lead] is Kind.ANGLE else 0.0,
+    )
+    with np.errstate(all="ignore"):
+        slopes = asked.quantity.slopes(whole, asked.numbers)
+    return value, asked.unit, list(_parts(rows, slopes, asked))
+
+
+def _parts(rows: RegularRows, slopes: RowSlopes, asked: AskedOfMotion) -> Iterator[_Part]:
+    """Regular rows and dead points that a number depends on."""
+    count = len(rows.v)
+    weights = [np.broadcast_to(w, count) for w in (slopes.value, slopes.first, slopes.second)]
+    # most numbers depend on one or two rows: only these are differentiated
+    used = np.any([weight != 0.0 for weight in weights], axis=0) & rows.found
+    for fold in (False, True):
+        which = np.flatnonzero(used & (rows.regular != fold))
+        if len(which):
+            names = ("value", "first", "second")
+            given = (weight[which] for weight in weights)
+            own = RowSlopes(**dict(zip(names, given, strict=True)))
+            yield _Part(rows.v[which], own, asked, fold)
+
+
+def _limit(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
+    """The dead point that ends the range of the leading input."""
+    lead = leading_input(model.rows)[0]
+    name = model.equations.inputs[lead].name
+    side = -1.0 if of == LIMITS[0] else 1.0
+    start = model.start_in_file_units[lead]
+    ends = [
+        limit for limit in motion.limits
+        if limit.kind is LimitKind.DEAD_POINT and side * (limit.input - start) >= 0.0
+    ]  # fmt: skip
+    if not ends:
+        raise InputError(
+            f"the motion of {name} has no dead point {'below' if side < 0 else 'above'} its start: "
+            f"{of} does not exist"
+        )
+    # the branch ends at the first dead point on either side
+    nearest = min(ends, key=lambda limit: side * limit.input)
+    rows = rows_of(model, motion)
+    there = np.array([word == LimitKind.DEAD_POINT.word for word in motion.limit])
+    away = np.where(there & motion.found, np.abs(motion.inputs[name] - nearest.input), np.inf)
+    row = int(away.argmin())
+    one = np.ones(1) / model.input_scale[lead]
+    part = _Part(rows.v[[row]], RowSlopes(value=one), None, fold=True)
+    return nearest.input, model.input_units[name], [part]

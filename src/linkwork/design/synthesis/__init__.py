@@ -1,0 +1,1 @@
+"""From tasks to mechanisms: all dyads and loops through precision positions, and their defects."""

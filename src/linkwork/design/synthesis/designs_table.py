@@ -1,0 +1,49 @@
+"""All designs of a synthesis as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.design.synthesis.result import Synthesis
+from linkwork.foundation.arrays import AnyArray
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+from linkwork.results.table import Table
+
+__all__ = ["designs_table"]
+
+_POINTS = ("A0", "B0", "S", "T", "A", "B", "P")
+
+
+def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> Table:
+    """Designs in their order: numbers, points at the first position, verdict and file.
+
+    Points that a kind of mechanism does not have are NaN.
+    """
+    task, designs = found.task, found.designs
+    columns: dict[str, AnyArray] = {
+        "design": np.arange(1, len(designs) + 1),
+        "mechanism": np.array([design.group.given.kind.value for design in designs]),
+        "drive": np.array([design.drive.value for design in designs]),
+        "delivered": np.array([design.delivered for design in designs]),
+    }
+    units = dict.fromkeys(columns, "")
+    numbers = {
+        "score": ("", [design.score for design in designs]),
+        TRANSMISSION_ANGLE.word: (task.angle.value, [design.transmission for design in designs]),
+        "size": (task.length, [design.size for design in designs]),
+        "error": (found.error_unit, [design.error for design in designs]),
+    }
+    for name in _POINTS:
+        places = [design.design.points.get(name, complex(np.nan, np.nan)) for design in designs]
+        if not np.isnan(np.array([*places, 0j])[:-1]).all():
+            numbers[f"{name}.x"] = task.length, [place.real for place in places]
+            numbers[f"{name}.y"] = task.length, [place.imag for place in places]
+    for name, (unit, values) in numbers.items():
+        columns[name], units[name] = np.array(values, dtype=float), unit
+    reasons = [design.defects[0].message if design.kinds else "" for design in designs]
+    columns["defect"], units["defect"] = np.array(reasons, dtype=str), ""
+    named = [(files or {}).get(k, "") for k in range(len(designs))]
+    columns["file"], units["file"] = np.array(named, dtype=str), ""
+    return Table(columns=columns, units=units, index="design")

@@ -1,0 +1,209 @@
+"""Dyads by their pivots and lines, and the mechanisms that pairs of them make."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Candidates, LoopKind
+from linkwork.design.synthesis.dyads import KINDS, Dyads, Refusal
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
+
+__all__ = ["DyadSet", "PoseSet", "pair_dyads"]
+
+
+#: Relative: pivots nearer to each other are one pivot.
+_ONE_PIVOT = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PoseSet:
+    """T tasks of N poses: places of the body's point, and e^{iθ}, (T, N) complex."""
+
+    points: ComplexArray
+    turns: ComplexArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DyadSet:
+    """K dyads of T tasks.
+
+    Parameters
+    ----------
+    task : (K,)
+        The task of each dyad.
+    kind : (K,)
+        The place of its kind in :data:`~linkwork.design.synthesis.dyads.KINDS`.
+    moving : (K,) complex
+        The moving pivot in the body's frame; of an RP dyad a point of its line [length].
+    fixed : (K,) complex
+        The fixed pivot; of a PR dyad a point of its line [length].
+    normal : (K,) complex
+        The unit normal of that line, in the body's frame or fixed; 0 for an RR dyad.
+    error : (K,)
+        A bound of the errors of pivots, and of how far the line is missed at any pose [length].
+    refusal : (K,)
+        Codes of :class:`Refusal`.
+    """
+
+    task: IndexArray
+    kind: StatusArray
+    moving: ComplexArray
+    fixed: ComplexArray
+    normal: ComplexArray
+    error: Array
+    refusal: StatusArray
+
+    def __len__(self) -> int:
+        return len(self.task)
+
+    def take(self, index: IndexArray | BoolArray) -> DyadSet:
+        """Some of the dyads."""
+        return DyadSet(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    @classmethod
+    def joined(cls, parts: Iterable[DyadSet]) -> DyadSet:
+        """The dyads of several sets, in their order."""
+        found = list(parts)
+        return cls(
+            **{
+                f.name: np.concatenate([getattr(part, f.name) for part in found])
+                for f in fields(cls)
+            }
+        )
+
+    def of_one_task(self) -> DyadSet:
+        """The dyads as those of a single task."""
+        return replace(self, task=np.zeros(len(self), dtype=np.intp))
+
+    @classmethod
+    def of_solutions(cls, found: Dyads, poses: PoseSet) -> DyadSet:
+        """The real solutions of five-pose tasks."""
+        task, column = np.nonzero(found.is_real)
+        x = found.x[task, column].real
+        size, centre = found.poses.size[task], found.poses.centre[task]
+        kind = found.kinds[task, column]
+        a, g, b = x[:, 1] + 1j * x[:, 2], x[:, 3] + 1j * x[:, 4], x[:, 5] + 1j * x[:, 6]
+        normal_of = np.where(kind == 1, g, a)
+        length = np.abs(normal_of)
+        with np.errstate(all="ignore"):
+            line = normal_of / length * (0.5 * x[:, 7] / length)
+            moving = np.choose(kind, [a / x[:, 0], b / g.conj(), line])
+            fixed = np.choose(kind, [g / x[:, 0], line, (b / a).conj()])
+            # an error e of every coordinate, complex ones √2 e, in a quotient
+            error = np.sqrt(2.0) * found.error[task, column]
+            divisor = np.where(kind == 0, np.abs(x[:, 0]), length) - error
+            far = np.maximum(np.abs(moving), np.abs(fixed))
+            error = np.where(divisor > 0, error * (1.0 + far) / divisor, np.inf)
+        made = cls(
+            task=task,
+            kind=kind,
+            moving=np.asarray(moving * size, dtype=np.complex128),
+            fixed=centre + fixed * size,
+            normal=np.where(kind > 0, normal_of / length, 0.0),
+            error=error * size,
+            refusal=found.refusal[task, column],
+        )
+        return made.take(np.isfinite(moving) & np.isfinite(fixed)).with_misses(poses)
+
+    def with_misses(self, poses: PoseSet) -> DyadSet:
+        """With the distances from lines in the errors: a slider fits to rounding only."""
+        d, e = poses.points[self.task], poses.turns[self.task]
+        pin = d + self.moving[:, None] * e - self.fixed[:, None]
+        normal = np.where((self.kind == 1)[:, None], self.normal[:, None], self.normal[:, None] * e)
+        miss = np.abs((normal.conj() * pin).real).max(axis=1)
+        return replace(self, error=np.where(self.kind > 0, self.error + miss, self.error))
+
+    @classmethod
+    def made(
+        cls,
+        kind: int,
+        moving: ComplexArray,
+        fixed: ComplexArray,
+        error: Array,
+        normal: ComplexArray | None = None,
+    ) -> DyadSet:
+        """Dyads of one kind and task, as far as their numbers are finite."""
+        good = np.isfinite(moving) & np.isfinite(fixed) & np.isfinite(error)
+        count = int(good.sum())
+        return cls(
+            task=np.zeros(count, dtype=np.intp),
+            kind=np.full(count, kind, dtype=np.int8),
+            moving=moving[good],
+            fixed=fixed[good],
+            normal=np.zeros(count, dtype=complex) if normal is None else normal[good],
+            error=error[good],
+            refusal=np.full(count, Refusal.NONE.code, dtype=np.int8),
+        )
+
+    def dyads(self) -> Iterator[tuple[str, complex, complex, complex, float, Refusal]]:
+        """Kind, moving, fixed, normal, error and refusal of each."""
+        for k in range(len(self)):
+            yield (
+                KINDS[self.kind[k]],
+                complex(self.moving[k]),
+                complex(self.fixed[k]),
+                complex(self.normal[k]),
+                float(self.error[k]),
+                Refusal.of_code(int(self.refusal[k])),
+            )
+
+
+def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candidates]:
+    """All four-bars and slider-cranks that pairs of dyads of one task make.
+
+    Pairs with another line are no mechanism of these kinds, and pairs with a common pivot do not
+    move: both are left out. ``leading``: one of
+    the first so many dyads is in every pair, as its crank.
+    """
+    cranks = dyads.take(dyads.kind == 0)
+    sliders = dyads.take(dyads.kind == 1)
+    found = []
+    first, second = _pairs(cranks.task, cranks.task)
+    later = (first < second) & (first < (leading or len(cranks)))
+    if leading:
+        later &= second >= leading
+    later &= _differ(cranks.moving, first, second) & _differ(cranks.fixed, first, second)
+    if later.any():
+        found.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
+    first, second = _pairs(cranks.task, sliders.task)
+    led = first < (leading or len(cranks))
+    led &= np.abs(cranks.moving[first] - sliders.moving[second]) > _ONE_PIVOT * np.abs(
+        cranks.moving[first]
+    )
+    if led.any():
+        found.append(_made(cranks.take(first[led]), sliders.take(second[led]), poses))
+    return found
+
+
+def _differ(pivots: ComplexArray, first: IndexArray, second: IndexArray) -> BoolArray:
+    size = np.maximum(np.abs(pivots[first]), np.abs(pivots[second]))
+    return np.asarray(np.abs(pivots[first] - pivots[second]) > _ONE_PIVOT * size)
+
+
+def _pairs(tasks: IndexArray, others: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Indices of all pairs of one task; both lists are sorted by task."""
+    begin = np.searchsorted(others, tasks, side="left")
+    count = np.searchsorted(others, tasks, side="right") - begin
+    first = np.repeat(np.arange(len(tasks)), count)
+    offset = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return first, np.repeat(begin, count) + offset
+
+
+def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
+    d, e = poses.points[crank.task], poses.turns[crank.task]
+    sliding = bool(len(other) and other.kind[0] == 1)
+    return Candidates(
+        kind=LoopKind.SLIDER_CRANK if sliding else LoopKind.FOUR_BAR,
+        fixed_a=crank.fixed,
+        fixed_b=other.fixed,
+        # the normal is on the left of the direction
+        direction=-1j * other.normal,
+        moving_a=d + crank.moving[:, None] * e,
+        moving_b=d + other.moving[:, None] * e,
+        guided=d,
+        error=np.maximum(crank.error, other.error),
+        miss=np.zeros(len(crank)),
+    )

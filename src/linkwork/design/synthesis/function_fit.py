@@ -1,0 +1,149 @@
+"""Dimensions whose output follows a function best over a range: least squares and minimax."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from linkwork.design.synthesis.driven_loop import dot
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import EPSILON
+
+__all__ = ["Errors", "least_squares_fit", "minimax_fit", "rocker_errors", "slider_errors"]
+
+#: Structural errors (K,) of parameters (n,), and derivatives (K, n); NaN where a loop is open.
+Errors = Callable[[Array], tuple[Array, Array]]
+
+_MOST_STEPS = 100
+_MOST_EXCHANGES = 40
+_SMALLEST_STEP = 1e-13  # relative: Newton steps end in rounding
+_FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.3, 4.0
+_LARGEST_DAMPING = 1e12
+_LEVEL = 1e-9  # by which the largest error may exceed that of the reference points
+
+
+def rocker_errors(inputs: Array, outputs: Array, side: float) -> Errors:
+    """The errors of a rocker's angle, for parameters a, b, c of a four-bar with ground 1.
+
+    ``inputs``, ``outputs``: (K,) [rad]; ``side``: the sign of (B - A) × (B - B0).
+    """
+
+    def errors(lengths: Array) -> tuple[Array, Array]:
+        a, b, c = lengths
+        crank = np.exp(1j * inputs)
+        base = 1.0 - a * crank
+        square = np.abs(base) ** 2
+        along = 0.5 * (square + c**2 - b**2)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            across = np.sqrt(square * c**2 - along**2)
+            coupler = base * (along + 1j * side * across) / square
+            # B - B0 = A + coupler - 1, divided by a signed length
+            rocker = (coupler - base) / b
+            found = np.angle(rocker)
+            wrong = np.mod(found - outputs + np.pi, 2.0 * np.pi) - np.pi
+            slope = b * dot(coupler, 1j * rocker)
+            gradient = np.stack([dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong])
+            return wrong, (gradient / slope).T
+
+    return errors
+
+
+def slider_errors(inputs: Array, outputs: Array, side: float) -> Errors:
+    """The errors of a slider's displacement, for parameters a, e, c: crank, offset and rod.
+
+    ``inputs`` (K,) [rad], ``outputs`` (K,) [length]; ``side``: the sign of (B - A) along the line.
+    """
+
+    def errors(lengths: Array) -> tuple[Array, Array]:
+        a, e, c = lengths
+        crank = np.exp(1j * inputs)
+        height = e - a * crank.imag
+        with np.errstate(invalid="ignore", divide="ignore"):
+            reach = side * np.sqrt(c**2 - height**2)
+            wrong = a * crank.real + reach - outputs
+            gradient = [crank.real + height * crank.imag / reach, -height / reach, c / reach]
+            return wrong, np.stack(gradient, axis=1)
+
+    return errors
+
+
+def least_squares_fit(errors: Errors, start: Array) -> Array:
+    """The parameters with the least sum of squares near a start: Levenberg and Marquardt."""
+    x, damping = start.copy(), _FIRST_DAMPING
+    e, jacobian = errors(x)
+    total = float(e @ e)
+    for _ in range(_MOST_STEPS):
+        normal = jacobian.T @ jacobian
+        step = np.linalg.solve(
+            normal + damping * np.diag(np.diag(normal) + EPSILON), -jacobian.T @ e
+        )
+        tried, new = errors(x + step), x + step
+        sum_there = float(tried[0] @ tried[0])
+        if sum_there <= total:
+            done = np.abs(step).max() <= _SMALLEST_STEP * np.abs(x).max()
+            x, (e, jacobian), total = new, tried, sum_there
+            damping *= _LESS
+            if done:
+                break
+        else:  # also for NaN: the loop does not close there
+            damping *= _MORE
+            if damping > _LARGEST_DAMPING:
+                break
+    return x
+
+
+def minimax_fit(errors: Errors, start: Array) -> tuple[Array, bool]:
+    """The parameters with the least largest error, and whether it is proved to be a local minimum.
+
+    Remez's exchange: errors of n + 1 points are levelled to ±E by Newton's method, then the points
+    move to the largest errors. If no error exceeds |E| in the end, the n + 1 equal errors of
+    alternating sign prove the minimum (Chebyshev; Haar's condition is assumed of the derivatives).
+    """
+    x = start.copy()
+    for _ in range(_MOST_EXCHANGES):
+        e, _unused = errors(x)
+        points = _alternating(e, len(x) + 1)
+        if points is None:
+            return start, False
+        levelled = _levelled(errors, x, points)
+        if levelled is None:
+            return start, False
+        x, level = levelled
+        largest = np.abs(errors(x)[0]).max()
+        if largest <= level * (1.0 + _LEVEL) + EPSILON:
+            return x, True
+    return x, False
+
+
+def _alternating(e: Array, count: int) -> list[int] | None:
+    """The places of ``count`` large errors of alternating sign; ``None`` if there are fewer."""
+    if not np.isfinite(e).all():
+        return None
+    ends = [0, *(np.flatnonzero(np.sign(e[1:]) != np.sign(e[:-1])) + 1), len(e)]
+    places = [start + int(np.abs(e[start:end]).argmax()) for start, end in pairwise(ends)]
+    while len(places) > count:
+        # leave out the smaller end, so that signs alternate still
+        del places[0 if abs(e[places[0]]) < abs(e[places[-1]]) else -1]
+    return places if len(places) == count else None
+
+
+def _levelled(errors: Errors, start: Array, points: list[int]) -> tuple[Array, float] | None:
+    """The parameters for which errors at the points are ±E, and E."""
+    x = start.copy()
+    e, jacobian = errors(x)
+    signs = np.sign(e[points])
+    for _ in range(_MOST_STEPS):
+        matrix = np.column_stack([jacobian[points], -signs])
+        try:
+            change = np.linalg.solve(matrix, -e[points])
+        except np.linalg.LinAlgError:
+            return None
+        x = x + change[:-1]
+        e, jacobian = errors(x)
+        if not np.isfinite(e).all():
+            return None
+        if np.abs(change[:-1]).max() <= _SMALLEST_STEP * np.abs(x).max():
+            break
+    return x, float(np.abs(e[points]).max())

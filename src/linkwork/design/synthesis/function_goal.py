@@ -1,0 +1,203 @@
+"""The function that an output follows, its precision points, and its formula in a mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.expression.grammar import parse
+from linkwork.expression.tree import Node, names_in
+from linkwork.expression.values import value
+from linkwork.expression.writing import text
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import ExpressionError
+from linkwork.foundation.plain_numbers import as_told
+
+__all__ = ["FunctionGoal"]
+
+_VARIABLE = "x"
+_DENSE = 181  # points over the range for fits and structural errors
+_MOST = 5  # precision points of a four-bar with free start angles
+_FIXED = 3  # the same with given start angles
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FunctionGoal:
+    """An output as a function of the input, in file units.
+
+    Parameters
+    ----------
+    of : str
+        A formula of x; "" with ``pairs``.
+    x : (float, float), optional
+        The range of x.
+    pairs : tuple of (float, float)
+        Inputs and outputs instead of a formula.
+    input, output : (float, float), optional
+        Input and output at the ends of the range. Without them, the start angles are free and pairs
+        count by their differences.
+    positions : int
+        Number of precision points of a formula.
+    spacing : str
+        chebyshev or even.
+    fit : str
+        "", least squares or minimax.
+    """
+
+    of: str = ""
+    x: Pair | None = None
+    pairs: tuple[Pair, ...] = ()
+    input: Pair | None = None
+    output: Pair | None = None
+    positions: int = _FIXED
+    spacing: str = "chebyshev"
+    fit: str = ""
+
+    def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """What is wrong, with the key of each problem."""
+        if bool(self.of) == bool(self.pairs):
+            both = "are both given" if self.of else "are both missing"
+            yield ("function", "of"), f'formula and pairs {both}: give of = "…" or pairs = [[…]]'
+            return
+        if self.of:
+            yield from self._formula_problems()
+        else:
+            yield from self._pair_problems()
+        for key in ("input", "output"):
+            ends = getattr(self, key)
+            if ends is not None and ends[0] == ends[1]:
+                yield ("function", key), f"begins and ends at {ends[0]:g}: give a range"
+
+    def _formula_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        missing = [key for key in ("x", "input", "output") if getattr(self, key) is None]
+        for key in missing:
+            yield ("function", key), f"is missing: a formula needs the range of its {key}"
+        if missing:
+            return
+        try:
+            ends = [self._evaluated(number) for number in self.x or ()]
+            for number in self._x(_DENSE):
+                self._evaluated(number)
+        except ExpressionError as error:
+            yield ("function", "of"), str(error)
+            return
+        if ends[0] == ends[1]:
+            yield (
+                ("function", "of"),
+                f"has the value {ends[0]:g} at both ends, so that the output has no range",
+            )
+        if self.x is not None and self.x[0] == self.x[1]:
+            yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
+        if self.positions > _FIXED and not self.fit:
+            yield (
+                ("function", "positions"),
+                f"{self.positions} precision points leave no four-bar with given start angles: "
+                'use 3, or fit = "least squares"',
+            )
+
+    def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        count = len(self.pairs)
+        if self.fit and not self.starts_fixed:
+            yield ("function", "input"), "is missing: a fit needs the start angles of both links"
+        if count < _FIXED:
+            yield ("function", "pairs"), f"{count} given: give three or more"
+        fixed = self.starts_fixed
+        most = _FIXED if fixed else _MOST
+        if count > most and not self.fit:
+            yield (
+                ("function", "pairs"),
+                f"{count} pairs leave no four-bar in general: keep {most}, or write "
+                'fit = "least squares"',
+            )
+        for k, one in enumerate(self.pairs):
+            for j in range(k):
+                if one[0] == self.pairs[j][0]:
+                    yield (
+                        ("function", "pairs", k),
+                        f"has the input {one[0]:g} of pair {j + 1}: leave one out",
+                    )
+        for key, place in (("input", 0), ("output", 1)):
+            ends = getattr(self, key)
+            if (ends is None) != (not fixed):
+                yield ("function", key), "is missing: fix both start angles, or none"
+            elif ends is not None and count:
+                span = self.pairs[-1][place] - self.pairs[0][place]
+                if not math.isclose(ends[1] - ends[0], span, rel_tol=1e-9, abs_tol=1e-9):
+                    yield (
+                        ("function", key),
+                        f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}",
+                    )
+
+    @property
+    def starts_fixed(self) -> bool:
+        """Whether the start angles are given."""
+        return self.input is not None or self.output is not None
+
+    def precision_points(self) -> tuple[Array, Array]:
+        """Inputs and outputs (K,) of the precision points, in order."""
+        if self.pairs:
+            return self._of_pairs()
+        return self._outputs(self._x(self.positions, self.spacing))
+
+    def dense_points(self) -> tuple[Array, Array]:
+        """Inputs and outputs (K,) over the whole range, or the pairs."""
+        return self._of_pairs() if self.pairs else self._outputs(self._x(_DENSE))
+
+    def formula(self, link: str, output: str) -> str:
+        """The structural error as a formula of the input and output links; "" for pairs."""
+        if self.pairs or self.x is None or self.input is None or self.output is None:
+            return ""
+        (x0, x1), (u0, u1), (v0, v1) = self.x, self.input, self.output
+        variable = f"({x0!r} + ({link} - {u0!r})*{(x1 - x0) / (u1 - u0)!r})"
+        shown = text(self._tree, lambda node: variable if node.name == _VARIABLE else node.name)
+        f0, f1 = map(self._evaluated, self.x)
+        return f"{output} - ({v0!r} + ({shown} - {f0!r})*{(v1 - v0) / (f1 - f0)!r})"
+
+    def _of_pairs(self) -> tuple[Array, Array]:
+        inputs, outputs = np.array(self.pairs, dtype=float).T
+        if self.input is not None and self.output is not None:
+            inputs = inputs - inputs[0] + self.input[0]
+            outputs = outputs - outputs[0] + self.output[0]
+        return inputs, outputs
+
+    def _outputs(self, x: Array) -> tuple[Array, Array]:
+        """Inputs and outputs at numbers x, by the linear scales of the ranges."""
+        assert self.x is not None
+        assert self.input is not None
+        assert self.output is not None
+        f = np.array([self._evaluated(number) for number in x])
+        f0, f1 = (self._evaluated(number) for number in self.x)
+        (x0, x1), (u0, u1), (v0, v1) = self.x, self.input, self.output
+        return (
+            u0 + (x - x0) * ((u1 - u0) / (x1 - x0)),
+            v0 + (f - f0) * ((v1 - v0) / (f1 - f0)),
+        )
+
+    def _x(self, count: int, spacing: str = "even") -> Array:
+        assert self.x is not None
+        start, stop = self.x
+        if spacing == "even":
+            return np.linspace(start, stop, count)
+        # eq. (147)
+        k = np.arange(1, count + 1)
+        share = 0.5 - 0.5 * np.cos((2 * k - 1) * np.pi / (2 * count))
+        return np.asarray(start + share * (stop - start))
+
+    @property
+    def _tree(self) -> Node:
+        tree = parse(self.of)
+        for node in names_in(tree):
+            if node.name not in (_VARIABLE, "pi", "e"):
+                message = f'column {node.column}: the variable is "x", got {as_told(node.spelling)}'
+                raise ExpressionError(message, self.of, node.column)
+        return tree
+
+    def _evaluated(self, x: float) -> float:
+        # functions of x are those of mathematics: radians
+        return value(self._tree, {_VARIABLE: float(x)}, AngleUnit.RADIAN, self.of)

@@ -1,0 +1,302 @@
+"""Function generation: all loops whose output follows given pairs, or fits a function best."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.design.synthesis.burmester import sampled_dyads
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.closed_forms import solve_with_bound
+from linkwork.design.synthesis.driven_loop import cross
+from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
+from linkwork.design.synthesis.dyads import solve_five_poses
+from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.function_fit import (
+    least_squares_fit,
+    minimax_fit,
+    rocker_errors,
+    slider_errors,
+)
+from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.task import Task
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+
+__all__ = ["freudenstein", "solve_function"]
+
+_LOSS = 16.0 * UNIT_ROUNDOFF  # of angles, their sines, and sums of few of them
+_SMALL = 0.05  # relative errors up to which a quotient's error is at most 1.1 times its first order
+_STARTS = 24  # start angles in each direction, where two are free
+_TRIVIAL = 1e-6  # relative: both moving pivots at the fixed ones move in every function
+_FIVE, _FOUR = 5, 4
+
+
+def solve_function(task: Task) -> Found:
+    """All designs, or a sample of the family, for a function task."""
+    goal = task.function
+    assert goal is not None, "a task of functions has one"
+    slides = task.mechanisms[0] == "slider-crank"
+    if goal.fit:
+        return _fitted(task, goal, slides)
+    inputs, outputs = goal.precision_points()
+    u = np.array([inputs * task.angle.radians])
+    v = np.array([outputs * (1.0 if slides else task.angle.radians)])
+    if goal.starts_fixed:
+        made, determined = _through_three(u, v, slides)
+        zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
+        return _found(task, made, complete=1 if determined.all() else -1, zero=zero)
+    u, v = u - u[:, :1], v - v[:, :1]
+    if u.shape[1] == _FIVE:
+        return _through_five(task, u, v, slides)
+    if u.shape[1] == _FOUR:
+        return _through_four(task, u, v, slides)
+    # half a turn more is a negative length
+    grid = np.linspace(0.0, np.pi, _STARTS, endpoint=False)
+    first, second = (x.ravel() for x in np.meshgrid(grid, grid))
+    if slides:
+        # displacements may begin anywhere within twice their range
+        second = (second * (2.0 / np.pi) - 1.0) * 2.0 * np.ptp(v)
+    made, _ = _through_three(u + first[:, None], v + second[:, None], slides)
+    return _found(task, made, complete=0)
+
+
+def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
+    """K of cos(φ - ψ) = K1 cos ψ - K2 cos φ + K3, (B, 3), with bounds of the errors, eq. (149).
+
+    Parameters
+    ----------
+    u, v : (B, 3)
+        Angles φ of the crank and ψ of the rocker, both from the line of the ground [rad].
+
+    Returns
+    -------
+    (B, 3), (B, 3)
+        K1 = d/a, K2 = d/b, K3 = (a² + b² - c² + d²)/(2ab); a negative length points the other way.
+
+    References
+    ----------
+    F. Freudenstein: Approximate synthesis of four-bar linkages. Transactions of the ASME 77 (1955)
+    """
+    # eq. (149)
+    matrix = np.stack([np.cos(v), -np.cos(u), np.ones_like(u)], axis=-1)
+    doubt = _LOSS * (1.0 + np.abs(u).max(axis=1) + np.abs(v).max(axis=1))
+    return solve_with_bound(matrix, np.cos(u - v), doubt)
+
+
+def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], BoolArray]:
+    """Loops with given start angles, for B functions (B, 3), and which of these determine one, if
+    only in complex numbers.
+    """
+    if slides:
+        # eq. (150)
+        matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
+        far = 1.0 + np.abs(v).max(axis=1) ** 2
+        k, error = solve_with_bound(matrix, v**2, _LOSS * far * (1.0 + np.abs(u).max(axis=1)))
+        with np.errstate(all="ignore"):
+            a, e = k[:, 0], k[:, 1] / k[:, 0]
+            square = k[:, 2] + a**2 + e**2
+            doubt = 1.1 * error[:, 0] * (1.0 + np.abs(e)) / np.abs(a)
+        determined = error[:, 0] < _SMALL * np.abs(k[:, 0])
+        good = (square > 0) & determined
+        return _sliders(u[good], v[good], a[good], e[good], doubt[good]), determined
+    k, error = freudenstein(u, v)
+    with np.errstate(all="ignore"):
+        a, b = 1.0 / k[:, 0], 1.0 / k[:, 1]
+        square = a**2 + b**2 + 1.0 - 2.0 * a * b * k[:, 2]
+        doubt = 1.1 * error[:, 0] * np.maximum(a**2, b**2)
+    determined = np.asarray((error[:, :2] < _SMALL * np.abs(k[:, :2])).all(axis=1))
+    good = (square > 0) & determined
+    return _rockers(u[good], v[good], a[good], b[good], doubt[good]), determined
+
+
+def _rockers(u: Array, v: Array, a: Array, b: Array, error: Array) -> list[Candidates]:
+    if not len(u):
+        return []
+    moving = a[:, None] * np.exp(1j * u)
+    return [
+        Candidates(
+            kind=LoopKind.FOUR_BAR,
+            fixed_a=np.zeros(len(u), dtype=complex),
+            fixed_b=np.ones(len(u), dtype=complex),
+            direction=np.zeros(len(u), dtype=complex),
+            moving_a=moving,
+            moving_b=1.0 + b[:, None] * np.exp(1j * v),
+            guided=moving,
+            error=error,
+            miss=np.zeros(len(u)),
+        )
+    ]
+
+
+def _sliders(u: Array, v: Array, a: Array, e: Array, error: Array) -> list[Candidates]:
+    if not len(u):
+        return []
+    moving = a[:, None] * np.exp(1j * u)
+    return [
+        Candidates(
+            kind=LoopKind.SLIDER_CRANK,
+            fixed_a=np.zeros(len(u), dtype=complex),
+            fixed_b=np.asarray(1j * e, dtype=np.complex128),
+            direction=np.ones(len(u), dtype=complex),
+            moving_a=moving,
+            moving_b=v + 1j * e[:, None],
+            guided=moving,
+            error=error,
+            miss=np.zeros(len(u)),
+        )
+    ]
+
+
+def _relative_poses(u: Array, v: Array, slides: bool) -> tuple[ComplexArray, Array]:
+    """The output link as the crank's link sees it, (B, N) complex and (B, N) [rad].
+
+    A dyad of these poses is the coupler: its fixed pivot is A in the crank's frame, its moving
+    pivot B in the output's frame.
+    """
+    if slides:
+        return np.asarray(np.exp(-1j * u) * v), -u
+    return np.asarray(np.exp(-1j * u)), v - u
+
+
+def _coupled(dyads: DyadSet, u: Array, v: Array, slides: bool) -> list[Candidates]:
+    """Loops from the dyads of relative poses, without the trivial one."""
+    size = 1.0 if not slides else float(np.abs(v).max())
+    real = (dyads.kind == 0) & (np.abs(dyads.fixed) > _TRIVIAL * size)
+    real &= slides | (np.abs(dyads.moving) > _TRIVIAL * size)
+    some = dyads.take(real)
+    phi, out = u[some.task], v[some.task]
+    if slides:
+        a, e = np.abs(some.fixed), some.moving.imag
+        made = _sliders(phi + np.angle(some.fixed)[:, None], out + some.moving.real[:, None], a, e,
+                        some.error)  # fmt: skip
+    else:
+        made = _rockers(
+            phi + np.angle(some.fixed)[:, None],
+            out + np.angle(some.moving)[:, None],
+            np.abs(some.fixed),
+            np.abs(some.moving),
+            some.error,
+        )
+    return made
+
+
+def _through_five(task: Task, u: Array, v: Array, slides: bool) -> Found:
+    points, angles = _relative_poses(u, v, slides)
+    solved = solve_five_poses(points, angles)
+    poses = PoseSet(points=points, turns=np.exp(1j * angles))
+    made = _coupled(DyadSet.of_solutions(solved, poses), u, v, slides)
+    return _found(task, made, complete=3 if bool(solved.complete[0]) else -3)
+
+
+def _through_four(task: Task, u: Array, v: Array, slides: bool) -> Found:
+    points, angles = _relative_poses(u, v, slides)
+    dyads = sampled_dyads(points[0], angles[0])
+    return _found(task, _coupled(dyads, u, v, slides), complete=0)
+
+
+def _fitted(task: Task, goal: FunctionGoal, slides: bool) -> Found:
+    """The best fits over the whole range, from precision points as starts."""
+    inputs, outputs = goal.dense_points()
+    u = inputs * task.angle.radians
+    v = outputs * (1.0 if slides else task.angle.radians)
+    made: list[Candidates] = []
+    best, levelled = np.inf, False
+    for start, side in _starts(u, v, slides):
+        errors = (slider_errors if slides else rocker_errors)(u, v, side)
+        if not np.isfinite(errors(start)[0]).all():
+            continue
+        lengths = least_squares_fit(errors, start)
+        level = False
+        if goal.fit == "minimax":
+            lengths, level = minimax_fit(errors, lengths)
+        wrong = errors(lengths)[0]
+        size = float(np.abs(wrong).max() if goal.fit == "minimax" else wrong @ wrong)
+        # another start that ends at the same fit is not another design
+        if size >= best * (1.0 - 1e-9):
+            continue
+        best, levelled = size, level
+        made = _fit_design(u, v + wrong, lengths, slides, float(np.abs(wrong).max()))
+    found = _found(task, made, complete=0, zero=(float(u[0]), 0.0 if slides else float(v[0])))
+    if not levelled:
+        return found
+    message = "the best minimax fit found: equal errors of alternating sign, a local minimum"
+    return replace(found, message=message)
+
+
+def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
+    """Lengths and sides of the loops through three points of the range."""
+    for share in (0.067, 0.15, 0.25, 0.0):
+        places = np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)
+        index = places.round().astype(int)
+        for made in _through_three(u[None, index], v[None, index], slides)[0]:
+            crank = made.moving_a[:, 0] * np.exp(-1j * u[index[0]])
+            coupler = np.abs(made.moving_b[0, 0] - made.moving_a[0, 0])
+            if slides:
+                yield (
+                    np.array([crank[0].real, made.fixed_b[0].imag, coupler]),
+                    float(np.sign((made.moving_b[0, 0] - made.moving_a[0, 0]).real)),
+                )
+                continue
+            rocker = made.moving_b[:, 0] - made.fixed_b
+            side = cross(made.moving_b[:, 0] - made.moving_a[:, 0], rocker)
+            signed = (rocker * np.exp(-1j * v[index[0]]))[0].real
+            yield np.array([crank[0].real, signed, coupler]), float(np.sign(side[0]))
+
+
+def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -> list[Candidates]:
+    a, second, _ = (np.array([x]) for x in lengths)
+    # the loop closes to rounding at every point, whatever its structural error
+    error = np.array([_LOSS * (1.0 + np.abs(lengths).max()) * (1.0 + np.abs(u).max())])
+    make = _sliders if slides else _rockers
+    made = make(u[None], v[None], a, second, error)
+    for design in made:
+        design.miss[:] = miss
+    return made
+
+
+def _found(
+    task: Task, made: list[Candidates], complete: int, zero: tuple[float, float] | None = None
+) -> Found:
+    """Scaled to the ground that the task gives; ``complete``: how many solutions are all of them,
+    negative if this is not proved, 0 for a sample.
+    """
+    made = [_grounded(part, task) for part in made]
+    real = sum(map(len, made))
+    proved = sum(int(np.isfinite(part.error).sum()) for part in made)
+    slides = task.mechanisms[0] == "slider-crank"
+    grade, message = Completeness.SAMPLED, "a sample: these conditions leave a family of mechanisms"
+    if complete > 0:
+        grade = Completeness.PROVED
+        message = "all solutions: the equations have no others"
+    elif complete < 0:
+        grade = Completeness.NOT_PROVED
+        message = "not proved: to rounding, the equations are singular"
+    goal = task.function
+    if goal is not None and goal.fit:
+        message = f"the best {goal.fit} fit that was found; others may be better"
+    return Found(
+        candidates=tuple(made),
+        complex=abs(complete) or real,
+        real=real,
+        proved=proved,
+        completeness=grade,
+        message=message,
+        drives=(Drive.A0,),
+        zero=zero,
+        output="slide" if slides else "rocker",
+    )
+
+
+def _grounded(made: Candidates, task: Task) -> Candidates:
+    """With the fixed pivots where the task gives them."""
+    pivots = [complex(*pivot) for pivot in task.given.fixed_pivots]
+    if not pivots:
+        return made
+    factor = pivots[1] - pivots[0] if len(pivots) > 1 else 1.0
+    if made.kind is LoopKind.SLIDER_CRANK:
+        factor = 1.0
+    return made.moved(pivots[0], factor)

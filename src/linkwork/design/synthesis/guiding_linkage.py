@@ -1,0 +1,167 @@
+"""A design as the description of an ordinary mechanism, in file units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.driven_loop import dot
+from linkwork.design.synthesis.task import Task
+from linkwork.foundation.angles import FULL_TURN, AngleUnit
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.driven_input import Input
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.slider import Slider
+
+__all__ = ["Design", "linkage_of"]
+
+_STEP = math.pi / 180.0  # of an angle [rad]
+_STEPS = 100  # of a displacement
+_SAME_TURN = 1e-12  # relative: the rounding of a few angles
+_GUIDE = "slide"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """One design at its first position, with its driven range.
+
+    Parameters
+    ----------
+    kind : LoopKind
+    drive : Drive
+    points : Mapping[str, complex]
+        A0, B0, A, B, P of a four-bar; A0, S, T, A, B, P of a slider-crank, with S, T on the line of
+        the slider, S where its displacement is zero [length].
+    inputs : tuple of float
+        The input at the positions, unwrapped [rad or length].
+    start, stop : float
+        The driven range [rad or length].
+    backward : tuple of Drive
+        Links whose angle is measured from the moving pivot to the fixed one.
+    """
+
+    kind: LoopKind
+    drive: Drive
+    points: dict[str, complex]
+    inputs: tuple[float, ...]
+    start: float
+    stop: float
+    backward: tuple[Drive, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        given: Candidates,
+        k: int,
+        drive: Drive,
+        inputs: Array,
+        ends: Array,
+        zero: tuple[float, float] | None = None,
+    ) -> Design:
+        """The k-th of some designs.
+
+        ``inputs`` (N,), ``ends`` (2,): at the positions, and of the driven range; ``zero``: the
+        angles of crank and rocker at the first position as a task measures them, opposite to the
+        links where a length is negative [rad].
+        """
+        points = {
+            "A0": given.fixed_a[k],
+            "B0": given.fixed_b[k],
+            "A": given.moving_a[k, 0],
+            "B": given.moving_b[k, 0],
+            "P": given.guided[k, 0],
+        }
+        backward = []
+        if zero is not None:
+            sides = (Drive.A0, "A", "A0", zero[0]), (Drive.B0, "B", "B0", zero[1])
+            pinned = sides[:1] if given.kind is LoopKind.SLIDER_CRANK else sides
+            for side, moving, fixed, angle in pinned:
+                if ((points[moving] - points[fixed]) * np.exp(-1j * angle)).real < 0:
+                    backward.append(side)
+        if given.kind is LoopKind.SLIDER_CRANK:
+            line, direction = points.pop("B0"), given.direction[k]
+            along = dot(direction, given.moving_b[k] - line)
+            reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
+            points |= {"S": line, "T": line + reach * direction}
+        if drive is not Drive.SLIDER:
+            # measured as the file measures it, and in the first turn to begin with
+            shift = np.pi if drive in backward else 0.0
+            shift -= 2.0 * np.pi * np.floor((ends[0] + shift) / (2.0 * np.pi) + _SAME_TURN)
+            inputs, ends = inputs + shift, ends + shift
+        return cls(
+            kind=given.kind,
+            drive=drive,
+            points={name: complex(point) for name, point in points.items()},
+            inputs=tuple(inputs.tolist()),
+            start=float(ends[0]),
+            stop=float(ends[1]),
+            backward=tuple(backward),
+        )
+
+
+def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linkage:
+    """The description of a design for a task; the driven link is the crank.
+
+    ``output``: the name of the output of a function, whose structural error is an output of the
+    mechanism.
+    """
+    z = design.points
+    crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
+    if design.drive is Drive.B0:
+        crank, rocker = rocker, crank
+    guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
+    coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
+    bars = [crank, *combinations(coupler, 2)]
+    links: dict[str, tuple[str, ...]] = {
+        GROUND: ("A0", "B0"),
+        "crank": crank,
+        "coupler": coupler,
+        "rocker": rocker,
+    }
+    sliders: tuple[Slider, ...] = ()
+    if design.kind is LoopKind.FOUR_BAR:
+        bars.append(rocker)
+    else:
+        del links["rocker"]
+        links |= {GROUND: ("A0", "S", "T"), "block": ("B",)}
+        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),)
+    formula = ""
+    if output and task.function is not None and design.drive is Drive.A0:
+        formula = task.function.formula("crank", _GUIDE if sliders else output)
+    return Linkage(
+        name=name,
+        purpose=task.purpose,
+        length=task.length,
+        angle=task.angle,
+        points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
+        links=links,
+        lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
+        sliders=sliders,
+        inputs=(_input(design, task.angle),),
+        trace=(guided,),
+        outputs={"structural_error": formula} if formula else {},
+    )
+
+
+def _bar(design: Design, side: Drive) -> tuple[str, str]:
+    """The ends of a link, in the direction in which its angle is measured."""
+    fixed, moving = ("A0", "A") if side is Drive.A0 else ("B0", "B")
+    return (moving, fixed) if side in design.backward else (fixed, moving)
+
+
+def _input(design: Design, angle: AngleUnit) -> Input:
+    span = design.stop - design.start
+    if design.drive is Drive.SLIDER:
+        step = span / _STEPS
+        return Input(slider=_GUIDE, start=design.start, stop=design.stop, step=step)
+    start, stop = angle.from_radians(design.start), angle.from_radians(design.stop)
+    count = max(1, math.ceil(abs(span) / _STEP - _SAME_TURN))
+    if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):
+        stop = start + math.copysign(angle.turn, span)
+    # so many equal steps that the last row is the last position
+    return Input(link="crank", start=start, stop=stop, step=(stop - start) / count)

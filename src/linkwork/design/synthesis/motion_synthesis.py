@@ -1,0 +1,242 @@
+"""Motion generation: four-bars and slider-cranks whose coupler passes through poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.design.synthesis.burmester import (
+    CentrePoints,
+    centre_points,
+    sampled_dyads,
+    sliding_dyad,
+)
+from linkwork.design.synthesis.candidates import Candidates, Drive
+from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet, pair_dyads
+from linkwork.design.synthesis.dyads import FIVE, Refusal, solve_five_poses
+from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.pose_families import (
+    on_lines,
+    spread_pivots,
+    through_fixed,
+    through_line,
+    through_moving,
+    timed_dyads,
+)
+from linkwork.design.synthesis.pose_tolerance import near_tasks, with_misses
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import MechanismError, Problem
+
+__all__ = ["poses_of", "solve_motion"]
+
+_PIVOTS = {2: 12, 3: 60}  # of a family through so many poses; two leave further freedom
+_ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centre-point curve
+_CURVE_SAMPLES = 400
+_MOST_PARALLEL = 4  # three parallel poses still have parallelograms
+_PARALLEL = 1e-12  # angles that differ by less are equal to rounding
+
+
+def poses_of(task: Task) -> tuple[ComplexArray, Array]:
+    """The poses of a task, (N,) complex [length] and (N,) [rad]."""
+    points = np.array([complex(*position.point) for position in task.positions])
+    angles = np.array([position.angle or 0.0 for position in task.positions])
+    return points, angles * task.angle.radians
+
+
+def solve_motion(task: Task, wishes: Wishes) -> Found:
+    """All designs through five poses, or a sample of the family through fewer."""
+    points, angles = poses_of(task)
+    _check_motion(task, points, angles)
+    if len(points) >= FIVE:
+        return _through_five(task, points, angles)
+    family = _family(task, wishes, points, angles)
+    dyads = family.dyads
+    poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
+    made = _wanted(task, pair_dyads(dyads, poses, family.leading))
+    return Found(
+        candidates=tuple(made),
+        complex=len(dyads),
+        real=len(dyads),
+        proved=int((dyads.refusal == Refusal.NONE.code).sum()),
+        completeness=Completeness.SAMPLED,
+        message=family.message,
+        dyads=dyads,
+        drives=(Drive.A0,) if family.timed else tuple(Drive),
+    )
+
+
+def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
+    """Refuse poses for which one joint is enough, and no linkage is determined.
+
+    Raises
+    ------
+    MechanismError
+    """
+    turns = np.exp(1j * (angles - angles[0]))
+    # the pole of the first pose and the one turned most from it
+    k = int(np.abs(turns - 1.0).argmax())
+    if abs(turns[k] - 1.0) < _PARALLEL:
+        if len(points) >= _MOST_PARALLEL:
+            raise _refused(
+                task,
+                "positions",
+                "all have the same angle: the body only translates, and two guides (a PP dyad) "
+                "carry it through any such poses; no dyad with a pivot is determined",
+            )
+        return
+    if len(points) == 2 and points[0] != points[1]:
+        return
+    # not -0
+    pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
+    size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
+    if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size:
+        raise _refused(
+            task,
+            "positions",
+            f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
+            "carries the body, and no linkage is determined",
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Family:
+    """Dyads, of which the first ``leading`` are the cranks if that is not 0."""
+
+    dyads: DyadSet
+    message: str
+    leading: int = 0
+    timed: bool = False
+
+
+def _wanted(task: Task, made: list[Candidates]) -> list[Candidates]:
+    """The kinds of mechanisms that the task names."""
+    return [part for part in made if part.kind.value in task.mechanisms]
+
+
+def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
+    tasks = near_tasks(task, points, angles)
+    solved = solve_five_poses(tasks.points, tasks.angles)
+    chosen = PoseSet(points=tasks.points, turns=np.exp(1j * tasks.angles))
+    dyads = DyadSet.of_solutions(solved, chosen)
+    made = []
+    for part in _wanted(task, pair_dyads(dyads, chosen)):
+        kept = with_misses(task, points, angles, part)
+        made += [] if kept is None else [kept]
+    own = dyads.take(dyads.task == 0)
+    first = solved.refusal[0]
+    if (first == Refusal.FAMILY.code).all():
+        grade, message = Completeness.CONTINUUM, Refusal.FAMILY.value
+    elif not tasks.is_exact:
+        grade = Completeness.SAMPLED
+        message = f"a sample of {len(tasks.points)} tasks within the tolerances"
+    elif bool(solved.complete[0]):
+        grade = Completeness.PROVED
+        message = "all dyads: four different solutions are proved, and there are no more"
+    else:
+        grade, message = Completeness.NOT_PROVED, Refusal.COINCIDENT.value
+    return Found(
+        candidates=tuple(made),
+        complex=solved.x.shape[1],
+        real=len(own),
+        proved=int((own.refusal == Refusal.NONE.code).sum()),
+        completeness=grade,
+        message=message,
+        dyads=own,
+    )
+
+
+def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> _Family:
+    """Dyads through four, three or two poses, those of given pivots first."""
+    turns = np.exp(1j * angles)
+    fixed = np.array([complex(*pivot) for pivot in task.given.fixed_pivots])
+    moving = np.array([complex(*pivot) for pivot in task.given.moving_pivots])
+    moving = (moving - points[0]) * turns[0].conj() if moving.size else moving
+    count = len(points)
+    if count == 4:
+        return _through_four(task, fixed, moving, points, angles)
+    spread = spread_pivots(points, wishes, _PIVOTS[count])
+    free = [through_fixed(spread, points, turns), _guided(points, turns, spread)]
+    if task.positions[0].input is not None:
+        inputs = np.array([position.input or 0.0 for position in task.positions])
+        pivots = fixed[:1] if fixed.size else spread
+        cranks = timed_dyads(pivots, points, turns, inputs * task.angle.radians)
+        own = [through_fixed(fixed[1:], points, turns)] if len(fixed) > 1 else free
+        return _Family(
+            dyads=DyadSet.joined([cranks, *own]),
+            leading=len(cranks),
+            timed=True,
+            message="a sample: the crank turns by the given angles, the other link is free",
+        )
+    given = [through_fixed(fixed, points, turns)] if fixed.size else []
+    given += [through_moving(moving, points, turns)] if moving.size else []
+    pivots_given = len(fixed) + len(moving)
+    if pivots_given == 2 and count == 3:
+        return _Family(dyads=DyadSet.joined(given), message="the one four-bar with these pivots")
+    return _Family(
+        dyads=DyadSet.joined([*given, *free]) if pivots_given < 2 else DyadSet.joined(given),
+        leading=sum(map(len, given)) if pivots_given == 1 else 0,
+        message=f"a sample of the family through {count} poses",
+    )
+
+
+def _guided(points: ComplexArray, turns: ComplexArray, spread: ComplexArray) -> DyadSet:
+    """PR dyads: for three poses one for each direction, for two poses one for each pivot."""
+    if len(points) == 2:
+        return through_line((spread - points[0]) * turns[0].conj(), points, turns)
+    directions = np.linspace(0.0, np.pi, len(spread), endpoint=False)
+    return on_lines(np.exp(1j * directions), points, turns)
+
+
+def _through_four(
+    task: Task, fixed: ComplexArray, moving: ComplexArray, points: ComplexArray, angles: Array
+) -> _Family:
+    if moving.size:
+        raise _refused(
+            task,
+            "given",
+            "moving pivots cannot be chosen with four poses: the circle-point curve decides; give "
+            "fixed pivots on the centre-point curve, or leave out a pose",
+            "moving_pivots",
+        )
+    curve = centre_points(points, angles)
+    dyads = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
+    if fixed.size and curve is not None:
+        _check_on_curve(task, fixed, curve, points)
+        dyads.insert(0, through_fixed(fixed, points[:3], np.exp(1j * angles[:3])))
+    arcs = () if curve is None else curve.arcs
+    proved = "proved" if curve is not None and all(arc.proved for arc in arcs) else "unproved"
+    return _Family(
+        dyads=DyadSet.joined(dyads[:1] if len(fixed) > 1 else dyads),
+        leading=len(dyads[0]) if len(fixed) == 1 else 0,
+        message=f"a sample of dyads along the centre-point curve: {len(arcs)} {proved} "
+        f"arc{'' if len(arcs) == 1 else 's'}",
+    )
+
+
+def _check_on_curve(
+    task: Task, fixed: ComplexArray, curve: CentrePoints, points: ComplexArray
+) -> None:
+    """Refuse given pivots that are not on the centre-point curve, and name the nearest point."""
+    size = float(np.abs(points - points.mean()).max())
+    for k, pivot in enumerate(fixed):
+        near = curve.points(np.angle([pivot - curve.pole]))[0]
+        if (np.abs(near - pivot) < _ON_CURVE * size).any():
+            continue
+        sampled = curve.points(np.linspace(0.0, np.pi, _CURVE_SAMPLES)).ravel()
+        best = sampled[np.nanargmin(np.abs(sampled - pivot))]
+        raise _refused(
+            task,
+            "given",
+            "is not on the centre-point curve of the four poses; the nearest point of it is about "
+            f"[{best.real:.6g}, {best.imag:.6g}]",
+            "fixed_pivots",
+            k,
+        )
+
+
+def _refused(task: Task, table: str, message: str, *key: str | int) -> MechanismError:
+    return MechanismError([Problem(key=(table, *key), message=message)], f'task "{task.name}"')

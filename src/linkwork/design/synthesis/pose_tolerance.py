@@ -1,0 +1,112 @@
+"""Poses with tolerances: exact tasks near the wanted one, and how far their designs miss it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Candidates, LoopKind
+from linkwork.design.synthesis.dyads import FIVE
+from linkwork.design.synthesis.task import Task
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+
+__all__ = ["NearTasks", "near_tasks", "with_misses"]
+
+_SAMPLES = 400
+_SEED = 1
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NearTasks:
+    """Five exact poses each of T tasks, (T, 5), and whether they are the wanted poses."""
+
+    points: ComplexArray
+    angles: Array
+    is_exact: bool
+
+
+def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
+    """The wanted poses, and with tolerances a sample of others within them.
+
+    Of more than five poses each task takes five: the first, all exact ones, and a random choice.
+    """
+    reach = np.array([position.tolerance for position in task.positions])
+    swing = np.array([position.angle_tolerance for position in task.positions])
+    swing = swing * task.angle.radians
+    count = len(points)
+    if count == FIVE and not (reach.any() or swing.any()):
+        return NearTasks(points=points[None], angles=angles[None], is_exact=True)
+    rng = np.random.default_rng(_SEED)
+    shape = (_SAMPLES, count)
+    # evenly in discs; the first task is the wanted one
+    radius, direction = np.sqrt(rng.random(shape)), rng.uniform(0.0, 2.0 * np.pi, shape)
+    shift, turn = radius * np.exp(1j * direction), rng.uniform(-1.0, 1.0, shape)
+    shift[0], turn[0] = 0.0, 0.0
+    index = _choices(rng, (reach == 0) & (swing == 0), count)
+    rows = np.arange(_SAMPLES)[:, None]
+    if count > FIVE:
+        # the others are compared at the wanted angle of the first
+        turn[:] = 0.0
+    return NearTasks(
+        points=(points + reach * shift)[rows, index],
+        angles=(angles + swing * turn)[rows, index],
+        is_exact=False,
+    )
+
+
+def _choices(rng: np.random.Generator, exact: Array, count: int) -> IndexArray:
+    """Five poses for every task, in their order, (T, 5)."""
+    order = rng.random((_SAMPLES, count))
+    order[:, exact] -= 1.0
+    order[:, 0] = -2.0
+    return np.sort(np.argsort(order, axis=1)[:, :FIVE], axis=1)
+
+
+def with_misses(
+    task: Task, points: ComplexArray, angles: Array, given: Candidates
+) -> Candidates | None:
+    """Designs at all wanted poses, and how far their points miss them; none beyond tolerance.
+
+    Designs of five poses of more are placed at the wanted angles of the others: there the misses of
+    their points are compared, for the better of both positions that have this angle.
+    """
+    if len(points) > FIVE:
+        given = _at_all(given, points, angles)
+    if not len(given):
+        return None
+    missed = np.abs(given.guided - points)
+    reach = np.array([position.tolerance for position in task.positions])
+    # a pose that is met exactly is met to rounding
+    within = (missed <= reach + given.error[:, None]).all(axis=1)
+    kept = replace(given, miss=missed.max(axis=1)).take(np.flatnonzero(within))
+    return kept if len(kept) else None
+
+
+def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidates:
+    """Designs whose first position is the first pose, at the angles of all poses."""
+    turns = np.exp(1j * (angles - angles[0]))
+    coupler = (given.moving_b[:, :1] - given.moving_a[:, :1]) * turns
+    arm = (given.guided[:, :1] - given.moving_a[:, :1]) * turns
+    crank = np.abs(given.moving_a[:, :1] - given.fixed_a[:, None])
+    # A is on its circle, and B on its circle or line moved back by the coupler
+    centre = given.fixed_b[:, None] - coupler
+    with np.errstate(invalid="ignore"):
+        if given.kind is LoopKind.FOUR_BAR:
+            rocker = np.abs(given.moving_b[:, :1] - given.fixed_b[:, None])
+            base = centre - given.fixed_a[:, None]
+            square = np.abs(base) ** 2
+            along = 0.5 * (square + crank**2 - rocker**2)
+            across = np.sqrt(square * crank**2 - along**2)
+            ways = [base * (along + 1j * s * across) / square for s in (1.0, -1.0)]
+        else:
+            u = given.direction[:, None]
+            away = (centre - given.fixed_a[:, None]) * np.conj(u)
+            reach = np.sqrt(crank**2 - away.imag**2)
+            ways = [(s * reach + 1j * away.imag) * u for s in (1.0, -1.0)]
+    pivots = [given.fixed_a[:, None] + way for way in ways]
+    misses = [np.nan_to_num(np.abs(a + arm - points), nan=np.inf) for a in pivots]
+    a = np.where(misses[0] <= misses[1], *pivots)
+    closes = np.isfinite(a).all(axis=1)
+    made = replace(given, moving_a=a, moving_b=a + coupler, guided=a + arm)
+    return made.take(np.flatnonzero(closes))

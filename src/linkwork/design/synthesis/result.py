@@ -1,0 +1,306 @@
+"""The result of a synthesis: counts, dyads, delivered and refused designs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Candidates, Drive
+from linkwork.design.synthesis.defect_messages import Defect, defects_of
+from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
+from linkwork.foundation.completeness import Completeness
+from linkwork.mechanism.linkage import Linkage
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+from linkwork.results.summary import Summary
+
+__all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
+
+#: Defects that are wishes of the task, not properties of its positions.
+_WISHES = {
+    DefectKind.ORDER: "the order as given",
+    DefectKind.RANGE: "the driven range",
+    DefectKind.TRANSMISSION: "the least transmission angle",
+    DefectKind.PIVOTS: "the region of fixed pivots",
+    DefectKind.LENGTHS: "the bounds of lengths",
+    DefectKind.OBSTACLE: "clear_of",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dyad:
+    """A dyad that carries the body through the poses.
+
+    Parameters
+    ----------
+    kind : str
+        RR, PR or RP: its joints from ground to body.
+    moving : (float, float)
+        The moving pivot in the body's frame, whose origin is the guided point; for RP a point of
+        the body's line [length].
+    fixed : (float, float)
+        The fixed pivot; for PR a point of the fixed line [length].
+    normal : (float, float), optional
+        The unit normal of that line.
+    proved : bool
+    error : float
+        A bound of the errors of both pivots, and of how far a line is missed [length].
+    message : str
+        "proved", or why it is not.
+    """
+
+    kind: str
+    moving: tuple[float, float]
+    fixed: tuple[float, float]
+    normal: tuple[float, float] | None
+    proved: bool
+    error: float
+    message: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "kind": self.kind,
+            "moving": list(self.moving),
+            "fixed": list(self.fixed),
+            "normal": None if self.normal is None else list(self.normal),
+            "proved": self.proved,
+            "error": self.error,
+            "message": self.message,
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JudgedDesigns:
+    """Designs of one kind with one driven link, and the verdicts on them.
+
+    ``zero`` and ``output`` are those of :class:`Found`.
+    """
+
+    task: Task
+    given: Candidates
+    drive: Drive
+    verdicts: Verdicts
+    zero: tuple[float, float] | None
+    output: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SynthesizedDesign:
+    """One design with its verdict.
+
+    Parameters
+    ----------
+    number : int
+        Its rank among the sound designs from 1, or its place among the refused ones.
+    group : JudgedDesigns
+        The designs of its kind.
+    index : int
+        Its place among them.
+    delivered : bool
+        Whether it is sound and among the wanted number of designs.
+    score : float
+        The weighted score of the ranking, 0 to 1.
+    """
+
+    number: int
+    group: JudgedDesigns
+    index: int
+    delivered: bool
+    score: float
+
+    @property
+    def drive(self) -> Drive:
+        """The driven link."""
+        return self.group.drive
+
+    @cached_property
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+        found = self.group.verdicts.found
+        return tuple(kind for kind, wrong in found.items() if wrong[self.index])
+
+    @cached_property
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design."""
+        group = self.group
+        return defects_of(group.task, group.given, group.drive, group.verdicts, self.index)
+
+    @property
+    def transmission(self) -> float:
+        """A lower bound of the transmission angle over the driven range, NaN where that is not
+        defined [file's angle unit].
+        """
+        least = float(self.group.verdicts.transmission[self.index])
+        return self.group.task.angle.from_radians(least)
+
+    @property
+    def size(self) -> float:
+        """The longest link, or the distance of the fixed pivots [length]."""
+        return float(self.group.verdicts.size[self.index])
+
+    @property
+    def error(self) -> float:
+        """How far positions are missed: the largest distance, or the structural error."""
+        miss = float(self.group.given.miss[self.index])
+        is_angle = self.group.output == "rocker"
+        return self.group.task.angle.from_radians(miss) if is_angle else miss
+
+    @cached_property
+    def design(self) -> Design:
+        """Its points at the first position, and its driven range."""
+        group, k = self.group, self.index
+        travel, loops = group.verdicts.travel, group.verdicts.loops
+        inputs = loops.input[k] if self.kinds else travel.place[k] + loops.origin[k]
+        ends = inputs[[0, -1]]
+        if not self.kinds:
+            ends = np.array([travel.first[k], travel.last[k]]) + loops.origin[k]
+        return Design.of(group.given, k, group.drive, inputs, ends, group.zero)
+
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        value = self.design.inputs[0]
+        if self.drive is Drive.SLIDER:
+            return value
+        return self.group.task.angle.from_radians(value)
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The mechanism."""
+        refused = ", refused" if self.kinds else ""
+        name = f"{self.group.task.name}, design {self.number}{refused}"
+        return linkage_of(self.design, self.group.task, name, self.group.output)
+
+    def to_dict(self, file: str | None = None) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "file": file,
+            "mechanism": self.group.given.kind.value,
+            "points": {name: [z.real, z.imag] for name, z in self.design.points.items()},
+            "drive": self.drive.value,
+            "delivered": self.delivered,
+            TRANSMISSION_ANGLE.word: self.transmission,
+            "size": self.size,
+            "error": self.error,
+            "score": self.score,
+            "defects": [
+                {
+                    "kind": defect.kind.name.lower(),
+                    "between": None if defect.between is None else list(defect.between),
+                    "message": defect.message,
+                }
+                for defect in self.defects
+            ],
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Synthesis:
+    """All designs for a task, sound ones first.
+
+    Parameters
+    ----------
+    task : Task
+    complex, real, proved : int
+        Solutions of the equations, those that are real, and those that are proved.
+    triples : int
+        Triples of cognates, for tasks whose solutions are counted so.
+    linkages : int
+        Mechanisms from the real solutions; each may be driven in several ways.
+    completeness : Completeness
+        Whether the real solutions are all there are.
+    message : str
+        The same in words of the task.
+    dyads : tuple of Dyad
+    designs : tuple of SynthesizedDesign
+        Every mechanism with every driven link: sound ones by score, then refused ones.
+    """
+
+    task: Task
+    complex: int
+    real: int
+    proved: int
+    triples: int
+    linkages: int
+    completeness: Completeness
+    message: str
+    dyads: tuple[Dyad, ...]
+    designs: tuple[SynthesizedDesign, ...]
+
+    @property
+    def delivered(self) -> tuple[SynthesizedDesign, ...]:
+        """The sound designs that the task asks for."""
+        return tuple(design for design in self.designs if design.delivered)
+
+    @property
+    def refused(self) -> tuple[SynthesizedDesign, ...]:
+        """The designs with defects."""
+        return tuple(design for design in self.designs if design.kinds)
+
+    @property
+    def sound(self) -> int:
+        """The number of designs without defects, delivered or not."""
+        return len(self.designs) - len(self.refused)
+
+    @property
+    def defects(self) -> dict[DefectKind, int]:
+        """The number of designs with each defect."""
+        counts = Counter(kind for design in self.designs for kind in design.kinds)
+        return {kind: counts[kind] for kind in DefectKind if counts[kind]}
+
+    @property
+    def costliest(self) -> tuple[str, int] | None:
+        """The wish without which most of the refused designs would be sound, and their number."""
+        only = Counter(
+            design.kinds[0]
+            for design in self.designs
+            if len(design.kinds) == 1 and design.kinds[0] in _WISHES
+        )
+        if not only:
+            return None
+        kind, count = only.most_common(1)[0]
+        return _WISHES[kind], count
+
+    def __repr__(self) -> str:
+        rows = [
+            ("solutions", f"{self.complex}: {self.real} real, {self.proved} proved"),
+            ("designs", f"{len(self.designs)} of {self.linkages} mechanisms"),
+            ("delivered", f"{len(self.delivered)} of {self.sound} without defects"),
+            ("completeness", self.message),
+        ]
+        return str(Summary(f"Synthesis of {self.task.name}", tuple(rows)))
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the errors of designs."""
+        turns = any(design.group.output == "rocker" for design in self.designs[:1])
+        return self.task.angle.value if turns else self.task.length
+
+    def to_dict(self, files: Mapping[int, str] | None = None) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON; ``files`` of designs by their place."""
+        named = files or {}
+        cost = self.costliest
+        return {
+            "task": self.task.name,
+            "kind": self.task.kind,
+            "complex": self.complex,
+            "real": self.real,
+            "proved": self.proved,
+            "triples": self.triples,
+            "linkages": self.linkages,
+            "completeness": self.completeness.name,
+            "message": self.message,
+            "delivered": len(self.delivered),
+            "sound": self.sound,
+            "defects": {kind.name.lower(): count for kind, count in self.defects.items()},
+            "costliest": None if cost is None else {"wish": cost[0], "designs": cost[1]},
+            "dyads": [dyad.to_dict() for dyad in self.dyads],
+            "designs": [design.to_dict(named.get(k)) for k, design in enumerate(self.designs)],
+        }

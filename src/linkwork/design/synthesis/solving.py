@@ -1,0 +1,160 @@
+"""From a task to its designs: solve, judge, rank, describe.
+
+:data:`SOLVERS` holds one solver for each kind of task; a further one needs a line there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.dyads import Refusal
+from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.function_synthesis import solve_function
+from linkwork.design.synthesis.motion_synthesis import solve_motion
+from linkwork.design.synthesis.path_synthesis import solve_path
+from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.task import Task, Wanted
+from linkwork.design.synthesis.travel import Range
+from linkwork.design.synthesis.verdicts import judge
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.value_types import check_flags
+
+__all__ = ["SOLVERS", "solve_task", "wishes_of"]
+
+Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
+
+#: The solvers by kind of task.
+SOLVERS: dict[str, Solver] = {
+    "motion": lambda task, wishes, progress: solve_motion(task, wishes),
+    "path": solve_path,
+    "mixed": solve_path,
+    "function": lambda task, wishes, progress: solve_function(task),
+}
+_RIGHT = math.pi / 2.0
+
+
+def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+    """All designs for a task, each with its defects.
+
+    Raises
+    ------
+    InputError
+        If no solver knows the kind of the task, or the task contradicts itself.
+    """
+    check_flags(progress)
+    if task.kind not in SOLVERS:
+        known = ", ".join(SOLVERS)
+        raise InputError(f'task = "{task.kind}" cannot be solved yet: the solvers know {known}')
+    found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
+    judged = [
+        JudgedDesigns(
+            task=task,
+            given=part,
+            drive=drive,
+            verdicts=judge(part, drive, wishes_of(task, drive)),
+            zero=found.zero,
+            output=found.output,
+        )
+        for part in found.candidates
+        for drive in part.drives
+        if drive in found.drives
+    ]
+    return Synthesis(
+        task=task,
+        complex=found.complex,
+        real=found.real,
+        proved=found.proved,
+        triples=found.triples,
+        linkages=sum(map(len, found.candidates)),
+        completeness=found.completeness,
+        message=found.message,
+        dyads=() if found.dyads is None else tuple(_dyads(found)),
+        designs=tuple(_ranked(task, judged)),
+    )
+
+
+def wishes_of(task: Task, drive: Drive) -> Wishes:
+    """The wishes of a task in radians, lengths and complex points, for one driven link."""
+    wanted = task.wanted
+    return Wishes(
+        ordered=wanted.ordered,
+        range=_range(task, wanted, drive),
+        transmission=task.in_radians(wanted.transmission),
+        region=np.array([complex(*corner) for corner in wanted.region]),
+        shortest=wanted.shortest,
+        longest=wanted.longest,
+        ratio=wanted.ratio,
+        obstacles=np.array(wanted.obstacles, dtype=float).reshape(-1, 3),
+    )
+
+
+def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
+    if wanted.turns_fully:
+        return Range(turn=True)
+    if wanted.range is None:
+        return None
+    start, stop = wanted.range
+    if drive is not Drive.SLIDER:
+        start, stop = task.in_radians(start), task.in_radians(stop)
+    return Range(start=start, stop=stop)
+
+
+def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesign]:
+    """Sound designs by falling score, then the others in the order found."""
+    entries = [
+        (not sound, 0.0 if not sound else -float(score), group, k, float(score))
+        for group, part in enumerate(judged)
+        for k, (sound, score) in enumerate(
+            zip(part.verdicts.sound, _scores(task, part), strict=True)
+        )
+    ]
+    entries.sort()
+    numbers = {False: 0, True: 0}
+    for refused, _, group, k, score in entries:
+        numbers[bool(refused)] += 1
+        number = numbers[bool(refused)]
+        yield SynthesizedDesign(
+            number=number,
+            group=judged[group],
+            index=k,
+            delivered=not refused and number <= task.rank.deliver,
+            score=score,
+        )
+
+
+def _scores(task: Task, part: JudgedDesigns) -> Array:
+    """Weighted means of transmission, smallness and exactness, (D,), each from 0 to 1."""
+    rank, verdicts = task.rank, part.verdicts
+    size = _task_size(task)
+    parts = [
+        (rank.transmission, np.nan_to_num(verdicts.transmission) / _RIGHT),
+        (rank.size, size / (size + verdicts.size)),
+        (rank.error, 1.0 / (1.0 + part.given.miss / size)),
+    ]
+    total = sum(weight for weight, _ in parts) or 1.0
+    return np.asarray(sum(weight * score for weight, score in parts) / total)
+
+
+def _task_size(task: Task) -> float:
+    points = np.array([complex(*position.point) for position in task.positions] or [0.0])
+    return float(np.abs(points - points.mean()).max()) or 1.0
+
+
+def _dyads(found: Found) -> Iterator[Dyad]:
+    assert found.dyads is not None
+    for kind, moving, fixed, normal, error, refusal in found.dyads.dyads():
+        yield Dyad(
+            kind=kind,
+            moving=(moving.real, moving.imag),
+            fixed=(fixed.real, fixed.imag),
+            normal=(normal.real, normal.imag) if normal else None,
+            proved=refusal is Refusal.NONE,
+            error=error,
+            message=refusal.value,
+        )

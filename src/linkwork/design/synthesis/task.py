@@ -1,0 +1,287 @@
+"""A task: what a mechanism should do, checked, in file units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.task_keys import KINDS
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.plain_numbers import as_told
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+
+__all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
+
+_MOST_FREE = 4  # poses that leave pivots to choose
+_MOST_TIMED = 3  # poses at which the crank's angle may be given
+_MOST_EXACT = 5  # poses: more leave no four-bar in general
+MECHANISMS = ("four-bar", "slider-crank")
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrecisionPosition:
+    """A position through which the guided body, or its point, passes.
+
+    Parameters
+    ----------
+    point : (float, float)
+        Where the guided point is [length].
+    angle : float, optional
+        The angle of the body: with it, a pose [file's angle unit].
+    input : float, optional
+        The crank's angle at this position, of which differences count [file's angle unit].
+    tolerance, angle_tolerance : float
+        How far point and angle may miss.
+    """
+
+    point: Point
+    angle: float | None = None
+    input: float | None = None
+    tolerance: float = 0.0
+    angle_tolerance: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """Pivots that the author fixes; moving pivots as they are at the first position [length]."""
+
+    fixed_pivots: tuple[Point, ...] = ()
+    moving_pivots: tuple[Point, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """Wishes, each proved over the whole driven range.
+
+    Parameters
+    ----------
+    turns_fully : bool
+        Whether the driven link makes whole turns.
+    range : (float, float), optional
+        The driven range [file's angle unit, or length].
+    transmission : float
+        The smallest transmission angle allowed [file's angle unit].
+    ordered : bool
+        Whether the positions are passed in their order.
+    region : tuple of points
+        Corners of the polygon that contains all fixed pivots [length].
+    shortest, longest, ratio : float
+        Bounds of lengths, and of the longest over the shortest.
+    obstacles : tuple of (x, y, radius)
+        Circles that no link may meet [length].
+    """
+
+    turns_fully: bool = False
+    range: tuple[float, float] | None = None
+    transmission: float = 0.0
+    ordered: bool = True
+    region: tuple[Point, ...] = ()
+    shortest: float = 0.0
+    longest: float = math.inf
+    ratio: float = math.inf
+    obstacles: tuple[tuple[float, float, float], ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ranking:
+    """Weights of the ranking, and the largest number of designs that are delivered."""
+
+    transmission: float = 1.0
+    size: float = 1.0
+    error: float = 1.0
+    deliver: int = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """What a mechanism should do.
+
+    Parameters
+    ----------
+    kind : str
+        motion, path, mixed, function or improve.
+    name : str
+    length : str
+        Unit of lengths.
+    angle : AngleUnit
+    mechanisms : tuple of str
+        The kinds of mechanisms wanted: four-bar, slider-crank.
+    positions : tuple of PrecisionPosition
+        In order of travel.
+    given : Given
+    function : FunctionGoal, optional
+    wanted : Wanted
+    rank : Ranking
+    text : str
+        The text of the file that the task was read from.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found.
+    """
+
+    kind: str
+    name: str = "task"
+    length: str = "mm"
+    angle: AngleUnit = AngleUnit.DEGREE
+    mechanisms: tuple[str, ...] = MECHANISMS
+    positions: tuple[PrecisionPosition, ...] = ()
+    given: Given = field(default_factory=Given)
+    function: FunctionGoal | None = None
+    wanted: Wanted = field(default_factory=Wanted)
+    rank: Ranking = field(default_factory=Ranking)
+    text: str = ""
+
+    def __post_init__(self) -> None:
+        found = [Problem(key=key, message=message) for key, message in self._problems()]
+        if found:
+            raise MechanismError(found, f'task "{self.name}"')
+
+    def _problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        if self.kind not in KINDS:
+            yield ("task",), f"must be one of {', '.join(KINDS)}, got {as_told(self.kind)}"
+        for k, name in enumerate(self.mechanisms):
+            if name not in MECHANISMS and self.kind != "improve":
+                known = " or ".join(f'"{known}"' for known in MECHANISMS)
+                yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
+        if self.kind in ("path", "mixed") and "four-bar" not in self.mechanisms:
+            yield ("mechanism",), 'points are solved for the "four-bar" only'
+        if self.kind == "function":
+            if self.function is None:
+                yield ("function",), "is missing: what the output should follow"
+            else:
+                yield from self.function.problems()
+        elif self.kind != "improve":
+            yield from self._position_problems()
+        yield from self._given_problems()
+        yield from self._wish_problems()
+
+    def _position_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        count = len(self.positions)
+        if count < 2:
+            told = "one position is given" if count else "is missing"
+            yield ("positions",), f"{told}: a task needs two or more"
+        for k, position in enumerate(self.positions):
+            if self.kind == "motion" and position.angle is None:
+                yield ("positions", k, "angle"), "is missing: a motion task is a list of poses"
+            if self.kind == "path" and position.angle is not None:
+                yield (
+                    ("positions", k, "angle"),
+                    'belongs to poses: leave it out, or write task = "mixed"',
+                )
+            for name in ("tolerance", "angle_tolerance"):
+                if getattr(position, name) < 0:
+                    yield ("positions", k, name), "must not be negative"
+        yield from self._repeated_positions()
+        exact = all(p.tolerance == p.angle_tolerance == 0 for p in self.positions)
+        if self.kind == "motion" and count > _MOST_EXACT and exact:
+            yield (
+                ("positions",),
+                f"{count} exact poses leave no four-bar in general: keep {_MOST_EXACT}, or give "
+                "tolerances",
+            )
+        timed = sum(p.input is not None for p in self.positions)
+        if 0 < timed < count:
+            missing = next(k for k, p in enumerate(self.positions) if p.input is None)
+            yield ("positions", missing, "input"), "is missing: time all positions or none"
+
+    def _given_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Pivots and timing that the kind of task cannot use."""
+        fixed, moving = self.given.fixed_pivots, self.given.moving_pivots
+        count, timed = len(self.positions), any(p.input is not None for p in self.positions)
+        if self.kind == "motion" and count > _MOST_FREE and (fixed or moving):
+            yield ("given",), f"leaves no freedom for {count} poses, which determine all pivots"
+        if len(fixed) + len(moving) > 2:
+            yield ("given",), "fixes more than two pivots: two determine the four-bar"
+        if moving and (self.kind != "motion" or timed):
+            yield ("given", "moving_pivots"), "belongs to poses without timing: leave it out"
+        if self.kind == "motion" and timed and count > _MOST_TIMED:
+            yield (
+                ("positions", 0, "input"),
+                f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}",
+            )
+        if self.kind in ("path", "mixed"):
+            for k, position in enumerate(self.positions):
+                for name in ("input", "tolerance", "angle_tolerance"):
+                    if getattr(position, name):
+                        yield ("positions", k, name), "has no effect on points: leave it out"
+        if self.kind == "function" and fixed:
+            level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
+            if not level:
+                yield (
+                    ("given", "fixed_pivots"),
+                    "must be two pivots on a level line, A0 to the left of B0: angles are measured "
+                    "from it",
+                )
+
+    def _repeated_positions(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        turn = self.angle.turn
+        for (j, one), (k, other) in combinations(enumerate(self.positions), 2):
+            same = one.point == other.point
+            if one.angle is not None and other.angle is not None:
+                same &= math.remainder(one.angle - other.angle, turn) == 0
+            if same:
+                yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+
+    def _wish_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        wanted = self.wanted
+        right = self.angle.turn / 4
+        if not 0 <= wanted.transmission < right:
+            yield (
+                ("wanted", TRANSMISSION_ANGLE.word, "least"),
+                f"must be at least 0 and below {right:g}, got {wanted.transmission:g}",
+            )
+        if wanted.range is not None and wanted.range[0] == wanted.range[1]:
+            yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
+        if not 0 <= wanted.shortest <= wanted.longest or wanted.longest <= 0:
+            yield (
+                ("wanted", "lengths"),
+                f"least = {wanted.shortest:g} and most = {wanted.longest:g} contradict each other",
+            )
+        if wanted.ratio < 1:
+            yield ("wanted", "lengths", "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
+        for k, (x, y, radius) in enumerate(wanted.obstacles):
+            if radius < 0:
+                yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
+            for j, position in enumerate(self.positions):
+                away = math.hypot(position.point[0] - x, position.point[1] - y)
+                if away <= radius + position.tolerance and position.tolerance == 0:
+                    yield (
+                        ("wanted", "clear_of", k),
+                        f"contains the point of position {j + 1}, so no design can be clear of it",
+                    )
+        for (j, one), (k, other) in combinations(enumerate(self.positions), 2):
+            apart = math.dist(one.point, other.point)
+            if apart - one.tolerance - other.tolerance > 4 * wanted.longest:
+                yield (
+                    ("positions", k, "point"),
+                    f"is {apart:g} from position {j + 1}, out of reach of links of at most "
+                    f"{wanted.longest:g}: two arms reach {4 * wanted.longest:g}",
+                )
+        if wanted.region and _area(wanted.region) == 0:
+            yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
+
+    @property
+    def purpose(self) -> str:
+        """What its designs are for, in one sentence."""
+        count = len(self.positions)
+        if self.function is not None:
+            follows = f"y = {self.function.of}" if self.function.of else "given pairs"
+            return f"Its output follows {follows}; made for the task {self.name}."
+        return f"Passes {count} positions; made for the task {self.name}."
+
+    def in_radians(self, angle: float) -> float:
+        """An angle of the file in radians."""
+        return angle * self.angle.radians
+
+
+def _area(corners: Sequence[Point]) -> float:
+    pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
+    return sum(x * v - u * y for (x, y), (u, v) in pairs) / 2

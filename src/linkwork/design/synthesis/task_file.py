@@ -1,0 +1,180 @@
+"""Read task files; report all problems with their lines."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.task import (
+    MECHANISMS,
+    Given,
+    PrecisionPosition,
+    Ranking,
+    Task,
+    Wanted,
+)
+from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
+from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.paths import as_path
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+from linkwork.textfile.keys import FORMAT
+from linkwork.textfile.lines import Lines
+from linkwork.textfile.reader import check_format, located_error
+from linkwork.textfile.structure import Structure
+from linkwork.textfile.toml_text import bytes_of, data_of, text_of
+from linkwork.textfile.writer import write_tables
+
+__all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
+
+
+def read_task(path: Path | str) -> Task:
+    """Read the task in a file; ``-``: standard input.
+
+    Raises
+    ------
+    MechanismFileError
+        With every problem found: file, line, key and remedy.
+    """
+    if path == "-" and sys.stdin is not None:
+        return read_task_text(text_of(sys.stdin.buffer.read(), "standard input"), "standard input")
+    name = str(path)
+    return read_task_text(text_of(bytes_of(as_path(path), name), name), name)
+
+
+def read_task_text(text: str, name: str = "the task") -> Task:
+    """Read the task in a text; raises like :func:`read_task`."""
+    data = data_of(text, name)
+    lines = Lines.of(text)
+    check_format(data, lines, name)
+    structure = Structure(data, TASK)
+    if structure.problems:
+        raise located_error(structure.problems, lines, name)
+    try:
+        return _task(structure.content, text, Path(name).stem)
+    except MechanismError as error:
+        raise located_error(error.problems, lines, name) from None
+
+
+def located_task_error(error: MechanismError, task: Task, name: str) -> MechanismError:
+    """Problems that a solver found, with the lines of the task's file."""
+    if not task.text:
+        return error
+    return located_error(error.problems, Lines.of(task.text), name)
+
+
+def task_of_tables(tables: Mapping[str, Any]) -> Task:
+    """The task of tables that have the keys of a file.
+
+    Raises
+    ------
+    MechanismError
+        With every problem found, and its key.
+    """
+    data = {"format": FORMAT, **_plain(tables)}
+    structure = Structure(data, TASK)
+    if structure.problems:
+        raise MechanismError(structure.problems, "the task")
+    return _task(structure.content, write_tables(data), data.get("name", Task.name))
+
+
+def _plain(given: Any) -> Any:
+    """Tuples as lists, as a file has them, and numbers of other packages as Python's."""
+    match given:
+        case Mapping():
+            return {key: _plain(entry) for key, entry in given.items()}
+        case list() | tuple() | np.ndarray():
+            return [_plain(entry) for entry in given]
+        case np.generic():
+            return given.item()
+        case _:
+            return given
+
+
+def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
+    _check_tables(content)
+    mechanism = content.get("mechanism", MECHANISMS)
+    return Task(
+        kind=content["task"],
+        name=content.get("name", stem),
+        length=content.get("length", Task.length),
+        angle=AngleUnit(content.get("angle", "deg")),
+        mechanisms=(mechanism,) if isinstance(mechanism, str) else tuple(mechanism),
+        positions=tuple(map(_position, content.get("positions", ()))),
+        given=Given(**{k: _points(v) for k, v in content.get("given", {}).items()}),
+        function=_function(content["function"]) if "function" in content else None,
+        wanted=_wanted(content.get("wanted", {})),
+        rank=_ranking(content.get("rank", {})),
+        text=text,
+    )
+
+
+#: The tables that each kind of task uses, besides those of all kinds.
+_USED = {
+    "motion": {"positions", "given"},
+    "path": {"positions", "given"},
+    "mixed": {"positions", "given"},
+    "function": {"function", "given"},
+    "improve": {"positions", "function", "curve", "improve"},
+}
+
+
+def _check_tables(content: Mapping[str, Any]) -> None:
+    """Refuse tables without effect."""
+    every = set().union(*_USED.values())
+    kind = content["task"]
+    problems = [
+        Problem(key=(table,), message=f'has no effect on task = "{kind}": leave it out')
+        for table in content
+        if table in every - _USED[kind]
+    ]
+    if problems:
+        raise MechanismError(problems, "the task")
+
+
+def _points(listed: list[list[float]]) -> tuple[Any, ...]:
+    return tuple(map(tuple, listed))
+
+
+def _position(table: dict[str, Any]) -> PrecisionPosition:
+    return PrecisionPosition(**{**table, "point": tuple(table["point"])})
+
+
+def _function(table: dict[str, Any]) -> FunctionGoal:
+    listed = {key: tuple(v) for key, v in table.items() if isinstance(v, list)}
+    if "pairs" in table:
+        listed["pairs"] = _points(table["pairs"])
+    return FunctionGoal(**{**table, **listed})
+
+
+def _wanted(table: dict[str, Any]) -> Wanted:
+    driven = table.get("input")
+    lengths = table.get("lengths", {})
+    return Wanted(
+        turns_fully=driven == TURNS_FULLY,
+        range=(driven["from"], driven["to"]) if isinstance(driven, dict) else None,
+        transmission=table.get(TRANSMISSION_ANGLE.word, {}).get("least", 0.0),
+        ordered=table.get("order", "as given") == "as given",
+        region=_points(table.get("fixed_pivots", {}).get("inside", [])),
+        shortest=lengths.get("least", 0.0),
+        longest=lengths.get("most", math.inf),
+        ratio=lengths.get("ratio", math.inf),
+        obstacles=_points(table.get("clear_of", [])),
+    )
+
+
+def _ranking(table: dict[str, Any]) -> Ranking:
+    usual = Ranking()
+    # weights that are left out are 0 once any is given
+    weights = table.get("by")
+    given = {
+        key: getattr(usual, key) if weights is None else weights.get(key, 0.0)
+        for key in (TRANSMISSION_ANGLE.word, "size", "error")
+    }
+    return Ranking(**given, deliver=table.get("deliver", usual.deliver))

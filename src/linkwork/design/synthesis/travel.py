@@ -1,0 +1,181 @@
+"""The way of the input through the positions: branch, circuit and order, and the driven range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.design.synthesis.driven_loop import DrivenLoops
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+
+__all__ = ["NOWHERE", "Range", "Travel", "travel_of"]
+
+#: Instead of a position's number.
+NOWHERE = -1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """The inputs that a design is driven through: a whole turn, or from start to stop.
+
+    ``start``, ``stop``: absolute inputs [rad or length].
+    """
+
+    turn: bool = False
+    start: float = 0.0
+    stop: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Travel:
+    """D designs at N positions.
+
+    Parameters
+    ----------
+    place : (D, N)
+        The inputs, measured from the loop's origin and unwrapped within the circuit, or along the
+        direction of travel [rad or length].
+    first, last : (D,)
+        The ends of the driven range, in the same way; ``first`` may exceed ``last``.
+    circuit, branch : (D,)
+        The position after which the circuit, or only the branch, changes; ``NOWHERE`` for none.
+    out_of_order : (D,)
+        Whether the input passes the positions in another order.
+    unreached : (D,)
+        The position outside the driven range, N if the range itself leaves the circuit, ``NOWHERE``
+        if all is reached.
+    decided : (D,)
+        Whether all of this is certain with the errors.
+    """
+
+    place: Array
+    first: Array
+    last: Array
+    circuit: IndexArray
+    branch: IndexArray
+    out_of_order: BoolArray
+    unreached: IndexArray
+    decided: BoolArray
+
+
+def travel_of(loops: DrivenLoops, wanted: Range | None, ordered: bool) -> Travel:
+    """The way through the positions; ``wanted``: by default the range from first to last."""
+    free, split = loops.is_free, loops.is_split
+    side, half = np.sign(loops.side), np.sign(loops.half)
+    number = np.where(free[:, None], side, np.where(split[:, None], half, 0.0))
+    circuit = _first_change(number)
+    branch = np.where(circuit == NOWHERE, _first_change(side), NOWHERE)
+    decided = _are_decided(loops, free, split)
+    place, in_order, order_decided = _places(loops, free)
+    if ordered:
+        decided &= order_decided
+    else:
+        in_order = np.ones_like(in_order)
+    first, last, unreached, range_decided = _driven_range(loops, place, free, wanted)
+    return Travel(
+        place=place,
+        first=first,
+        last=last,
+        circuit=circuit,
+        branch=branch,
+        out_of_order=~in_order,
+        unreached=unreached,
+        decided=decided & range_decided & np.isfinite(loops.input_error),
+    )
+
+
+def _first_change(number: Array) -> IndexArray:
+    """The first index after which numbers (D, N) differ from that of the first position."""
+    changed = number[:, 1:] != number[:, :-1]
+    return np.where(changed.any(axis=1), changed.argmax(axis=1), NOWHERE)
+
+
+def _are_decided(loops: DrivenLoops, free: BoolArray, split: BoolArray) -> BoolArray:
+    """Whether the signs of limits, sides and halves are certain."""
+    limits = np.minimum(np.abs(loops.upper), np.abs(loops.lower)) > loops.limit_error
+    sides = np.abs(loops.side).min(axis=1) > loops.sign_error
+    halves = np.abs(loops.half).min(axis=1) > loops.sign_error
+    return np.asarray(limits & sides & (halves | ~split))
+
+
+def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, BoolArray]:
+    """Unwrapped inputs, whether they are in order, and whether that is certain."""
+    place = loops.input - loops.origin[:, None]
+    error = 4.0 * loops.input_error
+    if loops.turns:
+        # a lower limit alone leaves the half turns around the origin, an upper one the others
+        around = np.where((loops.upper > 0), 0.0, -np.pi)[:, None]
+        place = np.mod(place - around, FULL_TURN) + around
+    steps = np.diff(place, axis=1)
+    in_order = np.asarray((steps > 0).all(axis=1) | (steps < 0).all(axis=1))
+    certain = np.asarray(np.abs(steps).min(axis=1, initial=np.inf) > error)
+    if not loops.turns:
+        return place, in_order, certain
+    # eq. (145): once around through all positions makes one turn, or all but one, if in order
+    gaps = np.mod(np.diff(place, axis=1, append=place[:, :1]), FULL_TURN)
+    count = np.rint(gaps.sum(axis=1) / FULL_TURN)
+    forward = count == 1
+    # of two positions both directions are in order: take the shorter way
+    if place.shape[1] == 2:
+        forward = gaps[:, 0] <= np.pi
+    backward = ~forward & (count == place.shape[1] - 1)
+    away = np.minimum(gaps, FULL_TURN - gaps).min(axis=1) > error
+    ways = np.where(forward[:, None], gaps, gaps - FULL_TURN)[:, :-1]
+    begin = place[:, :1]
+    turning = begin + np.concatenate([np.zeros_like(begin), np.cumsum(ways, axis=1)], axis=1)
+    around_in_order = forward | backward
+    return (
+        np.where((free & around_in_order)[:, None], turning, place),
+        np.where(free, around_in_order, in_order),
+        np.where(free, away, certain),
+    )
+
+
+def _driven_range(
+    loops: DrivenLoops, place: Array, free: BoolArray, wanted: Range | None
+) -> tuple[Array, Array, IndexArray, BoolArray]:
+    """The ends of the driven range, the position that is not reached, and whether it is certain."""
+    count = place.shape[1]
+    nowhere = np.full(len(place), NOWHERE)
+    sure = np.ones(len(place), dtype=bool)
+    low, high = place.min(axis=1), place.max(axis=1)
+    if wanted is None:
+        forward = place[:, -1] >= place[:, 0]
+        return np.where(forward, low, high), np.where(forward, high, low), nowhere, sure
+    if wanted.turn:
+        first = place[:, 0]
+        return first, first + FULL_TURN, np.where(free, NOWHERE, count), sure
+    first = wanted.start - loops.origin
+    last = first + (wanted.stop - wanted.start)
+    if loops.turns:
+        # the whole turns that bring the range to the positions
+        turns = np.round((0.5 * (low + high) - 0.5 * (first + last)) / FULL_TURN) * FULL_TURN
+        first, last = first + turns, last + turns
+    begin, end = np.minimum(first, last), np.maximum(first, last)
+    error = 4.0 * loops.input_error
+    outside = (place < (begin - error)[:, None]) | (place > (end + error)[:, None])
+    leaves = ~free & _leaves(loops, begin, end)
+    unreached = np.where(outside.any(axis=1), outside.argmax(axis=1), NOWHERE)
+    unreached = np.where(leaves, count, unreached)
+    return first, last, unreached, sure
+
+
+def _leaves(loops: DrivenLoops, begin: Array, end: Array) -> BoolArray:
+    """Whether ranges leave their circuits, in doubt yes."""
+    q = loops.q(np.stack([begin, end], axis=1))
+    error = 2.0 * loops.q_error
+    out = (q <= (loops.low + error)[:, None]) | (q >= (loops.high - error)[:, None])
+    if loops.turns:
+        poles = _passes(loops, begin, end, 0.0) & (loops.upper > 0)
+        poles |= _passes(loops, begin, end, np.pi) & (loops.lower > 0)
+    else:
+        poles = _passes(loops, begin, end, 0.0) & (loops.lower > 0)
+    return np.asarray(out.any(axis=1) | poles)
+
+
+def _passes(loops: DrivenLoops, begin: Array, end: Array, pole: float) -> BoolArray:
+    """Whether ranges contain a place, up to whole turns of an angle."""
+    ahead = np.mod(pole - begin, FULL_TURN) if loops.turns else pole - begin
+    return np.asarray((ahead >= 0) & (ahead <= end - begin))

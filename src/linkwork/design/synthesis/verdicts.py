@@ -1,0 +1,136 @@
+"""The defects of designs: what keeps a mechanism from doing its task."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.driven_loop import DrivenLoops, driven_loops
+from linkwork.design.synthesis.obstacles import meets_obstacle
+from linkwork.design.synthesis.travel import NOWHERE, Travel, travel_of
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import Array, BoolArray
+
+__all__ = ["DefectKind", "Verdicts", "judge"]
+
+
+class DefectKind(Enum):
+    """What is wrong with a design; the value is what a count of them says."""
+
+    CIRCUIT = "circuit changes"
+    BRANCH = "branch changes"
+    ORDER = "positions out of order"
+    RANGE = "driven range not reached"
+    TRANSMISSION = "transmission angle too small"
+    PIVOTS = "fixed pivot outside its region"
+    LENGTHS = "length out of bounds"
+    OBSTACLE = "meets an obstacle"
+    NOT_PROVED = "not proved"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Verdicts:
+    """The verdicts on D designs with one driven link.
+
+    Parameters
+    ----------
+    loops : DrivenLoops
+    travel : Travel
+    transmission : (D,)
+        A lower bound of the transmission angle over the driven range [rad]; NaN where the range is
+        not defined.
+    size : (D,)
+        The longest link or distance of fixed pivots [length].
+    shortest : (D,)
+        The shortest link [length].
+    found : Mapping[DefectKind, (D,) bool]
+        Which designs have the defect. Others than circuit and branch are noted of designs on one
+        branch only, obstacles of those with at most one defect.
+    """
+
+    loops: DrivenLoops
+    travel: Travel
+    transmission: Array
+    size: Array
+    shortest: Array
+    found: dict[DefectKind, BoolArray]
+
+    @property
+    def sound(self) -> BoolArray:
+        """Designs without any defect, (D,)."""
+        return np.asarray(~np.any(list(self.found.values()), axis=0))
+
+
+def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
+    """Decide every defect of designs by signs with bounds of their errors.
+
+    Parameters
+    ----------
+    given : Candidates
+    drive : Drive
+    wishes : Wishes
+        In radians and units of length.
+
+    Returns
+    -------
+    Verdicts
+
+    References
+    ----------
+    T. R. Chase, J. A. Mirth: Circuits and branches of single-degree-of-freedom planar linkages.
+    Journal of Mechanical Design 115 (1993) 223-230.
+    """
+    loops = driven_loops(given, drive)
+    travel = travel_of(loops, wishes.range, wishes.ordered)
+    found: dict[DefectKind, BoolArray] = {}
+    open_ = travel.decided.copy()
+    for kind, wrong in (
+        (DefectKind.CIRCUIT, travel.circuit != NOWHERE),
+        (DefectKind.BRANCH, travel.branch != NOWHERE),
+    ):
+        found[kind] = open_ & wrong
+        open_ &= ~wrong
+    found[DefectKind.ORDER] = open_ & travel.out_of_order
+    found[DefectKind.RANGE] = open_ & (travel.unreached != NOWHERE)
+    transmission = loops.least_transmission(travel.first, travel.last)
+    lengths = _lengths(given)
+    size, shortest = lengths.max(axis=1), lengths.min(axis=1)
+    found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
+    found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
+    found[DefectKind.LENGTHS] = open_ & ~wishes.allows(shortest, size)
+    # a design with one other defect tells what that wish costs, if nothing else is wrong
+    nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
+    met = np.zeros(len(given), dtype=bool)
+    if wishes.obstacles.size and nearly.any():
+        index = np.flatnonzero(nearly)
+        met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
+    found[DefectKind.OBSTACLE] = met
+    found[DefectKind.NOT_PROVED] = ~travel.decided
+    return Verdicts(
+        loops=loops,
+        travel=travel,
+        transmission=np.where(open_, transmission, np.nan),
+        size=size,
+        shortest=shortest,
+        found=found,
+    )
+
+
+def _lengths(given: Candidates) -> Array:
+    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 or 4)."""
+    lengths = [given.moving_a[:, 0] - given.fixed_a, given.moving_b[:, 0] - given.moving_a[:, 0]]
+    if given.kind is LoopKind.FOUR_BAR:
+        lengths += [given.moving_b[:, 0] - given.fixed_b, given.fixed_b - given.fixed_a]
+    return np.abs(np.stack(lengths, axis=1))
+
+
+def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
+    """Whether all fixed pivots are in the region or, to their errors, on its border."""
+    pivots = [given.fixed_a]
+    if given.kind is LoopKind.FOUR_BAR:
+        pivots.append(given.fixed_b)
+    inside = [wishes.within_region(pivot, given.error) for pivot in pivots]
+    return np.asarray(np.all(inside, axis=0))

@@ -1,0 +1,329 @@
+"""Numbers that remember how they were computed, so that a result has exact derivatives.
+
+The equations of a mechanism and its quantities are written for floats and arrays. A taped number
+passes through the same code and records every operation with its local derivatives. The record then
+gives the derivatives of all results by one number (forward), or of one result by all numbers
+(backward, the adjoint), at the cost of a few evaluations.
+
+A complex number depends on others by dz = a dx + b conj(dx), so that conjugates, moduli and
+directions of vectors need no separate treatment.
+
+References
+----------
+A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, chapter 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial, reduce
+from typing import Any, cast
+
+import numpy as np
+
+from linkwork.design.derivative_rules import PLAIN, RULES, Partial, one_sided
+from linkwork.expression.lane_functions import least, most
+from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.lanes import Consensus, Lanes, Truths
+from linkwork.foundation.operand import NotElementwise
+from linkwork.foundation.rounding import RANK_TOLERANCE
+
+__all__ = ["Tape", "TapedNumber"]
+
+_OF_TWO: dict[Callable[..., Any], Any] = {least: np.minimum, most: np.maximum}
+_STEADY = 1e-9  # relative: a number whose derivatives are below is one that cannot vary
+
+
+class Tape(Consensus):
+    """An arithmetic that records.
+
+    Shapes of values broadcast; an operation never adds rows up, so that every row keeps derivatives
+    of its own.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(1, widest=True)
+        self._parents: list[tuple[int, ...]] = []
+        self._partials: list[tuple[Partial, ...]] = []
+        self._real: list[bool] = []
+        self.inputs: list[int] = []
+        #: Whether equations are being written, in which |x| only serves to show x without a sign.
+        self.writing = False
+
+    def number(self, value: float) -> float:
+        """A number by which results are differentiated."""
+        found = self._node(np.array([value]), (), ())
+        self.inputs.append(found.node)
+        return cast(float, found)
+
+    def _node(
+        self, values: AnyArray, parents: Sequence[int], partials: Sequence[Partial]
+    ) -> TapedNumber:
+        self._parents.append(tuple(parents))
+        self._partials.append(tuple(partials))
+        self._real.append(not np.iscomplexobj(values))
+        return TapedNumber(values, self, len(self._parents) - 1)
+
+    def combine(self, values: AnyArray, terms: Sequence[tuple[Any, Any]]) -> Any:
+        """Values whose derivatives are the sum of factors times those of other numbers.
+
+        Parameters
+        ----------
+        terms : sequence of (factor, number)
+            Numbers that are not taped add nothing.
+        """
+        taped = [(factor, x) for factor, x in terms if isinstance(x, TapedNumber)]
+        if not taped:
+            return values
+        # one node for a whole sum keeps the tape short
+        nodes = [x.node for _, x in taped]
+        return self._node(np.asarray(values), nodes, [(factor, None) for factor, _ in taped])
+
+    # Arithmetic
+
+    def operand(self, number: object) -> Any:
+        """A taped number, or a constant: a plain number or an array."""
+        # NumPy broadcasts constants by itself
+        return number.values if isinstance(number, Truths) else number
+
+    def plain(self, number: Any) -> Any:
+        """A constant."""
+        return number
+
+    def lanes(self, values: AnyArray) -> float:
+        """A constant (1,)."""
+        return cast(float, values[0].item())
+
+    def carry(self, value: Any, number: Any) -> Any:
+        """A value with the derivatives of a number."""
+        bare = value.values if isinstance(value, TapedNumber) else np.atleast_1d(value)
+        return self.combine(bare, [(1.0, number)])
+
+    def chain(self, value: Any, slope: Any, number: Any) -> Any:
+        """A function's value at a number, which has this slope there."""
+        return self.combine(value, [(slope, number)])
+
+    def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
+        """One of two plain numbers."""
+        return yes if truths.values[0] else no
+
+    # A number that must not vary may still be written with numbers that do: 2 f / f
+
+    def settle(self, number: TapedNumber) -> Any:
+        """A number that must not vary, such as the ratio of wheels."""
+        if not self.is_steady(number):
+            raise NotElementwise
+        return number.values[0].item()
+
+    def value_of(self, number: Any) -> Any:
+        """The value of a number."""
+        return number.values[0].item()
+
+    def is_steady(self, number: Any) -> bool:
+        """Whether no input changes a number."""
+        if not isinstance(number, TapedNumber):
+            return True
+        rates = np.abs(self.forward([number])[0])
+        size = max(1.0, float(np.abs(number.values).max(initial=0.0)))
+        return bool((rates <= _STEADY * size).all())
+
+    def solve_shortest(
+        self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
+    ) -> Sequence[Any] | None:
+        """One step of an iteration: the matrix enters by its values only."""
+        a, b = _plain_values(matrix), _plain_values([right])[0]
+        if not (np.isfinite(a).all() and np.isfinite(b).all()):
+            raise np.linalg.LinAlgError
+        inverse = np.linalg.pinv(a, rcond=RANK_TOLERANCE)
+        return [
+            self.combine(np.array([row @ b]), list(zip(row, right, strict=True))) for row in inverse
+        ]
+
+    def of_numpy(self, function: Any, inputs: Sequence[Any]) -> Any:
+        """A universal function of NumPy."""
+        return self.apply(function, *inputs)
+
+    def apply(self, function: Callable[..., Any], *numbers: object) -> Any:
+        """A function of NumPy; those without derivatives give plain arrays."""
+        given = [self.operand(number) for number in numbers]
+        if function in _OF_TWO:
+            return reduce(partial(self.apply, _OF_TWO[function]), given)
+        bare = [x.values if isinstance(x, TapedNumber) else x for x in given]
+        if function in PLAIN:
+            return function(*bare)
+        rule = one_sided if function is np.abs and self.writing else RULES.get(function)
+        if rule is None:
+            raise NotElementwise
+        values = np.asarray(function(*bare))
+        nodes: list[int] = []
+        partials: list[Partial] = []
+        wanted = [isinstance(x, TapedNumber) for x in given]
+        for x, own in zip(given, rule(values, *bare), strict=True):
+            if isinstance(x, TapedNumber):
+                nodes.append(x.node)
+                partials.append(own)
+        return self._node(values, nodes, partials) if any(wanted) else values
+
+    def add(self, x: Any, y: Any) -> Any:
+        """x + y."""
+        return self.apply(np.add, x, y)
+
+    def subtract(self, x: Any, y: Any) -> Any:
+        """x - y."""
+        return self.apply(np.subtract, x, y)
+
+    def multiply(self, x: Any, y: Any) -> Any:
+        """x y."""
+        return self.apply(np.multiply, x, y)
+
+    def divide(self, x: Any, y: Any) -> Any:
+        """x / y."""
+        return self.apply(np.true_divide, x, y)
+
+    def power(self, x: Any, y: Any) -> Any:
+        """x to the power y."""
+        return self.apply(np.power, x, y)
+
+    def negate(self, x: Any) -> Any:
+        """-x."""
+        return self.apply(np.negative, x)
+
+    def absolute(self, x: Any) -> Any:
+        """|x|."""
+        return self.apply(np.abs, x)
+
+    # Derivatives
+
+    def forward(self, results: Sequence[object]) -> list[AnyArray]:
+        """The derivatives of results by all inputs, (P, …) each."""
+        count = len(self.inputs)
+        rates: dict[int, AnyArray] = {}
+        for k, node in enumerate(self.inputs):
+            rates[node] = np.zeros((count, 1))
+            rates[node][k] = 1.0
+        for node in self._needed([x.node for x in results if isinstance(x, TapedNumber)]):
+            if node in rates:
+                continue
+            total: Any = 0.0
+            for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
+                x = rates[parent]
+                # eq. (121)
+                total = total + _product(a, x)
+                if b is not None:
+                    total = total + _product(b, np.conj(x))
+            rates[node] = np.real(total) if self._real[node] else np.asarray(total)
+        nothing = np.zeros((count, 1))
+        return [rates[x.node] if isinstance(x, TapedNumber) else nothing for x in results]
+
+    def backward(self, result: object) -> Array:
+        """The derivatives of one real result by all inputs, (P, …): the adjoint."""
+        if not isinstance(result, TapedNumber):
+            return np.zeros((len(self.inputs), 1))
+        adjoints: dict[int, Any] = {result.node: np.ones(np.shape(result.values))}
+        for node in reversed(self._needed([result.node])):
+            own = adjoints.get(node)
+            # an input keeps its adjoint; all others are given up once they are passed on
+            if own is None or not self._parents[node]:
+                continue
+            for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
+                # eq. (122): the transpose of eq. (121)
+                part = _product(np.conj(a), own)
+                if b is not None:
+                    part = part + _product(b, np.conj(own))
+                part = np.real(part) if self._real[parent] else part
+                known = adjoints.get(parent)
+                adjoints[parent] = part if known is None else known + part
+            del adjoints[node]
+        shape = np.shape(result.values)
+        found = np.zeros((len(self.inputs), *shape))
+        for k, node in enumerate(self.inputs):
+            found[k] = adjoints.get(node, 0.0)
+        return found
+
+    def _needed(self, results: Sequence[int]) -> list[int]:
+        """The nodes on which results depend, in order."""
+        wanted = bytearray(len(self._parents))
+        for node in results:
+            wanted[node] = 1
+        # parents come before their children
+        for node in range(max(results, default=-1), -1, -1):
+            if wanted[node]:
+                for parent in self._parents[node]:
+                    wanted[parent] = 1
+        return [node for node, used in enumerate(wanted) if used]
+
+
+def _plain_values(rows: Sequence[Sequence[Any]]) -> Array:
+    """Numbers and taped numbers as a matrix."""
+    return np.array(
+        [[x.values[0] if isinstance(x, TapedNumber) else x for x in row] for row in rows], float
+    )
+
+
+def _product(factor: Any, rate: Any) -> Any:
+    """A factor times a rate; without a rate 0, even where the factor does not exist."""
+    product = factor * rate
+    if np.isfinite(factor).all():
+        return product
+    return np.where(rate == 0.0, 0.0, product)
+
+
+class TapedNumber(Lanes):
+    """A number, or one number in many rows, on a tape."""
+
+    __slots__ = ("node",)
+    arithmetic: Tape
+    __hash__ = object.__hash__  # type: ignore[assignment]  # lanes are no keys; these are
+
+    def __init__(self, values: AnyArray, tape: Tape, node: int) -> None:
+        super().__init__(values, tape)
+        self.node = node
+
+    def __array_function__(
+        self, function: Callable[..., Any], types: object, given: Sequence[Any], named: object
+    ) -> Any:
+        if function is np.shape:
+            return np.shape(self.values)
+        if function is np.broadcast_to or function is np.atleast_1d:
+            return given[0]  # operations broadcast by themselves
+        return self.arithmetic.apply(function, *given)
+
+    def conj(self) -> Any:
+        """The complex conjugate."""
+        return self.conjugate()
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the values."""
+        return np.shape(self.values)
+
+    def holds(self, truths: AnyArray) -> Any:
+        """Whether something holds, as a plain array."""
+        return truths
+
+    def _compared(self, other: object, function: Callable[..., Any]) -> Any:
+        return self.arithmetic.apply(function, self, other)
+
+    def __eq__(self, other: object) -> Any:
+        return self._compared(other, np.equal)
+
+    def __ne__(self, other: object) -> Any:
+        return self._compared(other, np.not_equal)
+
+    def __lt__(self, other: object) -> Any:
+        return self._compared(other, np.less)
+
+    def __le__(self, other: object) -> Any:
+        return self._compared(other, np.less_equal)
+
+    def __gt__(self, other: object) -> Any:
+        return self._compared(other, np.greater)
+
+    def __ge__(self, other: object) -> Any:
+        return self._compared(other, np.greater_equal)
+
+    def __bool__(self) -> bool:
+        return bool(self.values[0] != 0.0)

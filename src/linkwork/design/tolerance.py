@@ -1,0 +1,267 @@
+"""Tolerances: worst case, root sum square, shares, and random designs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linkwork.batch.family import family_of
+from linkwork.batch.sampling import Normal, random
+from linkwork.design.sensitivity import (
+    LIMITS,
+    has_slopes,
+    play_of_motion,
+    play_of_position,
+    sensitivity_of_motion,
+    sensitivity_of_position,
+)
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import find_spelling
+from linkwork.foundation.plain_numbers import finite_number, whole_number
+from linkwork.mechanism.tolerances import clearances_of, deviations_of, pins_of
+from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.motion.model import Model, model_of
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+from linkwork.results.sensitivity import Sensitivity, SensitivityStatus, per
+from linkwork.results.tolerance import Contribution, Sampled, Tolerance
+
+__all__ = ["Deviations", "deviations", "tolerance_of"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviations:
+    """Standard deviations of numbers, and clearances of pins by point, in file units."""
+
+    numbers: Mapping[VariedNumber, float]
+    clearances: Mapping[str, float]
+
+
+def deviations(
+    model: Model,
+    numbers: Mapping[str, float] | None = None,
+    clearances: Mapping[str, float] | None = None,
+) -> Deviations:
+    """Those given, or those of the file.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For a name that is not known, a negative number, or if there are none.
+    """
+    description = model.description
+    if numbers is None:
+        spread = deviations_of(description)
+    else:
+        spread = {
+            number_named(description, name): _size(name, size) for name, size in numbers.items()
+        }
+    pins = pins_of(description)
+    if clearances is None:
+        play = dict(clearances_of(description))
+    else:
+        play = {}
+        for name, size in clearances.items():
+            point = find_spelling(name, pins)
+            if point not in pins:
+                raise UnknownNameError(
+                    f'"{name}" is no pin of two links {choices("pins", pins, name)}'
+                )
+            play[point] = _size(name, size)
+    if not spread and not play:
+        raise InputError(
+            f"nothing deviates in {description.name}: add [tolerances], as in "
+            f'"A B" = {{ deviation = 0.05 }}, or [clearances]'
+        )
+    return Deviations(numbers=spread, clearances=play)
+
+
+def _size(name: str, given: float) -> float:
+    size = finite_number(name, given)
+    if size < 0:
+        raise InputError(f'"{name}" must not deviate by a negative number, got {size:g}')
+    return size
+
+
+def tolerance_of(
+    model: Model,
+    solved: Position | Motion,
+    of: str,
+    given: Deviations,
+    *,
+    samples: int = 0,
+    seed: int = 1,
+) -> Tolerance:
+    """The tolerance of a quantity at a position, or of a number of a motion.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For a quantity that is not known, or whose derivatives are not.
+    """
+    count, start = whole_number("samples", samples), whole_number("seed", seed)
+    names = [number.name for number in given.numbers]
+    pins = tuple((link, p) for p in given.clearances for link in pins_of(model.description)[p])
+    # a dwell has corners everywhere, but random designs have one each
+    if isinstance(solved, Motion) and count and not has_slopes(model, of):
+        return _only_sampled(model, solved, of, given, (count, start))
+    if isinstance(solved, Motion):
+        found = sensitivity_of_motion(model, solved, of, names)
+        moved = play_of_motion(model, solved, of, pins)
+    else:
+        found = sensitivity_of_position(model, solved, of, names)
+        moved = play_of_position(model, solved, of, pins)
+    forces = _pin_forces(pins, moved)
+    parts = list(_contributions(model, found, given, forces))
+    total = math.fsum(part.standard**2 for part in parts)
+    status = found.status
+    if status is SensitivityStatus.FOUND and not math.isfinite(total):
+        status = SensitivityStatus.CORNER
+    shared = [_with_share(part, total) for part in parts]
+    sampled = None
+    if count and status is not SensitivityStatus.NO_POSITION:
+        sampled = _sample(model, solved, of, given, forces, (count, start))
+    return Tolerance(
+        mechanism=found.mechanism,
+        of=found.of,
+        unit=found.unit,
+        inputs={name: float(value) for name, value in found.inputs.items()},
+        input_units=found.input_units,
+        value=float(found.value),
+        contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
+        status=status,
+        sampled=sampled,
+    )
+
+
+def _only_sampled(
+    model: Model, solved: Motion, of: str, given: Deviations, drawn: tuple[int, int]
+) -> Tolerance:
+    """The tolerance of a number whose derivatives are not known."""
+    if given.clearances:
+        raise InputError(f'the derivatives of "{of}" are not known, nor what clearances do to it')
+    return Tolerance(
+        mechanism=model.description.name,
+        of=of,
+        unit=model.quantities.find_of_motion(of).unit,
+        inputs={},
+        input_units={},
+        value=solved.value(of),
+        contributions=(),
+        status=SensitivityStatus.CORNER,
+        sampled=_sample(model, solved, of, given, {}, drawn),
+    )
+
+
+def _pin_forces(pins: tuple[tuple[str, str], ...], moved: Array) -> dict[str, Array]:
+    """The forces between links at every pin for a unit load at the quantity, (rows,).
+
+    A displacement of one link is one of the others the other way: the link with the smallest
+    effect stays, the others move against it.
+    """
+    effects: dict[str, list[Array]] = {}
+    for (_, point), rates in zip(pins, moved, strict=True):
+        effects.setdefault(point, []).append(np.hypot(rates[:, 0], rates[:, 1]))
+    return {point: np.sort(sizes, axis=0)[1:].sum(axis=0) for point, sizes in effects.items()}
+
+
+def _contributions(
+    model: Model, found: Sensitivity, given: Deviations, forces: Mapping[str, Array]
+) -> Iterator[Contribution]:
+    """Every dimension and pin, without its share yet."""
+    length = model.description.length
+    for number, size in given.numbers.items():
+        rate = float(found.derivatives[number.name])
+        change = abs(rate) * size
+        yield Contribution(
+            name=number.name, kind="dimension", sensitivity=rate, unit=found.unit_by(number.name),
+            deviation=size, deviation_unit=found.units[number.name], worst=change, standard=change,
+            share=math.nan,
+        )  # fmt: skip
+    for point, size in given.clearances.items():
+        force = float(forces[point].sum())
+        # eq. (125): c |R| cos ψ for all directions ψ alike
+        standard = size * math.sqrt(0.5 * float((forces[point] ** 2).sum()))
+        yield Contribution(
+            name=point, kind="clearance", sensitivity=force, unit=per(found.unit, length),
+            deviation=size, deviation_unit=length, worst=force * size, standard=standard,
+            share=math.nan,
+        )  # fmt: skip
+
+
+def _with_share(part: Contribution, total: float) -> Contribution:
+    return replace(part, share=part.standard**2 / total if total > 0.0 else 0.0)
+
+
+def _sample(
+    model: Model,
+    solved: Position | Motion,
+    of: str,
+    given: Deviations,
+    forces: Mapping[str, Array],
+    drawn: tuple[int, int],
+) -> Sampled:
+    """Draw designs with normal numbers; clearances add their first-order effect."""
+    description, (count, seed) = model.description, drawn
+    spread = {q: size for q, size in given.numbers.items() if size > 0.0}
+    if spread:
+        plan = random(
+            count, {q.name: Normal(q.of(description), size) for q, size in spread.items()}, seed
+        )
+        values = _of_designs(model, solved, of, plan)
+    else:
+        values = np.full(count, float(_nominal(model, solved, of)))
+    # another stream than that of the numbers
+    generator = np.random.Generator(np.random.Philox(seed + 1))
+    for point, size in given.clearances.items():
+        for force in forces[point]:
+            values = values + size * force * np.cos(generator.uniform(0.0, FULL_TURN, count))
+    there = values[np.isfinite(values)]
+    if not len(there):
+        nan = math.nan
+        return Sampled(designs=count, found=0, seed=seed, mean=nan, deviation=nan, error=nan,
+                       low=nan, high=nan)  # fmt: skip
+    deviation = float(there.std(ddof=1)) if len(there) > 1 else 0.0
+    return Sampled(
+        designs=count,
+        found=len(there),
+        seed=seed,
+        mean=float(there.mean()),
+        deviation=deviation,
+        error=deviation / math.sqrt(2.0 * max(len(there) - 1, 1)),
+        low=float(there.min()),
+        high=float(there.max()),
+    )
+
+
+def _nominal(model: Model, solved: Position | Motion, of: str) -> float:
+    return solved.value(of) if isinstance(solved, Motion) else solved[of]
+
+
+def _of_designs(
+    model: Model, solved: Position | Motion, of: str, plan: Mapping[str, Array]
+) -> Array:
+    """The quantity of every design, (D,); NaN where it does not exist."""
+    if isinstance(solved, Motion):
+        if of.strip() in LIMITS:
+            return family_of(model, plan).reduced(())[of.strip()]
+        return family_of(model, plan).reduced([of])[of]
+    # every design is followed from the position that all deviations start from
+    one = _at_one_row(model, solved)
+    found = family_of(one, plan).sweep(certify=False)
+    return found[of][:, 0]
+
+
+def _at_one_row(model: Model, position: Position) -> Model:
+    """The mechanism with the input of a position as its only row, starting there."""
+    description = model.description
+    rows = tuple(
+        replace(which, start=position.input[x.name], stop=position.input[x.name], step=1)
+        for which, x in zip(description.inputs, model.equations.inputs, strict=True)
+    )
+    return model_of(replace(description, inputs=rows)).from_position(position)

@@ -1,0 +1,105 @@
+"""Verdicts on four-bars and slider-cranks, compared with the circuits of the mechanisms."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from linkwork.api import Mechanism
+from linkwork.design.synthesis.by_circuits import branches_of_positions
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
+from linkwork.design.synthesis.task import PrecisionPosition, Task
+from linkwork.design.synthesis.verdicts import DefectKind, judge
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import Array
+
+__all__ = ["defect_campaign", "random_designs", "verdict_by_circuits"]
+
+_POSITIONS = 4
+
+
+def random_designs(kind: LoopKind, count: int, seed: int) -> Candidates:
+    """Loops at random inputs and on random sides, so that all defects and none occur."""
+    rng = np.random.default_rng([22, seed])
+    found = [_random_design(kind, rng) for _ in range(count)]
+    return Candidates.joined(found)
+
+
+def _random_design(kind: LoopKind, rng: np.random.Generator) -> Candidates:
+    while True:
+        a, c, b, g = rng.uniform(0.2, 2.0, 4)
+        start, step = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(0.05, 0.9)
+        crank = a * np.exp(1j * (start + step * np.arange(_POSITIONS)))
+        if rng.random() < 0.2:
+            crank = rng.permutation(crank)
+        side = np.where(rng.random(_POSITIONS) < 0.15, -1.0, 1.0)
+        if kind is LoopKind.FOUR_BAR:
+            base = g - crank
+            along = 0.5 * (np.abs(base) ** 2 + c**2 - b**2)
+            across = np.abs(base) ** 2 * c**2 - along**2
+            if (across <= 1e-6).any():
+                continue
+            coupler = base * (along + 1j * side * np.sqrt(across)) / np.abs(base) ** 2
+        else:
+            across = c**2 - (g - 1.0 - crank.imag) ** 2
+            if (across <= 1e-6).any():
+                continue
+            coupler = side * np.sqrt(across) + 1j * (g - 1.0 - crank.imag)
+        sliding = kind is LoopKind.SLIDER_CRANK
+        return Candidates(
+            kind=kind,
+            fixed_a=np.array([0j]),
+            fixed_b=np.array([1j * (g - 1.0) if sliding else g + 0j]),
+            direction=np.array([1.0 + 0j if sliding else 0j]),
+            moving_a=crank[None],
+            moving_b=(crank + coupler)[None],
+            guided=(crank + 0.7 * coupler * np.exp(0.4j))[None],
+            error=np.array([1e-14]),
+            miss=np.zeros(1),
+        )
+
+
+def verdict_by_circuits(
+    given: Candidates, drive: Drive, k: int, inputs: Array
+) -> DefectKind | None:
+    """The first of circuit and branch defects, by the circuits of the mechanism."""
+    design = Design.of(given, k, drive, inputs, inputs[[0, -1]])
+    position = PrecisionPosition(point=(0.0, 0.0))
+    task = Task(kind="path", positions=(position, PrecisionPosition(point=(1.0, 0.0))))
+    mechanism = Mechanism(linkage_of(design, task, "random design"))
+    circuits = mechanism.circuits(certify=False)
+    scale = 1.0 if drive is Drive.SLIDER else np.pi / 180.0
+    places = [
+        {"A": given.moving_a[k, j], "B": given.moving_b[k, j]} for j in range(len(design.inputs))
+    ]
+    inputs_there = [value / scale for value in design.inputs]
+    branches = branches_of_positions(circuits, inputs_there, places)
+    if len({name.split(" branch")[0] for name in branches}) > 1:
+        return DefectKind.CIRCUIT
+    return DefectKind.BRANCH if len(set(branches)) > 1 else None
+
+
+def defect_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
+    """Counts and false claims of so many designs, each with one driven link."""
+    counts: Counter[str] = Counter()
+    false: list[str] = []
+    for kind in LoopKind:
+        given = random_designs(kind, count // 2, part)
+        for which, drive in enumerate(given.drives):
+            verdicts = judge(given, drive, Wishes())
+            for k in range(which, len(given), 2):
+                mine = next(
+                    (d for d in (DefectKind.CIRCUIT, DefectKind.BRANCH) if verdicts.found[d][k]),
+                    None,
+                )
+                if verdicts.found[DefectKind.NOT_PROVED][k]:
+                    counts[f"{kind.value}, {drive.value}: not proved"] += 1
+                    continue
+                theirs = verdict_by_circuits(given, drive, k, verdicts.loops.input[k])
+                told = "neither" if mine is None else mine.value
+                counts[f"{kind.value}, {drive.value}: {told}"] += 1
+                if mine is not theirs:
+                    false.append(f"part {part}, {kind.value}, {drive.value}, {k}: {mine}, {theirs}")
+    return counts, false

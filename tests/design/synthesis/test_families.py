@@ -1,0 +1,151 @@
+"""Four, three and two poses: curves and families, with pivots that are given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.synthesis.burmester import centre_points, sampled_dyads, sliding_dyad
+from linkwork.foundation.arrays import Array, ComplexArray
+
+_POSES = [(0, 0, 0), (200, 100, 15), (320, 260, 40), (300, 420, 75)]
+
+
+def _random(seed: int) -> tuple[ComplexArray, Array]:
+    rng = np.random.default_rng(seed)
+    return rng.normal(size=4) + 1j * rng.normal(size=4), rng.uniform(0.0, 6.0, 4)
+
+
+def test_arcs_end_where_closely_spaced_lines_begin_to_miss_the_curve() -> None:
+    numbers = set()
+    for seed in range(120):
+        curve = centre_points(*_random(seed))
+        assert curve is not None
+        assert all(arc.proved for arc in curve.arcs)
+        directions = np.linspace(0.0, np.pi, 3001) + 1e-4
+        met = np.isfinite(curve.points(directions)).all(axis=1)
+        inside = np.zeros(len(directions), dtype=bool)
+        for arc in curve.arcs:
+            inside |= np.mod(directions - arc.start, np.pi) < arc.stop - arc.start
+        # one line on either side of an end may be rounded to the other
+        assert (met != inside).sum() <= 2 * len(curve.arcs)
+        numbers.add((len(curve.arcs), sum(arc.closed for arc in curve.arcs)))
+    assert numbers == {(1, 0), (1, 1), (2, 2)}
+
+
+def test_points_of_the_curve_are_fixed_pivots_of_four_poses() -> None:
+    for seed in range(10):
+        points, angles = _random(seed)
+        found = sampled_dyads(points, angles)
+        pinned = found.take(found.kind == 0)
+        assert len(pinned) > 20
+        arms = points + pinned.moving[:, None] * np.exp(1j * angles) - pinned.fixed[:, None]
+        size = 1.0 + np.abs(pinned.moving) + np.abs(pinned.fixed)
+        assert (np.ptp(np.abs(arms), axis=1) <= 2.0 * pinned.error + 1e-12 * size).all()
+        curve = centre_points(points, angles)
+        assert curve is not None
+        near = curve.points(np.angle(pinned.fixed - curve.pole))
+        missed = np.abs(near - pinned.fixed[:, None]).min(axis=1)
+        assert np.median(missed) < 1e-9
+
+
+def test_one_slider_and_one_sliding_body_pass_four_poses() -> None:
+    points, angles = _random(3)
+    (slider,) = [sliding_dyad(points, angles)]
+    pin = points + slider.moving * np.exp(1j * angles) - slider.fixed
+    assert np.abs((pin * slider.normal.conj()).real).max() <= slider.error[0]
+    assert slider.error[0] < 1e-10
+    found = sampled_dyads(points, angles)
+    body = found.take(found.kind == 2)
+    assert len(body) == 1
+    arm = (points - body.fixed) * np.exp(-1j * angles) + body.moving
+    assert np.abs((arm * body.normal.conj()).real).max() < 1e-9
+
+
+def _misses(found: lw.Synthesis, poses: list[tuple[float, float, float]]) -> float:
+    """The largest distance of delivered designs from poses."""
+    worst = 0.0
+    for design in found.delivered:
+        mechanism = lw.api.Mechanism(design.linkage)
+        start = None
+        for value, (x, y, angle) in zip(design.design.inputs, poses, strict=True):
+            scale = 1.0 if design.drive.value == "slider" else 180.0 / np.pi
+            position = mechanism.solve(at=value * scale)
+            place = position.points[mechanism.description.trace[0]]
+            start = position["coupler"] - angle if start is None else start
+            turn = np.mod(position["coupler"] - start - angle + 180.0, 360.0) - 180.0
+            worst = max(worst, abs(place[0] - x), abs(place[1] - y), abs(turn))
+    return worst
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
+def test_delivered_designs_pass_the_poses(count: int, mechanism: str) -> None:
+    task = lw.Task.motion(
+        _POSES[:count], mechanism=mechanism, rank={"deliver": 3}, wanted={"lengths": {"most": 2000}}
+    )
+    found = task.solve()
+    assert len(found.delivered) == 3
+    assert {design.group.given.kind.value for design in found.delivered} == {mechanism}
+    assert _misses(found, list(_POSES[:count])) < 1e-6
+
+
+def test_two_given_fixed_pivots_and_three_poses_make_one_four_bar() -> None:
+    pivots = [(100, -200), (400, -100)]
+    found = lw.Task.motion(_POSES[:3], mechanism="four-bar", given={"fixed_pivots": pivots}).solve()
+    assert found.linkages == 1
+    points = found.designs[0].design.points
+    assert (points["A0"], points["B0"]) == (100 - 200j, 400 - 100j)
+
+
+def test_a_given_pivot_is_in_every_design() -> None:
+    given = {"moving_pivots": [(50, 20)]}
+    found = lw.Task.motion(_POSES[:3], given=given, mechanism="four-bar").solve()
+    assert found.linkages > 10
+    assert {design.design.points["A"] for design in found.designs} == {50 + 20j}
+
+
+def test_a_timed_crank_turns_by_the_given_angles() -> None:
+    inputs = (0, 30, 70)
+    positions = [
+        {"point": [x, y], "angle": angle, "input": value}
+        for (x, y, angle), value in zip(_POSES, inputs, strict=False)
+    ]
+    text = "format = 1\ntask = 'motion'\nmechanism = 'four-bar'\n" + "".join(
+        f"[[positions]]\npoint = {p['point']}\nangle = {p['angle']}\ninput = {p['input']}\n"
+        for p in positions
+    )
+    found = lw.Task.loads(text).solve()
+    assert found.designs
+    for design in found.designs[:20]:
+        turned = np.degrees(np.array(design.design.inputs) - design.design.inputs[0])
+        assert np.mod(turned - inputs + 180.0, 360.0) - 180.0 == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_pivot_off_the_curve_of_four_poses_is_refused_with_the_nearest_point() -> None:
+    with pytest.raises(lw.MechanismError, match="is not on the centre-point curve"):
+        lw.Task.motion(_POSES, given={"fixed_pivots": [(0, 0)]}).solve()
+
+
+def test_tolerances_give_designs_within_them_and_more_than_five_poses() -> None:
+    rng = np.random.default_rng(4)
+    crank = 60.0 * np.exp(1j * np.radians(np.arange(20, 161, 20)))
+    base = 160.0 - crank
+    cosine = (140.0**2 + np.abs(base) ** 2 - 120.0**2) / (2.0 * 140.0 * np.abs(base))
+    angles = np.angle(base) + np.arccos(cosine)
+    points = crank + (40 + 28j) * np.exp(1j * angles) + rng.normal(size=8) * 0.02
+    table = "".join(
+        f"[[positions]]\npoint = [{z.real}, {z.imag}]\nangle = {np.degrees(t)}\ntolerance = 0.5\n"
+        for z, t in zip(points, angles, strict=True)
+    )
+    found = lw.Task.loads(f"format = 1\ntask = 'motion'\n{table}[rank]\ndeliver = 2\n").solve()
+    assert found.delivered
+    assert found.completeness is lw.Completeness.SAMPLED
+    for design in found.delivered:
+        assert 0.0 < design.error <= 0.5
+        mechanism = lw.api.Mechanism(design.linkage)
+        for value, wanted in zip(design.design.inputs, points, strict=True):
+            scale = 1.0 if design.drive.value == "slider" else 180.0 / np.pi
+            x, y = mechanism.solve(at=value * scale).points["P"]
+            assert abs(x + 1j * y - wanted) <= design.error + 1e-6

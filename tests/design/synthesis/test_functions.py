@@ -1,0 +1,143 @@
+"""Function generation: published ratios, all solutions, best fits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+import linkwork as lw
+from linkwork.design.synthesis.function_fit import (
+    least_squares_fit,
+    minimax_fit,
+    rocker_errors,
+    slider_errors,
+)
+from linkwork.design.synthesis.function_synthesis import freudenstein
+from linkwork.foundation.arrays import Array
+
+_LOGARITHM = {"x": (1, 2), "input": (45, 105), "output": (0, 90), "mechanism": "four-bar"}
+_PAIRS = [(0, 0), (20, 10), (45, 22), (60, 28), (80, 30)]
+
+
+def _designs(task: lw.Task) -> list[lw.Mechanism]:
+    return list(task.solve().defect_free)
+
+
+def test_the_logarithm_at_three_chebyshev_points_has_the_published_ratios() -> None:
+    (design,) = _designs(lw.Task.function("log10(x)", **_LOGARITHM))
+    lengths = {
+        name: np.hypot(*np.subtract(*(design.description.points[p] for p in name.split())))  # type: ignore[attr-defined]  # a linkage
+        for name in ("A0 B0", "A0 A", "A B", "B0 B")
+    }
+    expected = {"A0 B0": 1.0, "A0 A": 0.652585741, "A B": 1.170609286, "B0 B": 0.528110663}
+    assert lengths == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_power_at_three_chebyshev_points_has_the_published_numbers() -> None:
+    share = 0.5 - 0.5 * np.cos((2 * np.arange(1, 4) - 1) * np.pi / 6)
+    x = 1.0 + 3.0 * share
+    u = np.radians(30.0 + 90.0 * share)
+    v = np.radians(90.0 + 90.0 * (x**1.5 - 1.0) / 7.0)
+    k, error = freudenstein(u[None], v[None])
+    assert k[0] == pytest.approx([-0.58824741, -0.44968071, 0.12403491], abs=1e-8)
+    assert error.max() < 1e-12
+
+
+def test_a_design_passes_its_precision_points_measured_as_the_task_measures_them() -> None:
+    """Negative lengths point the other way: the file's angles are the task's all the same."""
+    power = {"x": (1, 4), "input": (30, 120), "output": (90, 180), "mechanism": "four-bar"}
+    (design,) = _designs(lw.Task.function("x^1.5", **power))
+    for share in 0.5 - 0.5 * np.cos((2 * np.arange(1, 4) - 1) * np.pi / 6):
+        position = design.solve(at=30.0 + 90.0 * share)
+        wanted = 90.0 + 90.0 * ((1.0 + 3.0 * share) ** 1.5 - 1.0) / 7.0
+        assert position["rocker"] == pytest.approx(wanted, abs=1e-9)
+        assert position["structural_error"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_designs_follow_the_differences_of_pairs(mechanism: str, count: int) -> None:
+    found = lw.Task.function(_PAIRS[:count], mechanism=mechanism, rank={"deliver": 3}).solve()
+    if count == 5:
+        assert found.complex == 3
+        assert found.real in (1, 3)
+        assert found.completeness is lw.Completeness.PROVED
+    else:
+        assert found.completeness is lw.Completeness.SAMPLED
+        assert found.delivered
+    output = "rocker" if mechanism == "four-bar" else "slide"
+    for design in found.delivered:
+        bar = lw.api.Mechanism(design.linkage)
+        inputs = np.degrees(design.design.inputs)
+        values = np.array([bar.solve(at=float(value))[output] for value in inputs])
+        assert np.diff(inputs) == pytest.approx(np.diff(_PAIRS[:count], axis=0)[:, 0], abs=1e-9)
+        assert np.diff(values) == pytest.approx(np.diff(_PAIRS[:count], axis=0)[:, 1], abs=1e-6)
+
+
+def _logarithm() -> tuple[Array, Array]:
+    x = np.linspace(1.0, 2.0, 181)
+    return np.radians(45.0 + 60.0 * (x - 1.0)), np.radians(90.0 * np.log10(x) / np.log10(2.0))
+
+
+@pytest.mark.parametrize("slides", [False, True])
+def test_derivatives_of_structural_errors_are_their_differences(slides: bool) -> None:
+    u, v = _logarithm()
+    errors = (slider_errors if slides else rocker_errors)(u, v, 1.0)
+    start = np.array([0.4, 0.2, 1.3] if slides else [0.65, 0.53, 1.17])
+    if not slides:
+        errors = rocker_errors(u, v, -1.0)
+    gradient = errors(start)[1]
+    for k in range(3):
+        step = 1e-6 * np.eye(3)[k]
+        difference = (errors(start + step)[0] - errors(start - step)[0]) / 2e-6
+        assert gradient[:, k] == pytest.approx(difference, abs=1e-6)
+
+
+def test_the_least_squares_fit_is_that_of_scipy() -> None:
+    u, v = _logarithm()
+    found = lw.Task.function("log10(x)", fit="least squares", **_LOGARITHM).solve().designs[0]
+    design = found.design.points
+    lengths = np.abs([design["A"], design["B"] - 1.0, design["B"] - design["A"]])
+    side = np.sign(((design["B"] - design["A"]).conjugate() * (design["B"] - 1.0)).imag)
+    errors = rocker_errors(u, v, float(side))
+    referee = least_squares(lambda x: errors(x)[0], lengths * 1.02, xtol=1e-15, ftol=1e-15)
+    assert lengths == pytest.approx(referee.x, rel=1e-6)
+    assert least_squares_fit(errors, lengths * 1.02) == pytest.approx(referee.x, rel=1e-6)
+
+
+def test_the_minimax_fit_has_four_equal_errors_of_alternating_sign() -> None:
+    found = lw.Task.function("log10(x)", fit="minimax", **_LOGARITHM).solve()
+    (design,) = found.defect_free
+    error = np.asarray(design.sweep(certify=False)["structural_error"])
+    largest = found.delivered[0].error
+    assert np.abs(error).max() == pytest.approx(largest, rel=2e-3)  # rows between those fitted
+    extremes = error[np.abs(error) > 0.99 * largest]
+    signs = np.sign(extremes)
+    assert 1 + int((np.diff(signs) != 0).sum()) == 4
+    squares = lw.Task.function("log10(x)", fit="least squares", **_LOGARITHM).solve()
+    assert largest < squares.delivered[0].error
+
+
+def test_a_fit_without_alternating_errors_is_not_called_minimal() -> None:
+    u, v = _logarithm()
+    start = np.array([0.1, 5.0, 5.0])
+    assert not minimax_fit(rocker_errors(u, v, 1.0), start)[1]
+
+
+def test_a_function_that_no_single_four_bar_is_determined_by_says_so() -> None:
+    """Equal angles: any parallelogram has them, and the equations are singular."""
+    same = {"x": (0, 1), "input": (0, 90), "output": (0, 90), "mechanism": "four-bar"}
+    found = lw.Task.function("x", **same).solve()
+    assert found.completeness is lw.Completeness.NOT_PROVED
+    assert not found.designs
+
+
+def test_given_pivots_set_the_scale() -> None:
+    pivots = {"fixed_pivots": [(10, 20), (110, 20)]}
+    (design,) = _designs(lw.Task.function("log10(x)", given=pivots, **_LOGARITHM))
+    position = design.solve(at=75)
+    assert position.points["B0"] == (110.0, 20.0)
+    assert position.links is not None
+    radius = np.hypot(position.points["A"][0] - 10, position.points["A"][1] - 20)
+    assert radius == pytest.approx(65.2585741, abs=1e-7)

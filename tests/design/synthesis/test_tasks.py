@@ -1,0 +1,142 @@
+"""Task files: every bad task is refused with its place and reason."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+import linkwork as lw
+from linkwork.design.synthesis.task_file import read_task, read_task_text
+from linkwork.design.synthesis.task_keys import TASK
+from linkwork.textfile.schema import schema_of
+from linkwork.textfile.toml_text import data_of
+
+_EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "tasks").glob("*.toml"))
+_POSES = "".join(
+    f"[[positions]]\npoint = [{x}, {y}]\nangle = {angle}\n"
+    for x, y, angle in ((0, 0, 0), (40, -40, 10), (100, -80, 25), (170, -110, 45), (260, -140, 75))
+)
+_MOTION = f"format = 1\ntask = 'motion'\n{_POSES}"
+_FUNCTION = "format = 1\ntask = 'function'\n[function]\n"
+
+
+@pytest.mark.parametrize("path", _EXAMPLES, ids=lambda path: path.stem)
+def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    jsonschema.validate(data_of(text, "task"), schema_of(TASK))
+    assert lw.Task.load(path).solve().delivered
+    json.dumps(schema_of(TASK))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "key", "message"),
+    [
+        ("format = 1\ntask = 'motion'\n", None, "positions", "is missing"),
+        (_MOTION.replace("[40, -40]", "[0, 0]").replace("angle = 10", "angle = 360"), 6,
+         "positions[2]", "is the same as position 1: leave one out"),
+        (_MOTION.split("[[positions]]\npoint = [40")[0], 3, "positions",
+         "one position is given: a task needs two or more"),
+        (_MOTION.replace("angle = 25\n", ""), 9, "positions[3].angle",
+         "is missing: a motion task is a list of poses"),
+        (_MOTION.replace("'motion'", "'path'"), 5, "positions[1].angle", 'belongs to poses'),
+        (_MOTION + "[[positions]]\npoint = [300, -150]\nangle = 90\n", 3, "positions",
+         "6 exact poses leave no four-bar in general"),
+        (_MOTION.replace("angle = 45\n", "angle = 45\ninput = 20\n"), 3, "positions[1].input",
+         "is missing: time all positions or none"),
+        (_MOTION + "[wanted]\nlengths = { least = 50, most = 20 }\n", 19, "wanted.lengths",
+         "least = 50 and most = 20 contradict each other"),
+        (_MOTION + "[wanted]\nlengths = { most = 20 }\n", 10, "positions[3].point",
+         "is 128.062 from position 1, out of reach of links of at most 20"),
+        (_MOTION + "[wanted]\ntransmission = { least = 90 }\n", 19, "wanted.transmission.least",
+         "must be at least 0 and below 90, got 90"),
+        (_MOTION + "[wanted]\ninput = { from = 20, to = 20 }\n", 19, "wanted.input",
+         "begins and ends at 20"),
+        (_MOTION + "[wanted]\ninput = 'turns'\n", 19, "wanted.input", 'must be "turns fully" or'),
+        (_MOTION + "[wanted]\nclear_of = [[100, -75, 20]]\n", 19, "wanted.clear_of[1]",
+         "contains the point of position 3"),
+        (_MOTION + "[wanted]\nfixed_pivots = { inside = [[0, 0], [1, 1], [2, 2]] }\n", 19,
+         "wanted.fixed_pivots.inside", "encloses no area"),
+        (_MOTION + "[wanted]\norder = 'none'\n", 19, "wanted.order", 'must be "as given" or "any"'),
+        (_MOTION.replace("point = [0, 0]", "point = [0]"), 4, "positions[1].point",
+         "needs two coordinates, got 1"),
+        (_FUNCTION + "of = 'log10(x)'\n", None, "function.x", "is missing: a formula needs"),
+        (_FUNCTION + "of = 'ln(x)'\nx = [-1, 1]\ninput = [0, 60]\noutput = [0, 60]\n", 4,
+         "function.of", "ln(-1) is not a real number"),
+        (_FUNCTION + "of = 'y^2'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\n", 4,
+         "function.of", "the variable is \"x\", got 'y'"),
+        (_FUNCTION + "of = 'x*(1-x)'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\n", 4,
+         "function.of", "has the value 0 at both ends"),
+        (_FUNCTION + "of = 'x'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\npositions = 5\n", 8,
+         "function.positions", "5 precision points leave no four-bar with given start angles"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [10, 9]]\n", 4, "function.pairs[3]",
+         "has the input 10 of pair 2"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\nfit = 'minimax'\n", None,
+         "function.input", "is missing: a fit needs the start angles"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),
+        (_MOTION + "[given]\nfixed_pivots = [[0, 0]]\n", 18, "given",
+         "leaves no freedom for 5 poses"),
+        (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "tolerance = 1\n"), 11,
+         "positions[3].tolerance", "has no effect on points"),
+        (_MOTION + "[curve]\nfile = 'foot.csv'\n", 18, "curve",
+         'has no effect on task = "motion"'),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\n[given]\nfixed_pivots = [[0, 0]]\n", 6,
+         "given.fixed_pivots", "must be two pivots on a level line"),
+    ],
+)  # fmt: skip
+def test_a_bad_task_is_refused_with_its_place(
+    text: str, line: int | None, key: str, message: str
+) -> None:
+    with pytest.raises(lw.MechanismFileError) as caught:
+        read_task_text(text, "task.toml")
+    problems = caught.value.problems
+    from linkwork.foundation.errors import key_text
+
+    found = [p for p in problems if key_text(p.key) == key]
+    assert found, [(key_text(p.key), p.message) for p in problems]
+    assert message in found[0].message
+    if line is not None:
+        assert found[0].line == line
+
+
+def test_tasks_of_python_are_those_of_files() -> None:
+    poses = [(0, 0, 0), (40, -40, 10), (100, -80, 25), (170, -110, 45), (260, -140, 75)]
+    made = lw.Task.motion(poses, wanted={"transmission": {"least": 30}})
+    again = read_task_text(made.described.text)
+    assert again.positions == made.described.positions
+    assert again.wanted == made.described.wanted
+    with pytest.raises(lw.MechanismError, match="is not a key of"):
+        lw.Task.motion(poses, wanted={"transmision": {"least": 30}})
+    with pytest.raises(lw.MechanismError, match="must be a finite number"):
+        lw.Task.motion([(0, 0), *poses])
+
+
+def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
+    translated = [(0, 0, 5), (40, -40, 5), (100, -80, 5), (170, -110, 5), (260, -140, 5)]
+    with pytest.raises(lw.MechanismError, match="two guides"):
+        lw.Task.motion(translated).solve()
+    turned = [(1, 2, angle) for angle in (0, 10, 30, 50, 90)]
+    with pytest.raises(lw.MechanismError, match=r"a rotation about \[1, 2\]"):
+        lw.Task.motion(turned).solve()
+    rolled = [(0, 0, 0), (1, 0, 90), (1, 1, 180), (0, 1, 270)]
+    with pytest.raises(lw.MechanismError, match=r"a rotation about \[0.5, 0.5\]"):
+        lw.Task.motion(rolled).solve()
+
+
+def test_a_kind_without_a_solver_says_so() -> None:
+    assert read_task(_EXAMPLES[0]).kind
+    with pytest.raises(lw.InputError, match="cannot be solved yet"):
+        lw.Task(read_task_text("format = 1\ntask = 'improve'\n")).solve()
+
+
+def test_a_mechanism_of_any_kind_is_judged_by_its_circuits() -> None:
+    bar = lw.example("four-bar")
+    there = [bar.solve(at=angle).points["B"] for angle in (0, 90, 180)]
+    crossed = bar.solve(at=180, configuration="crossed").points["B"]
+    assert lw.Task.path(there).defects_of(bar, (0, 90, 180), point="B") == ()
+    (defect,) = lw.Task.path([*there[:2], crossed]).defects_of(bar, (0, 90, 180), point="B")
+    assert (defect.kind.name, defect.between) == ("CIRCUIT", (2, 3))
+    with pytest.raises(lw.InputError, match="3 positions need as many inputs, got 2"):
+        lw.Task.path(there).defects_of(bar, (0, 90), point="B")

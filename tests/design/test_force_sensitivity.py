@@ -1,0 +1,122 @@
+"""Sensitivities of forces equal differences of whole computations, with friction too."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.linkage import Linkage
+from tests.design.extrapolated import changed_by, extrapolated
+
+MACHINE = """
+format = 1
+name = "Loaded slider-crank"
+length = "mm"
+[dimensions]
+m2 = 0.8
+mu = 0.1
+[points]
+O = [0, 0]
+A = [20, 34.6]
+B = [126.8, -20]
+S = [0, -20]
+T = [160, -20]
+[links]
+ground = ["O", "S", "T"]
+crank = ["O", "A"]
+rod = ["A", "B"]
+block = ["B"]
+[lengths]
+"O A" = 40
+"A B" = 120
+[[sliders]]
+name = "d"
+link = "block"
+points = ["B"]
+on = "ground"
+line = ["S", "T"]
+[masses]
+crank = { mass = 1.0, center = [15, 0], inertia = 300 }
+rod = { mass = "m2", center = [50, 3], inertia = 900 }
+block = { mass = 0.5 }
+[gravity]
+[[loads]]
+point = "B"
+force = ["-100 - 0.2*d", 0]
+[[springs]]
+name = "return"
+between = ["T", "B"]
+stiffness = 2
+free = 20
+damping = 0.01
+[input]
+link = "crank"
+from = 0
+to = 360
+step = 10
+speed = "300 rpm"
+"""
+FRICTION = """
+[friction]
+A = { mu = "mu", radius = 5 }
+B = { mu = 0.2, radius = 4 }
+d = { mu = 0.15 }
+"""
+FORCES = [
+    "crank.effort", "O.force.x", "A.force.x", "B.force.y", "d.normal", "d.moment", "shaking.y",
+    "return.tension", "power", "kinetic_energy", "stored_energy", "energy_rate", "load_power",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", [MACHINE, MACHINE + FRICTION], ids=["smooth", "rubbing"])
+def test_forces_have_the_derivatives_of_differences(text: str) -> None:
+    machine = lw.loads(text)
+    names = ["O A", "A B", "m2", "T.y", *(["mu"] if text != MACHINE else [])]
+    names_of = [*FORCES, *(["A.friction"] if text != MACHINE else [])]
+    found = {of: machine.sensitivity(of, at=50, by=names) for of in names_of}
+    assert {s.status.name for s in found.values()} == {"FOUND"}
+    for name in names:
+        at = next(iter(found.values())).numbers[name]
+
+        def forces(x: float, name: str = name) -> dict[str, float]:
+            reactions = changed_by(machine, name, x).forces(at=50)
+            return {of: float(reactions[of]) for of in names_of}
+
+        other, here = extrapolated(forces, at, 4e-3 * abs(at)), forces(at)
+        for of, slope in other.items():
+            # differences of numbers of this size over steps of a thousandth
+            assert found[of][name] == pytest.approx(
+                slope, rel=1e-9, abs=1e-10 * (abs(here[of]) + 1.0) / abs(at)
+            )
+
+
+def test_efforts_of_several_inputs_have_the_derivatives_of_differences() -> None:
+    robot = lw.example("five-bar-robot")
+    given = cast(Linkage, robot.description)
+    masses = {k: lw.Mass(mass=1.0, shape="rod") for k in given.links if k != "ground"}
+    loaded = robot.changed(masses=masses, gravity=lw.Gravity())
+    start, length = loaded.solve().input, next(iter(given.lengths))
+    for name in start:
+        of = f"{name}.effort"
+        found = loaded.sensitivity(of, at=start, by=[length])
+        at = found.numbers[length]
+
+        def effort(x: float, of: str = of) -> dict[str, float]:
+            return {of: float(changed_by(loaded, length, x).forces(start)[of])}
+
+        assert found[length] == pytest.approx(extrapolated(effort, at, 1e-3 * at)[of], rel=1e-8)
+
+
+def test_rows_of_a_table_have_the_sensitivities_of_positions() -> None:
+    machine = lw.loads(MACHINE)
+    rows = np.asarray(machine.gradient("crank.effort", by=["A B"])["A B"])
+    assert rows[5] == pytest.approx(machine.sensitivity("crank.effort", at=50)["A B"], rel=1e-10)
+
+
+def test_a_machine_without_loads_has_no_forces_to_differentiate() -> None:
+    with pytest.raises(InputError, match=r'there is no "crank\.effort"'):
+        lw.example("slider-crank").sensitivity("crank.effort", at=60)

@@ -1,0 +1,274 @@
+"""Sensitivities equal derivatives of closed forms, and differences of whole computations."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.differentiated_forces import LoadedRows
+from linkwork.foundation.errors import InputError, UnknownNameError
+from tests.design.extrapolated import changed_by, extrapolated, own_position, values_of
+from tests.library_mechanisms import driven_examples, read_example
+from tests.thinned import thinned
+
+STEP = 1e-40  # of a complex step: its square vanishes
+
+
+def complex_step(of: Callable[..., complex], *at: float) -> list[float]:
+    """The derivatives of a function of several numbers, exact to rounding."""
+    found = []
+    for k in range(len(at)):
+        moved = [x + STEP * 1j * (j == k) for j, x in enumerate(at)]
+        found.append(of(*moved).imag / STEP)
+    return found
+
+
+def slide(crank: complex, rod: complex, offset: complex, angle: float = math.pi / 3.0) -> complex:
+    """The displacement of a slider on a line 20 below the crank's pivot, less an offset."""
+    return crank * math.cos(angle) + cmath.sqrt(
+        rod**2 - (crank * math.sin(angle) + 20.0 - offset) ** 2
+    )
+
+
+def slide_rate(crank: complex, rod: complex, offset: complex) -> complex:
+    """Its derivative by the crank's angle at 60°."""
+    angle = math.pi / 3.0
+    height = crank * math.sin(angle) + 20.0 - offset
+    return -crank * math.sin(angle) - height * crank * math.cos(angle) / cmath.sqrt(
+        rod**2 - height**2
+    )
+
+
+#: Most of their numbers cannot vary alone: redundant links, pitch curves.
+REFUSED = ("oval-gears", "parallel-cranks", "dixon-one", "dixon-two", "scissor-three-bars")
+NAMES = ["O2 A", "B A", "d.offset"]
+AT = (40.0, 120.0, 0.0)
+
+
+def test_a_slider_crank_has_the_derivatives_of_its_closed_form() -> None:
+    found = read_example("slider-crank").sensitivity("d", at=60, by=NAMES)
+    # published for this machine to sixteen digits
+    assert found["O2 A"] == pytest.approx(0.0570816958859256, rel=1e-13)
+    assert found["B A"] == pytest.approx(1.1231958120288066, rel=1e-13)
+    assert found["d.offset"] == pytest.approx(0.511438004218547, rel=1e-13)
+    assert [found[n] for n in NAMES] == pytest.approx(complex_step(slide, *AT), rel=1e-12)
+
+
+def test_rates_have_the_derivatives_of_their_closed_form() -> None:
+    found = read_example("slider-crank").gradient("d.d1", at=60, by=NAMES)
+    assert list(found.values()) == pytest.approx(complex_step(slide_rate, *AT), rel=1e-12)
+
+
+def test_rows_of_a_table_have_the_derivatives_of_positions() -> None:
+    mechanism = read_example("slider-crank")
+    found = mechanism.gradient("d", by=NAMES)
+    for row in (0, 60, 250):
+        wanted = complex_step(partial(slide, angle=math.radians(row)), *AT)
+        own = [np.asarray(found[n])[row] for n in NAMES]
+        assert own == pytest.approx(wanted, rel=1e-12, abs=1e-12)
+
+
+def test_a_dead_point_moves_as_its_closed_form() -> None:
+    """The crank turns no further where coupler and rocker are in line."""
+    lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
+    mechanism = read_example("four-bar").changed(lengths=lengths)
+
+    def cosine(a: complex, b: complex, c: complex) -> complex:
+        return (a**2 + 100.0**2 - (b - c) ** 2) / (2.0 * a * 100.0)
+
+    names = ["O2 A", "A B", "O4 B"]
+    at = [lengths[n] for n in names]
+    angle = math.acos(cosine(*at).real)
+    wanted = [-math.degrees(slope / math.sin(angle)) for slope in complex_step(cosine, *at)]
+    upper = mechanism.sensitivity("limit.lower", by=names)
+    assert upper.value == pytest.approx(math.degrees(angle), abs=1e-9)
+    assert [upper[n] for n in names] == pytest.approx(wanted, rel=1e-9)
+    lower = mechanism.sensitivity("limit.upper", by=names)
+    assert [lower[n] for n in names] == pytest.approx([-x for x in wanted], rel=1e-9)
+
+
+def test_an_extreme_at_a_dead_point_moves_with_it() -> None:
+    lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
+    mechanism = read_example("four-bar").changed(lengths=lengths)
+    found = mechanism.sensitivity("stroke(rocker)", by=["A B"])
+    other = extrapolated(
+        lambda x: {"stroke": changed_by(mechanism, "A B", x).sweep().value("stroke(rocker)")},
+        120.0, 0.05,
+    )  # fmt: skip
+    # dead points are located to half the digits of their input, extremes there to fewer
+    assert found["A B"] == pytest.approx(other["stroke"], rel=1e-6)
+
+
+@pytest.mark.parametrize("of", ["stroke(d)", "max(rod)", "mean(d)", "path_length(B)"])
+def test_numbers_of_a_motion_have_the_derivatives_of_their_rows(of: str) -> None:
+    mechanism = read_example("slider-crank").changed(inputs=[lw.Input(link="crank", step=5)])
+    found = mechanism.sensitivity(of, by=["O2 A"])
+    other = extrapolated(
+        lambda x: {of: changed_by(mechanism, "O2 A", x).sweep().value(of)}, 40.0, 0.1
+    )
+    # max takes a row; the others sum rounding of 73 rows over steps of 0.025
+    assert found["O2 A"] == pytest.approx(other[of], rel=1e-9)
+
+
+def test_a_length_given_by_a_formula_varies_alone_and_with_its_dimension() -> None:
+    mechanism = read_example("geared-five-bar")
+    found = mechanism.sensitivity("rod1", at=60, by=["a", "O A"])
+    assert found["a"] == pytest.approx(found["O A"], rel=1e-14)
+    assert "O A" not in mechanism.sensitivity("rod1", at=60).derivatives
+
+
+@pytest.mark.parametrize("name", thinned(driven_examples(), 9))
+def test_all_quantities_of_a_library_mechanism_have_the_derivatives_of_differences(
+    name: str,
+) -> None:
+    mechanism = read_example(name)
+    model = mechanism.model
+    start = model.start_in_file_units.copy()
+    start[0] += 0.7 if len(start) else 0.0
+    inputs = {x.name: float(u) for x, u in zip(model.equations.inputs, start, strict=True)}
+    position = mechanism.solve(inputs, certify=False)
+    if not position.status.ok:
+        position = mechanism.solve(certify=False)
+    values = np.array(list(position.input.values())) * model.input_scale
+    v = own_position(model, np.append(position.q, values)[None, :])
+    numbers, _ = chosen_numbers(model, None)
+    random = np.random.default_rng(len(name))
+    numbers = tuple(numbers[k] for k in random.permutation(len(numbers))[:2])
+    taped = LoadedRows(model, numbers, v, 2)
+    known, further = model.quantities, set(model.quantities.names.further)
+    wanted, results = [], []
+    for own in (*known.own.values(), *known.derived.values()):
+        if own.row in further:
+            continue  # forces have a test of their own
+        for rate in ("", ".d1", ".d2"):
+            asked = known.find(f"{own.name}{rate}")
+            if asked.needs <= 2:
+                wanted.append(asked.name)
+                with np.errstate(all="ignore"):
+                    results.append(asked.values(taped, taped.speed))
+    rates = [np.broadcast_to(x, (len(numbers), 1))[:, 0] for x in taped.tape.forward(results)]
+    size, compared = model.equations.length_scale, 0
+    for k, number in enumerate(numbers):
+        at = float(number.of(model.description))
+        step = 0.015 if number.table == "angles" else 1.5e-4 * size
+        with np.errstate(all="ignore"):
+            here = values_of(mechanism, number.name, v, wanted, at)
+            try:
+                other = extrapolated(
+                    partial(values_of, mechanism, number.name, v, wanted), at, step
+                )
+            except InputError:
+                continue  # two dimensions of ground agree to first order only
+        for own_name, slopes in zip(wanted, rates, strict=True):
+            scale = max(abs(here[own_name]) / size, abs(other[own_name]))
+            if math.isfinite(scale) and scale < 1e3 * max(1.0, 1.0 / size):
+                # six digits of differences whose steps lose half of the sixteen
+                assert slopes[k] == pytest.approx(
+                    other[own_name], rel=1e-6, abs=1e-6 * scale + 1e-9
+                )
+                compared += 1
+    assert compared > 0 or name in REFUSED
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "jansen-leg", "curved-slot", "five-bar-robot"])
+def test_forward_and_adjoint_derivatives_are_equal(name: str) -> None:
+    mechanism = read_example(name)
+    model = mechanism.model
+    position = mechanism.solve(certify=False)
+    values = np.array(list(position.input.values())) * model.input_scale
+    v = np.append(position.q, values)[None, :]
+    taped = LoadedRows(model, chosen_numbers(model, None)[0], v, 2)
+    compared = 0
+    for asked in (*model.quantities.own.values(), *model.quantities.derived.values()):
+        with np.errstate(all="ignore"):
+            result = asked.values(taped, None)
+            forward, backward = taped.tape.forward([result])[0], taped.tape.backward(result)
+        if not np.isfinite(getattr(result, "values", result)).all():
+            continue
+        assert np.ravel(forward) == pytest.approx(np.ravel(backward), rel=1e-10, abs=1e-12)
+        compared += bool(np.any(forward))
+    assert compared > 5
+
+
+def test_a_gradient_needs_no_more_nodes_for_more_numbers() -> None:
+    """The adjoint visits what the quantity depends on, once for all numbers."""
+    model = read_example("jansen-leg").model
+    numbers, _ = chosen_numbers(model, None)
+    position = read_example("jansen-leg").solve(certify=False)
+    v = np.append(position.q, model.start_inputs)[None, :]
+    sizes = []
+    for count in (1, len(numbers)):
+        taped = LoadedRows(model, numbers[:count], v, 0)
+        result: Any = model.quantities.find("F.x").values(taped, None)
+        written = len(taped.tape._needed([result.node]))
+        sizes.append(written)
+    assert len(numbers) > 20
+    # more numbers reach more coefficients, not more equations
+    assert sizes[1] < 5 * sizes[0]
+
+
+# Statuses and wrong input
+
+
+def test_a_dead_point_has_no_finite_sensitivity() -> None:
+    lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
+    mechanism = read_example("four-bar").changed(lengths=lengths)
+    found = mechanism.sensitivity("rocker", by=["A B"])
+    dead = [word == "dead point" for word in mechanism.sweep().limit]
+    statuses = [status.name for status, row in zip(found.statuses, dead, strict=True) if row]
+    assert statuses == ["DEAD_POINT", "DEAD_POINT"]
+    assert np.isnan(np.asarray(found["A B"])[dead]).all()
+    assert {status.name for status in found.statuses} == {"FOUND", "DEAD_POINT", "NO_POSITION"}
+    assert "limit.lower" in found.statuses[dead.index(True)].value
+
+
+def test_a_missing_position_has_a_status_and_no_numbers() -> None:
+    lengths = {"O2 A": 80.0, "A B": 120.0, "O4 B": 80.0, "O2 O4": 100.0}
+    found = read_example("four-bar").changed(lengths=lengths).sensitivity("rocker", at=5)
+    assert found.status is lw.SensitivityStatus.NO_POSITION
+    assert math.isnan(found["A B"])
+
+
+def test_a_number_that_cannot_vary_alone_is_refused_with_its_reason() -> None:
+    bar = read_example("four-bar")
+    found = bar.sensitivity("rocker", at=60)
+    assert "ground coordinates are exact" in found.refused["O2 O4"]
+    with pytest.raises(InputError, match='"O2 O4" cannot vary alone: ground coordinates'):
+        bar.sensitivity("rocker", at=60, by=["O2 O4"])
+    stressed = read_example("parallel-cranks")
+    refused = stressed.sensitivity(stressed.loop_equations.inputs[0].name).refused
+    assert "a redundant link does not fit any more" in refused.values()
+
+
+@pytest.mark.parametrize(
+    ("of", "by", "message"),
+    [
+        ("dd", None, 'there is no "dd"'),
+        ("d", ["B Z"], '"B Z" is not a number of'),
+        ("d", ["B A", "A B"], '"A B" is named twice'),
+        ("residual", None, "it has no sensitivity"),
+        ("stroke(d)", None, "leave out at"),
+        ("d.velocity", None, "needs the speed of the input"),
+    ],
+)
+def test_wrong_names_are_refused(of: str, by: list[str] | None, message: str) -> None:
+    with pytest.raises((InputError, UnknownNameError), match=message):
+        read_example("slider-crank").sensitivity(of, at=60, by=by)
+
+
+def test_numbers_without_known_derivatives_are_refused() -> None:
+    crank = read_example("slider-crank")
+    message = re.escape('the derivatives of "dwell(d, 1)" are not known')
+    with pytest.raises(InputError, match=message):
+        crank.sensitivity("dwell(d, 1)")
+    with pytest.raises(InputError, match="no dead point above its start"):
+        crank.sensitivity("limit.upper")
