@@ -28,6 +28,7 @@ from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
+from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
 from tests.campaigns.workbooks import workbook_campaign
@@ -36,7 +37,7 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
 # every length of train is a part; tasks of poses are solved many at a time
-_OWN_PART = {"parallel-trains": 1, "poses": 1000}
+_OWN_PART = {"parallel-trains": 1, "poses": 1000, "precision-points": 4}
 
 
 @dataclass(frozen=True)
@@ -104,6 +105,10 @@ def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
 
+def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
+    return precision_campaign(part, _OWN_PART["precision-points"])
+
+
 def _poses(part: int) -> tuple[Counter[str], list[str]]:
     return pose_campaign(part, _OWN_PART["poses"])
 
@@ -126,6 +131,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
     "forces": (_forces, 2_000),
+    "precision-points": (_precision_points, 200),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
 }
