@@ -14,12 +14,7 @@ from linkwork.expression.grammar import RESERVED, parse
 from linkwork.expression.tree import Name
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import (
-    ExpressionError,
-    InputError,
-    MechanismError,
-    Problem,
-)
+from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
 from linkwork.foundation.plain_numbers import as_told
