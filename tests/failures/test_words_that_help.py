@@ -150,7 +150,7 @@ def changed(**fields: Any) -> Callable[[], object]:
         (
             lambda: lw.loops(loop={}),
             'there is no field "loop" (fields: loops, name, length, angle, dimensions, inputs, '
-            "trace, outputs, … 13 more)",
+            "trace, outputs, … 15 more)",
         ),
         (
             lambda: lw.loops(loops={"l": 3}, guess={}),
