@@ -17,6 +17,7 @@ const CALLED: Readonly<Record<ArrowKind, string>> = {
 export class ArrowSets {
   private readonly kinds: readonly Arrows[];
   private readonly legend: HTMLElement;
+  private readonly labels = new Map<Arrows, HTMLElement>();
   private readonly names: Names;
   private row = -1;
   private room = "[]";
@@ -35,19 +36,26 @@ export class ArrowSets {
   /** A switch for every kind with arrows; forces are on. */
   switches(box: Element): void {
     for (const arrows of this.kinds) {
-      if (!arrows.any) continue;
       arrows.shown = arrows.kind === "forces";
-      toggle(box, CALLED[arrows.kind], arrows.shown, (on) => {
+      const made = toggle(box, CALLED[arrows.kind], arrows.shown, (on) => {
         arrows.shown = on;
         if (arrows.kind === "vectors") this.drawing.dim(on);
         this.draw(this.row);
       });
+      this.labels.set(arrows, made.parentElement!);
     }
+    this.offer();
+  }
+
+  /** Switches of arrows that there are: an edit may add loads. */
+  private offer(): void {
+    for (const [arrows, label] of this.labels) label.hidden = !arrows.any;
   }
 
   renew(data: PageData): void {
     this.names.view = this.drawing.view;
     for (const arrows of this.kinds) arrows.renew(data);
+    this.offer();
   }
 
   show(view: MotionView): void {

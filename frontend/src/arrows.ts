@@ -1,5 +1,6 @@
 // Arrows over the drawing: vectors of the loops, velocities and accelerations of points, forces.
 
+import { forcesOf, forceUnit } from "./forces";
 import type { MotionView, Point } from "./motion";
 import { roundUp, shortNumber, trimmed } from "./numbers";
 import type { PageData } from "./page_data";
@@ -48,7 +49,7 @@ export class Arrows {
   /** Whether there are arrows. */
   get any(): boolean {
     if (this.kind === "vectors") return this.data.motions.some((motion) => motion.vectors.length > 0);
-    return this.kind !== "forces" || this.data.forces.length > 0;
+    return this.kind !== "forces" || this.data.forces.length > 0 || this.data.motions.some((motion) => motion.reactions.length > 0);
   }
 
   renew(data: PageData): void {
@@ -97,8 +98,7 @@ export class Arrows {
     const rates = points.map(rate);
     let largest = 0;
     for (const [dx, dy] of rates) {
-      const sizes = view.order.map((row) => Math.hypot(dx[row]!, dy[row]!)).sort((a, b) => a - b);
-      largest = Math.max(largest, sizes[Math.floor(USUAL * (sizes.length - 1))] ?? 0);
+      largest = Math.max(largest, ...usual(view.order.map((row) => Math.hypot(dx[row]!, dy[row]!))));
     }
     const speed = view.data.speed;
     const per = speed ? "s" : this.data.derivative_unit;
@@ -112,13 +112,19 @@ export class Arrows {
       });
   }
 
+  /** Given forces, and those of pins and loads in every row. */
   private forces(view: MotionView): Ends {
-    const { forces, force_unit: unit } = this.data;
-    const scale = this.scaled(Math.max(0, ...forces.map(({ x, y }) => Math.hypot(x, y))), "Force", unit);
-    for (const { point } of forces) this.add("lw-force", `F(${view.points[point]!.shown})`);
+    const given = this.data.forces.map(({ point, x, y }) => ({ point, name: `F(${view.points[point]!.shown})`, at: () => [x, y] as const }));
+    const found = forcesOf(view).map((force) => ({ point: force.point, name: force.name, at: force.at }));
+    const all = [...given, ...found];
+    const sizes = all.flatMap(({ at }) => usual(view.order.map((row) => Math.hypot(...at(row)))));
+    const unit = given.length ? this.data.force_unit : forceUnit(view);
+    const scale = this.scaled(Math.max(0, ...sizes), "Force", unit);
+    for (const { name } of all) this.add("lw-force", name);
     return (row) =>
-      forces.map(({ point, x, y }) => {
+      all.map(({ point, at }) => {
         const [px, py] = [view.points[point]!.x[row]!, view.points[point]!.y[row]!];
+        const [x, y] = at(row);
         return [px, py, px + scale * x, py + scale * y];
       });
   }
@@ -185,6 +191,12 @@ export class Arrows {
     name.setAttribute("x", String(place.x));
     name.setAttribute("y", String(-place.y + 0.3 * size));
   }
+}
+
+/** The size that most rows do not exceed; none without rows. */
+function usual(sizes: number[]): number[] {
+  const known = sizes.filter(Number.isFinite).sort((a, b) => a - b);
+  return known.slice(Math.floor(USUAL * (known.length - 1)), Math.floor(USUAL * (known.length - 1)) + 1);
 }
 
 /** Two corners of the box around the tips of arrows; empty without arrows. */

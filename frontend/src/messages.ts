@@ -42,6 +42,16 @@ export interface SetInput {
   speed?: number | string | null;
 }
 
+export interface SetMass {
+  kind: "set_mass";
+  id?: number;
+  link: string;
+  mass?: number | string | null;
+  x?: number | string | null;
+  y?: number | string | null;
+  inertia?: number | string | null;
+}
+
 export interface AddPoint {
   kind: "add_point";
   id?: number;
@@ -311,6 +321,8 @@ export interface FileState {
   links: readonly (Link)[];
   parts: readonly (string)[];
   part_entries: readonly (PartShown)[];
+  masses: readonly (MassShown)[];
+  mass_unit: string;
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
@@ -543,6 +555,15 @@ export interface PartShown {
   points: readonly (string)[];
 }
 
+export interface MassShown {
+  link: string;
+  mass: string;
+  x: string;
+  y: string;
+  inertia: string;
+  rod: boolean;
+}
+
 export interface Drive {
   kind: string;
   name: string;
@@ -630,6 +651,7 @@ export type LiveEdit =
   | MovePoint
   | MovePoints
   | SetInput
+  | SetMass
   | AddPoint
   | RemovePoint
   | AddLink
@@ -655,6 +677,7 @@ export type LiveRequest =
   | MovePoint
   | MovePoints
   | SetInput
+  | SetMass
   | AddPoint
   | RemovePoint
   | AddLink

@@ -1,6 +1,7 @@
 // The front end mounted by offline pages, the live page and the notebook widget.
 
 import { ArrowSets } from "./arrow_sets";
+import { ForcePolygon } from "./force_polygon";
 import { Charts } from "./charts";
 import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
@@ -118,6 +119,7 @@ class Page implements Mounted {
   private pinned = false;
   private readonly ghost: Ghost;
   private readonly whole: MotionNumbers;
+  private readonly polygon: ForcePolygon;
   private readonly table: RowTable;
   private readonly player: Player;
   private readonly live: HTMLElement;
@@ -169,6 +171,7 @@ class Page implements Mounted {
     this.charts = new Charts(hooks.embedded ? side : this.root, this.plotted(), (index) => this.hold(index));
     this.table = new RowTable(facts, 1e-10 * (data.view[2]! - data.view[0]!));
     this.whole = new MotionNumbers(facts);
+    this.polygon = new ForcePolygon(facts);
     this.equationBox = html("div", {}, facts);
     keepFitted(this.equationBox, this.gone.signal);
     this.equations();
@@ -276,6 +279,7 @@ class Page implements Mounted {
       this.charts.show(view, this.past, steady);
       this.table.show(view);
       this.whole.show(view, steady);
+      this.polygon.show(view);
     }
     this.root.classList.toggle("lw-still", still);
     say(this.summary, view.data.summary);
@@ -339,6 +343,7 @@ class Page implements Mounted {
       if (this.view.series.length) this.charts.draw(row);
       this.transport.draw(this.view, this.player.at, row);
       this.table.draw(row);
+      this.polygon.draw(row);
       this.root.dataset.row = String(row);
       this.hooks.row?.(this.motion, row);
     }

@@ -64,6 +64,7 @@ export interface MotionData {
   readonly numbers: readonly MotionNumber[];
   readonly answers: readonly AnswerData[];
   readonly view: readonly number[];
+  readonly reactions: readonly ReactionData[];
 }
 
 /** One number of the whole motion, such as `stroke(s16)`; `None` if undefined. */
@@ -140,6 +141,15 @@ export interface QuestionData {
   readonly tolerance: number;
   readonly turn: number;
   readonly hide: readonly string[];
+}
+
+/** A force on a point, given by index, of the link `by` on the link `on`, "" for loads; `x` and `y` name the columns of its components. */
+export interface ReactionData {
+  readonly point: number;
+  readonly on: string;
+  readonly by: string;
+  readonly x: string;
+  readonly y: string;
 }
 
 /** The style of a role: colours (`tone`: that of the link; "" for none), widths in strokes. */

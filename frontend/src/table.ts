@@ -24,7 +24,7 @@ export class RowTable {
     parent: Element,
     private readonly rounding: number,
   ) {
-    this.box = html("div", { class: "lw-table" }, parent);
+    this.box = html("div", { class: "lw-table", tabindex: 0, role: "group", "aria-label": "Numbers" }, parent);
     this.proof = html("dl", { class: "lw-proof" }, parent);
   }
 

@@ -23,7 +23,7 @@ function motion(changes: Partial<MotionData> = {}): MotionView {
   const none = plain(ANGLES.map(() => 0));
   const data: MotionData = {
     name: "motion", summary: "", rows: ROWS, order: plain(ANGLES.map((_, k) => k)), closed: false,
-    speed: 2, backwards: false, turns: [], frames: [], parts: [], vectors: [], driven: [], limits: [], numbers: [], answers: [], view: [-10, -10, 10, 10],
+    speed: 2, backwards: false, turns: [], frames: [], parts: [], vectors: [], driven: [], limits: [], numbers: [], answers: [], reactions: [], view: [-10, -10, 10, 10],
     columns: [
       { name: "crank", shown: "crank", unit: "deg", group: "input", values: plain(ANGLES), first: null, first_unit: "", band: [] },
       { name: "rocker", shown: "rocker", unit: "deg", group: "unknown", values: of((t) => 20 * Math.sin(t)), first: of(Math.cos), first_unit: "rad/rad", band: [] },

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.friction import Friction as Friction
     from linkwork.mechanism.input_law import LawSegment as LawSegment
     from linkwork.mechanism.mass import Gravity as Gravity, Mass as Mass
+    from linkwork.mechanism.motor import Motor as Motor
     from linkwork.mechanism.part.belt import Belt as Belt
     from linkwork.mechanism.part.cam import Cam as Cam, Segment as Segment
     from linkwork.mechanism.part.curve import Curve as Curve
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from linkwork.mechanism.part.spring import Spring as Spring
     from linkwork.mechanism.part.weld import Weld as Weld
     from linkwork.mechanism.question import Question as Question
+    from linkwork.mechanism.stop import Stop as Stop
     from linkwork.numerics.newton import NewtonOptions as NewtonOptions
     from linkwork.results.check import CheckReport as CheckReport
     from linkwork.results.circuits import (
@@ -75,6 +77,7 @@ if TYPE_CHECKING:
         Configurations as Configurations,
         PathCount as PathCount,
     )
+    from linkwork.results.equilibrium import Equilibrium as Equilibrium
     from linkwork.results.failure import (
         Failure as Failure,
         Remedy as Remedy,

@@ -29,6 +29,7 @@ from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
 from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
+from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
 from tests.campaigns.workbooks import workbook_campaign
@@ -37,7 +38,7 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
-_OWN_PART = {"gradients": 1, "parallel-trains": 1, "poses": 1000}
+_OWN_PART = {"gradients": 1, "parallel-trains": 1, "poses": 1000, "precision-points": 4}
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,10 @@ def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
 
+def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
+    return precision_campaign(part, _OWN_PART["precision-points"])
+
+
 def _poses(part: int) -> tuple[Counter[str], list[str]]:
     return pose_campaign(part, _OWN_PART["poses"])
 
@@ -127,6 +132,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
     "forces": (_forces, 2_000),
+    "precision-points": (_precision_points, 200),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
     "gradients": (gradient_campaign, EVERY),

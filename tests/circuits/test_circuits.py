@@ -131,6 +131,17 @@ def test_change_points_join_branches_to_one_circuit(
     assert circuit.smallest_singular_value == 0.0
 
 
+def test_a_step_across_two_change_points_at_once_is_found() -> None:
+    # at its change points two loops of Peaucellier's linkage fold, and det J keeps its sign
+    found = lw.example("peaucellier").circuits().circuits
+    assert len(found) == 2
+    for circuit in found:
+        assert circuit.certified
+        assert circuit.end is lw.CircuitEnd.CHANGE_POINT
+        assert all(limit.located for limit in circuit.change_points)
+        assert circuit.dead_points == ()
+
+
 def test_a_kite_moves_while_its_crank_stands_still() -> None:
     """Galloway's mechanism: at 0 degrees coupler and rocker turn as one about the ground pivot."""
     (circuit,) = four_bar(FourBar(1.0, 1.0, 2.0, 2.0), 1.0).circuits()

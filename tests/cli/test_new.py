@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 import linkwork as lw
 from linkwork.textfile.reader import read_draft
 from tests.cli.conftest import Run
@@ -21,6 +23,18 @@ def test_a_copy_has_its_own_name(run: Run, tmp_path: Path) -> None:
     copy, own = lw.load(path), lw.example("four-bar")
     assert copy.name == 'a "b"'
     assert copy.changed(name=own.name).description == own.description
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "/"])
+def test_a_folder_is_not_the_name_of_a_new_file(name: str, run: Run) -> None:
+    done = run("new", name)
+    assert done.exit_code == 2
+    assert (
+        done.stderr.split()
+        == (
+            f'Error: "{name}" is not the name of a file: write one, as in "linkwork new press"'
+        ).split()
+    )
 
 
 def test_nothing_is_overwritten(run: Run, tmp_path: Path) -> None:

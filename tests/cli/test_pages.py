@@ -257,6 +257,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "configurations",
         "circuits",
         "forces",
+        "simulate",
         "sensitivity",
         "tolerance",
         "design",

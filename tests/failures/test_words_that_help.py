@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -149,7 +150,7 @@ def changed(**fields: Any) -> Callable[[], object]:
         (
             lambda: lw.loops(loop={}),
             'there is no field "loop" (fields: loops, name, length, angle, dimensions, inputs, '
-            "trace, outputs, … 13 more)",
+            "trace, outputs, … 15 more)",
         ),
         (
             lambda: lw.loops(loops={"l": 3}, guess={}),
@@ -195,4 +196,24 @@ def test_numbers_near_the_largest_float_warn_nobody(
     mechanism = lw.load(tmp_path / "large.toml")
     mechanism.solve()
     mechanism.configurations()
+    assert not recwarn.list
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "extreme"),
+    [
+        ("cam-roller-follower", "base    = 40", "base = 1e120"),
+        ("cam-roller-follower", "base    = 40", "base = 1e200"),
+        ("cam-swinging-follower", "base    = 35", "base = 1e200"),
+        ("belt-drive", "radii   = [25, 50]", "radii = [25, 1e-200]"),
+        ("four-bar", 'speed = "25 rad/s"', "speed = 1e160"),
+    ],
+)
+def test_parts_of_extreme_size_are_solved_or_refused(
+    name: str, given: str, extreme: str, recwarn: pytest.WarningsRecorder
+) -> None:
+    text = lw.example_text(name)
+    assert given in text
+    with suppress(lw.LinkworkError):  # nothing else is raised
+        lw.loads(text.replace(given, extreme)).solve()
     assert not recwarn.list

@@ -247,7 +247,6 @@ def test_only_stressed_joints_are_undetermined() -> None:
         ({"loads": [lw.Load(link="rodd", torque=1)]}, 'link "rodd" is not defined'),
         ({"loads": [lw.Load(link="rod", torque="1 +")]}, "expected a number"),
         ({"loads": [lw.Load(link="rod", torque="2*rodd")]}, 'there is no "rodd"'),
-        ({"loads": [lw.Load(link="rod", torque="t")]}, "needs the speed"),
         ({"loads": [lw.Load(point="A")]}, "needs either a force or a torque"),
         ({"loads": [lw.Load(point="A", link="block", force=(1, 0))]}, "does not carry A"),
         ({"masses": {"rod": lw.Mass(mass=-1, shape="rod")}}, "must not be negative"),
@@ -267,6 +266,15 @@ def test_wrong_loads_are_refused_with_their_key(changes: dict[str, object], mess
     with pytest.raises(MechanismError) as refused:
         lw.linkage(**SLIDER_CRANK, inputs=lw.Input(link="crank"), **changes)
     assert message in str(refused.value)
+
+
+def test_loads_in_time_need_a_speed_for_forces_but_not_for_simulations() -> None:
+    loads = [lw.Load(link="rod", torque="t")]
+    masses = {"rod": lw.Mass(mass=1, shape="rod")}
+    engine = lw.linkage(**SLIDER_CRANK, inputs=lw.Input(link="crank"), loads=loads, masses=masses)
+    with pytest.raises(MechanismError, match="needs the speed"):
+        engine.forces()
+    assert engine.simulate(0.1, step=0.1).found.all()
 
 
 def test_loops_that_read_as_a_linkage_have_its_reactions() -> None:

@@ -15,7 +15,7 @@ import pytest
 import linkwork as lw
 from linkwork.foundation.aligned import allocate_aligned
 from linkwork.foundation.arrays import Array
-from linkwork.kernels.march import sweep_kernel
+from linkwork.kernels.march import step_control, sweep_kernel
 from linkwork.kernels.march.sweep_kernel import Steps, SweepKernel
 from linkwork.kernels.program import execution
 from linkwork.kernels.program.code_cache import is_cached, load_compiled
@@ -169,3 +169,15 @@ def test_without_a_folder_to_write_to_the_machine_serves(
     mine = kernel()
     mine.choose_execution(Execution(positions=1 << 40))
     assert mine.trial == 0
+
+
+def test_equations_compiled_before_leave_values_as_they_were() -> None:
+    family = lw.example("four-bar").family({"O2 A": np.linspace(38.0, 42.0, 20)})
+    before = family.sweep(certify=False).rows.v
+    family.sweep(certify=False, specialised=True)
+    np.testing.assert_array_equal(family.sweep(certify=False).rows.v, before)
+
+
+def test_functions_of_compiled_ones_refuse_python() -> None:
+    with pytest.raises(TypeError, match="stride is called by compiled functions only"):
+        step_control.stride(1.0, 2.0, 0.1)

@@ -22,11 +22,11 @@ MODULES = [
     if path != Path(__file__)
 ]
 #: Tables that a file of points and links may repeat, by its published schema; inputs are another,
-#: and questions are no parts.
+#: questions are no parts, and stops join nothing.
 JOINT_TABLES = [
     table
     for table, entry in json_schema()["$defs"]["points_and_links"]["properties"].items()
-    if entry.get("type") == "array" and table != "questions"
+    if entry.get("type") == "array" and table not in ("questions", "stops")
 ]
 DRIVEN = driven_examples()
 

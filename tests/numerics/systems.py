@@ -56,6 +56,10 @@ class Cubic:
         return np.asarray((6 * v[:, 0] * d[:, 0] ** 2 + 2 * d[:, 0] * d[:, 1])[:, None])
 
     @property
+    def single(self) -> None:
+        return None
+
+    @property
     def has_curvature_bound(self) -> bool:
         return False
 

@@ -20,7 +20,7 @@ from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import LinearRows
 from linkwork.motion.proving import prove_rows
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation import path_proof
+from linkwork.numerics.continuation import path_proof, step_halving
 from linkwork.numerics.continuation.branch_tracking import (
     InputPath,
     Track,
@@ -418,7 +418,8 @@ def test_the_first_step_without_a_proof_tells_why_there_is_none_beyond() -> None
 def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
     lanes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(path_proof, "_LANES", lanes)
+    monkeypatch.setattr(step_halving, "_LANES", lanes)
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     points = beads_of(solver, v)
@@ -441,7 +442,8 @@ def test_a_proof_stops_at_its_allowance_and_begins_at_the_anchor(
 
 
 def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(path_proof, "_LANES", 1)  # one after the other
+    monkeypatch.setattr(step_halving, "_LANES", 1)  # one after the other
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
     theta = np.radians(np.arange(0.0, 361.0, 60.0))
     solver, v = four_bar_at(ROCKER, theta, 1)
     v[2] = four_bar_at(ROCKER, theta, -1)[1][2]
@@ -564,3 +566,27 @@ def test_every_reason_for_a_missing_certificate_is_reached(monkeypatch: pytest.M
         ),
     ]
     assert set(reasons) == set(Certification)
+
+
+def test_a_step_to_another_branch_is_soon_refused() -> None:
+    theta = np.radians(np.arange(0.0, 361.0, 60.0))
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    v[3] = four_bar_at(ROCKER, theta, -1)[1][3]
+    found = prove_path(solver, PATH, beads_of(solver, v))
+    np.testing.assert_array_equal(found.connected, [True, True, False, False, True, True])
+    # a step that shrinks to nothing before it is refused takes 45 halvings
+    assert found.pieces.max() < 40
+
+
+def test_steps_divided_at_once_are_proved_as_halved_ones_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    theta = np.linspace(0.0, 2.0 * np.pi, 9)
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    points = beads_of(solver, v)
+    divided = prove_path(solver, PATH, points)
+    monkeypatch.setattr(step_halving, "_SHORTER", np.ones(1))  # none is divided at once
+    halved = prove_path(solver, PATH, points)
+    assert divided.connected.all()
+    assert halved.connected.all()
+    assert divided.pieces.sum() <= 1.5 * halved.pieces.sum()

@@ -14,6 +14,7 @@ from linkwork import batch
 from tests.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")
+PRESS = lw.example("crank-press")
 
 
 @pytest.mark.parametrize(
@@ -38,6 +39,12 @@ BAR = lw.example("four-bar")
         (lambda: BAR.changed(joint=3), 'there is no field "joint" (fields: '),
         (lambda: BAR.approximate_sweep(3), "the neighbour must be a Motion, got 3"),  # type: ignore[arg-type]
         (lambda: BAR.moving_loops({}), "the cycle must be a Motion, got {}"),  # type: ignore[arg-type]
+        (lambda: PRESS.forces(motion="a"), "the motion must be a Motion, got 'a'"),  # type: ignore[arg-type]
+        (
+            lambda: PRESS.forces(motion=BAR.sweep()),
+            'the motion belongs to "Four-bar linkage, open", not to "Crank press with forces"',
+        ),
+        (lambda: batch.from_table("\0"), "'\\x00' cannot be read: embedded null"),
         (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]

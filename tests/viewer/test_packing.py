@@ -70,3 +70,8 @@ def test_short_columns_have_seven_digits_and_half_the_size() -> None:
     assert short[:2] == pytest.approx([0.1, -2e5], rel=1e-7)
     assert np.isnan(short[2:]).all()
     assert len(shortened(values, found).content) == len(unpressed(values, found).content) / 2
+
+
+def test_values_beyond_short_floats_are_gaps() -> None:
+    back = unpacked(shortened(np.array([1e300, 2.5, -3.5e38]), np.ones(3, bool)), np.ones(3, bool))
+    np.testing.assert_array_equal(back, [np.nan, 2.5, np.nan])

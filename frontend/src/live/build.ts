@@ -75,6 +75,7 @@ export class Build {
   readonly element = html("div", { class: "lw-build" });
   private readonly input: HTMLElement;
   private readonly palette: HTMLElement;
+  private readonly masses: HTMLElement;
   private readonly paths: HTMLElement;
   private readonly parts: HTMLElement;
   private readonly text: HTMLTextAreaElement;
@@ -83,6 +84,7 @@ export class Build {
   constructor(private readonly desk: Desk) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
+    this.masses = this.group("Masses", false);
     this.paths = this.group("Paths of points", false);
     this.parts = this.group("Remove", false);
     const box = this.group("Text of the file", false);
@@ -99,8 +101,33 @@ export class Build {
     this.text.value = file.text;
     this.inputs(file);
     this.pieces(file);
+    this.weights(file);
     this.traces(file);
     this.removable(file);
+  }
+
+  /** A form for the mass of every link; an empty one has none. */
+  private weights(file: FileState): void {
+    this.masses.querySelectorAll("form, p").forEach((old) => old.remove());
+    const lead = "The centre is in the frame of the link, from its first point towards its second. A link of two points without centre and inertia is a uniform rod.";
+    html("p", { class: "lw-lead" }, this.masses, lead);
+    const length = file.length_unit;
+    for (const { link, mass, x, y, inertia } of file.masses) {
+      const form = html("form", { class: "lw-form", "aria-label": `Mass of ${link}` }, this.masses);
+      html("p", { class: "lw-wide" }, form, link);
+      const fields = [
+        { key: "mass", label: `Mass [${file.mass_unit}]`, value: mass },
+        { key: "x", label: `Centre x [${length}]`, value: x },
+        { key: "y", label: `Centre y [${length}]`, value: y },
+        { key: "inertia", label: `Inertia [${file.mass_unit} ${length}²]`, value: inertia },
+      ].map(({ key, label, value }) => ({ key, input: field(form, label, value) }));
+      html("button", { type: "submit" }, form, `Set the mass of ${link}`);
+      form.addEventListener("submit", (event) => {
+        event.preventDefault();
+        const given = fields.filter(({ input }) => input.value.trim());
+        this.desk.ask({ kind: "set_mass", link, ...Object.fromEntries(given.map(({ key, input }) => [key, typed(input.value)])) });
+      });
+    }
   }
 
   private traces(file: FileState): void {

@@ -44,7 +44,7 @@ export function blank(file: FileState): PageData {
   };
   const motion = {
     name: file.title, summary: "", rows: 1, order: zero, closed: false, speed: 0, backwards: false, columns: [], points: [],
-    turns: [], frames: [], parts: [], vectors: [], driven: [], evidence, limits: [], numbers: [], answers: [], view: [0, 0, 1, 1],
+    turns: [], frames: [], parts: [], vectors: [], driven: [], evidence, limits: [], numbers: [], answers: [], reactions: [], view: [0, 0, 1, 1],
   };
   return {
     format: 1, title: file.title, length_unit: file.length_unit, derivative_unit: "", input_unit: "",

@@ -202,6 +202,7 @@ export class SolvedPages {
       },
       limits,
       answers: [],
+      reactions: [], // their columns are not solved
       numbers: [],
     };
     return { ...motion, parts: this.parts(motion, order.rows, numbers) };

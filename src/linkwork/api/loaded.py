@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from linkwork import forces
+from linkwork import dynamics, forces
 from linkwork.api.solvable import SolvableMechanism
+from linkwork.mechanism.dimensions import Number
 
 if TYPE_CHECKING:
+    from linkwork.results.equilibrium import Equilibrium
     from linkwork.results.motion import Motion
     from linkwork.results.reactions import Reactions
     from linkwork.results.stall import Stall
@@ -94,3 +96,97 @@ class LoadedMechanism(SolvableMechanism):
         """
         rows = self.sweep(configuration=configuration) if motion is None else motion
         return forces.locate_stalls(self.model, rows, configuration=configuration)
+
+    def simulate(
+        self,
+        until: float,
+        *,
+        step: float | None = None,
+        at: float | Mapping[str, float] | None = None,
+        start_speed: Number = 0,
+        change_points: str = "stop",
+        certify: bool = True,
+        progress: Callable[[float], None] | None = None,
+    ) -> Motion:
+        """The motion in time under masses, loads, springs, a motor and stops; see
+        :mod:`linkwork.dynamics`.
+
+        The input is free: it starts at ``at`` with ``start_speed``. Friction is left out.
+
+        Parameters
+        ----------
+        until : float
+            The last time [s].
+        step : float, optional
+            Between rows [s]; by default 400 rows. Events add rows: stops, switched loads.
+        at : number or Mapping[str, number], optional
+            The input value at the start, in file units; by default that of the guess.
+        start_speed : str or number
+            Of the input: ``"60 rad/s"``; a number is in file units per second.
+        change_points : str
+            ``stop`` at a change point, or go ``straight`` on.
+        certify : bool
+            Prove the positions of all rows.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Returns
+        -------
+        Motion
+            Rows over the time ``t``, with all quantities and rates; ``message`` says how it ended.
+
+        Raises
+        ------
+        InputError
+            If nothing has mass, there is not one input, or a law drives it.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> pendulum = lw.linkage(
+        ...     length="m", points={"O": (0, 0), "A": (-1, 0)},
+        ...     links={"ground": ["O"], "bar": ["O", "A"]}, inputs=lw.Input(link="bar"),
+        ...     masses={"bar": lw.Mass(mass=1, center=(1, 0))}, gravity=lw.Gravity(),
+        ... )
+        >>> motion = pendulum.simulate(until=10, step=1)
+        >>> round(float(motion["A.x"][-1]), 12)
+        -0.275087462576
+        """
+        return dynamics.simulate(
+            self.model,
+            until=until,
+            step=step,
+            at=at,
+            start_speed=start_speed,
+            change_points=change_points,
+            certify=certify,
+            progress=progress,
+        )
+
+    def equilibria(
+        self, at: float | Mapping[str, float] | None = None, *, change_points: str = "stop"
+    ) -> tuple[Equilibrium, ...]:
+        """The positions at which the mechanism can rest, on the circuit of its start.
+
+        Parameters
+        ----------
+        at, change_points
+            As in :meth:`simulate`.
+
+        Returns
+        -------
+        tuple of Equilibrium
+            Each with its stability and natural frequency.
+
+        Raises
+        ------
+        InputError
+            As :meth:`simulate`.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> [each.stable for each in lw.example("crank-press").equilibria()]
+        [False, True]
+        """
+        return dynamics.equilibria(self.model, at, change_points=change_points)

@@ -85,9 +85,7 @@ class Builder:
 
     def __post_init__(self) -> None:
         equations = self.base.equations
-        self.pattern = Pattern.of(equations)
-        own = self.pattern.coefficients(equations)
-        assert own is not None
+        self.pattern, own = Pattern.with_coefficients(equations)
         count = len(next(iter(self.values.values())))
         for name, values in _named(own).items():
             kind = complex if name in _COMPLEX else float
@@ -188,18 +186,19 @@ class Builder:
     def _check_finite(self) -> None:
         """Rebuild designs without finite coefficients separately; reject those still not finite."""
         odd = np.flatnonzero(~self._finite() & (self.problem == 0))
-        for k in odd:
-            self._alone(int(k))
-        odd = odd[~self._finite()[odd] & (self.problem[odd] == 0)]
-        self._mark(odd, "its equations have no finite coefficients")
-        for array in self.arrays.values():
-            array[self.problem != 0] = np.nan
+        if odd.size:
+            for k in odd:
+                self._alone(int(k))
+            odd = odd[~self._finite()[odd] & (self.problem[odd] == 0)]
+            self._mark(odd, "its equations have no finite coefficients")
+        if self.problem.any():
+            for array in self.arrays.values():
+                array[self.problem != 0] = np.nan
 
     def _finite(self) -> AnyArray:
         finite = np.ones(len(self.problem), dtype=bool)
         for array in self.arrays.values():
-            for column in array.T:
-                finite &= np.isfinite(column)
+            finite &= np.isfinite(array).all(axis=1)
         return finite
 
 

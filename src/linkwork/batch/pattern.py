@@ -69,12 +69,22 @@ class Pattern:
             laws=equations.laws,
         )
 
+    @classmethod
+    def with_coefficients(cls, equations: LoopEquations) -> tuple[Pattern, Coefficients]:
+        """The pattern of a set of equations, and their own coefficients."""
+        own = cls.of(equations)
+        found = own._ordered(equations, own)
+        assert found is not None
+        return own, found
+
     def coefficients(self, equations: LoopEquations) -> Coefficients | None:
         """The coefficients in the order of this pattern; ``None`` if they do not match it.
 
         A term missing in the equations, such as that of an offset of 0, has the coefficient 0.
         """
-        own = Pattern.of(equations)
+        return self._ordered(equations, Pattern.of(equations))
+
+    def _ordered(self, equations: LoopEquations, own: Pattern) -> Coefficients | None:
         if own.rest != self.rest or not _same_laws(own.laws, self.laws):
             return None
         loops = _in_order([loop.terms for loop in equations.loops], own.loops, self.loops)

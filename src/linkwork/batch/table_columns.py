@@ -84,6 +84,8 @@ def _read_csv(path: Path, columns: Sequence[str] | None) -> dict[str, Array]:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path} is not UTF-8 text: save it as CSV in UTF-8") from None
+    except ValueError as error:  # no path, such as one with a NUL character
+        raise InputError(f"{as_told(str(path))} cannot be read: {error}") from None
     return {name: np.array(values) for name, values in found.items()}
 
 

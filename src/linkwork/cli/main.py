@@ -24,6 +24,7 @@ _COMMANDS = (
     "configurations",
     "circuits",
     "forces",
+    "simulate",
     "sensitivity",
     "tolerance",
     "design",

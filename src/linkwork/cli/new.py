@@ -38,6 +38,10 @@ def new(name: str, model: str | None, as_json: bool) -> None:
     overwritten.
     """
     path = Path(name)
+    if path.name in ("", ".."):
+        raise InputError(
+            f'"{name}" is not the name of a file: write one, as in "linkwork new press"'
+        )
     path = path if path.suffix else path.with_suffix(".toml")
     text = blank_sheet(path.stem) if model is None else _named(example_text(model), path.stem)
     if path.exists():

@@ -48,7 +48,7 @@ def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
         mean=turn.mean,
         energy=stored,
         # eq. (78)
-        inertia=stored / (fluctuation * speed**2) / unit,
+        inertia=stored / (fluctuation * (speed * speed)) / unit,
         slowest=float(angle[low] / scale),
         fastest=float(angle[high] / scale),
         units={
@@ -62,6 +62,7 @@ def flywheel(model: Model, motion: Motion, fluctuation: float) -> Flywheel:
 
 def _energy(turn: WholeTurn) -> tuple[Array, Array]:
     """The energy of the flywheel, at all rows and where the effort is equal to its mean."""
+    # extremes lie where the effort crosses its mean, between rows too
     surplus = turn.mean - turn.value
     a, b = surplus[:-1], surplus[1:]
     with np.errstate(all="ignore"):

@@ -36,6 +36,7 @@ def inflection_circle(
     moving = [name for name in description.carried if name != GROUND]
     if link is None:
         fixed = description.carried.get(GROUND, ())
+        # the coupler, in four links
         free = [name for name in moving if not set(description.carried[name]) & set(fixed)]
         if len(free) != 1:
             raise InputError(f"name the link {choices('links', moving)}")

@@ -75,7 +75,9 @@ def _sliding(cam: Cam, guide: GuidePart, frames: Frames, motion: Piecewise) -> F
             f"is too small: the follower passes the centre at a distance of {abs(e):.6g}, the "
             f"base circle{' with the roller' if roller else ''} reaches only {base + roller:.6g}"
         )
-    low = base if flat else math.sqrt((base + roller) ** 2 - e**2)
+    # the difference of squares in two factors, which do not overflow
+    reach = base + roller
+    low = base if flat else math.sqrt(reach - abs(e)) * math.sqrt(reach + abs(e))
     deepest = float(motion(motion.breaks).min())
     if low + deepest <= 0.0:
         return (
@@ -115,7 +117,8 @@ def _swinging(cam: Cam, frames: Frames, motion: Piecewise) -> Follower | str:
     base, roller = numbers(cam.base or 0), numbers(cam.radius)
     a, d = abs(arm), abs(ground)
     flat = cam.contact == "flat"
-    cosine = (a * a + d * d - (base + roller) ** 2) / (2.0 * a * d)
+    reach = base + roller
+    cosine = 0.5 * (a / d + d / a - reach / a * (reach / d))
     if (flat and base >= d) or (not flat and abs(cosine) >= 1.0):
         return (
             f"does not fit: a follower whose arm of {a:.6g} swings about a pivot {d:.6g} away from "

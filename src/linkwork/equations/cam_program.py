@@ -103,12 +103,14 @@ class FollowerPath:
         z, z1 = w * back, (w1 - 1j * w) * back
         z2 = (w2 - 2j * w1 - w) * back
         # the path is clockwise around the centre, so it is convex where it bends clockwise
-        bend = -(z1.conj() * z2).imag / np.abs(z1) ** 3
+        speed = np.abs(z1)
+        # divided one by one: powers of large lengths overflow
+        bend = -(z1.conj() / speed * (z2 / speed)).imag / speed
         if self.roller:
             worst = int(bend.argmax())
             if bend[worst] * self.roller >= 1.0:
                 raise Undercut(float(phi[worst]))
-        surface: ComplexArray = z - self.roller * 1j * z1 / np.abs(z1)  # eq. (66)
+        surface: ComplexArray = z - self.roller * 1j * z1 / speed  # eq. (66)
         return surface
 
     def _face(self, phi: Array) -> ComplexArray:

@@ -185,14 +185,14 @@ class _LoopWriter:
             if len(bodies) > 1
             for body in bodies
         ]
-        variables: dict[tuple[str, str], tuple[str, ...]] = {}
+        variables = []
         for body, point in incidences:
             turning = frames.angle[body].variable
             found = [None if turning is None else canonical(turning)]
             for term in frames.places[body][point].sliding:
                 found += [term.length, *(name for name, _ in term.phase)]
             found = list(dict.fromkeys(found))
-            variables[body, point] = tuple(n for n in found if n is not None and n in unknown)
+            variables.append(tuple(n for n in found if n is not None and n in unknown))
         relations = [
             tuple(name for name, _ in equation.terms if name in unknown) for equation in self.linear
         ]
@@ -202,7 +202,7 @@ class _LoopWriter:
         for loop in self.contacts.loops:
             names = dict.fromkeys(n for term in loop.terms for n in _names_of(term))
             relations += 2 * [tuple(name for name in names if name in unknown)]
-        return Structure(incidences, variables, relations, GROUND)
+        return Structure(tuple(incidences), tuple(variables), tuple(relations), GROUND)
 
     def _check_connected(self, structure: Structure) -> None:
         """Report bodies that share no point with another body."""
@@ -265,7 +265,7 @@ class _LoopWriter:
         label = " ".join(start for start, _, _ in crossings)
         return LoopEquation(label=label, left=left, right=right)
 
-    def _place_points(self, blocks: list[StructureBlock]) -> None:
+    def _place_points(self, blocks: Sequence[StructureBlock]) -> None:
         """Every point as its parent point plus terms, parents first."""
         self.base = {GROUND: None}
         for point in self.frames.places[GROUND]:

@@ -321,6 +321,7 @@ def _quintic(over: float, begin: tuple[float, ...], end: tuple[float, ...]) -> A
 def _quintic_middle(over: Array, left: list[Array], right: list[Array]) -> Array:
     """The values of such polynomials half way."""
     (v0, a1, a2), (v1, b1, b2) = left, right
+    # eq. (21)
     middle: Array = 0.5 * (v0 + v1) + 5.0 / 32.0 * over * (a1 - b1) + over**2 / 64.0 * (a2 + b2)
     return middle
 

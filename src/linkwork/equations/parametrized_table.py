@@ -82,8 +82,23 @@ class ParametrizedTable:
     def jacobian(self, v: Array) -> Array:
         """The scaled Jacobian with respect to all variables but the path parameter, (B, m, m)."""
         table = self.table
-        slope = table.jacobian(v) * table.variable_scale / table.equation_scale[:, None]
+        one = table.single if len(v) == 1 else None
+        slope = (
+            table.jacobian(v)
+            if one is None
+            else np.array([one.residual_and_jacobian(v[0].tolist())[1]])
+        )
+        slope = slope * table.variable_scale / table.equation_scale[:, None]
         return np.delete(slope, self.parameter, axis=2)
+
+    def _bend(self, v: Array, directions: Array) -> Array:
+        """D²F[d, d] at a position v (N,) for directions (B, N), (B, m)."""
+        one = self.table.single
+        if one is None:
+            places = np.tile(v, (len(directions), 1))
+            return self.table.second_directional_derivative(places, directions)
+        here = v.tolist()
+        return np.array([one.second_directional_derivative(here, d) for d in directions.tolist()])
 
     def weakening(self, v: Array, rates: Array) -> float:
         """The rate of the smallest singular value σ of the scaled Jacobian at a position v (N,).
@@ -96,7 +111,7 @@ class ParametrizedTable:
         w = np.insert(right[-1], self.parameter, 0.0) * table.variable_scale
         both = np.stack([rates + w, rates - w])
         # eq. (5)
-        change = 0.25 * np.subtract(*table.second_directional_derivative(np.stack([v, v]), both))
+        change = 0.25 * np.subtract(*self._bend(v, both))
         return float(left[:, -1] @ (change / table.equation_scale))  # eq. (16)
 
 

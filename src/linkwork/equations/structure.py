@@ -9,8 +9,9 @@ equations have the same blocks as the mechanism.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 
 from linkwork.numerics.decomposition import BlockForm, block_form
 
@@ -32,56 +33,79 @@ class StructureBlock:
     loops: tuple[tuple[Node, ...], ...]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Structure:
     """The body-point graph of a linkage and its blocks in solving order.
 
     Parameters
     ----------
-    incidences : sequence of (body, point)
+    incidences : tuple of (body, point)
         All pairs of a body and a point on or guided by it that another body uses.
-    variables : Mapping[(body, point), tuple of str]
+    variables : tuple of tuple of str
         The unknown angles and lengths in each incidence.
-    relations : sequence of tuple of str
+    relations : tuple of tuple of str
         Unknowns of each further real equation.
     ground : str
-
-    ``neighbours`` is the part of the graph determined so far.
     """
 
-    incidences: Sequence[tuple[str, str]]
-    variables: Mapping[tuple[str, str], tuple[str, ...]]
-    relations: Sequence[tuple[str, ...]]
+    incidences: tuple[tuple[str, str], ...]
+    variables: tuple[tuple[str, ...], ...]
+    relations: tuple[tuple[str, ...], ...]
     ground: str
-    neighbours: dict[Node, list[Node]] = field(default_factory=dict)
 
-    def form(self) -> tuple[BlockForm, list[str]]:
+    def form(self) -> tuple[BlockForm, tuple[str, ...]]:
         """Block form of all joint conditions, and the names of its columns."""
-        names: dict[str, int] = {}
+        return _form_of(self)
 
-        def columns(labels: Iterable[str]) -> list[int]:
-            return [names.setdefault(label, len(names)) for label in labels]
-
-        pattern: list[list[int]] = []
-        for body, point in self.incidences:
-            ends = [f"point {point} x", f"point {point} y"]
-            if body != self.ground:
-                ends += [f"body {body} x", f"body {body} y"]
-            pattern.append(columns([*ends, *self.variables[body, point]]))
-        pattern += [columns(relation) for relation in self.relations]
-        count = [2] * len(self.incidences) + [1] * len(self.relations)
-        return block_form(pattern, count, len(names)), list(names)
-
-    def blocks(self) -> list[StructureBlock]:
+    def blocks(self) -> tuple[StructureBlock, ...]:
         """Blocks with their spanning trees and loops, in solving order."""
-        form, _ = self.form()
-        known: set[Node] = {("body", self.ground)}
+        return _blocks_of(self)
+
+
+# designs of a family, and versions of a mechanism while it is dragged, have the same structure
+_keep = lru_cache(maxsize=64)
+
+
+@_keep
+def _form_of(structure: Structure) -> tuple[BlockForm, tuple[str, ...]]:
+    names: dict[str, int] = {}
+
+    def columns(labels: Iterable[str]) -> list[int]:
+        return [names.setdefault(label, len(names)) for label in labels]
+
+    pattern: list[list[int]] = []
+    for (body, point), variables in zip(structure.incidences, structure.variables, strict=True):
+        ends = [f"point {point} x", f"point {point} y"]
+        if body != structure.ground:
+            ends += [f"body {body} x", f"body {body} y"]
+        pattern.append(columns([*ends, *variables]))
+    pattern += [columns(relation) for relation in structure.relations]
+    count = [2] * len(structure.incidences) + [1] * len(structure.relations)
+    return block_form(pattern, count, len(names)), tuple(names)
+
+
+@_keep
+def _blocks_of(structure: Structure) -> tuple[StructureBlock, ...]:
+    form, _ = structure.form()
+    return _Blocks(structure).of(form)
+
+
+class _Blocks:
+    """The blocks of a structure; ``neighbours`` is the part of the graph determined so far."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        self.neighbours: dict[Node, list[Node]] = {}
+
+    def of(self, form: BlockForm) -> tuple[StructureBlock, ...]:
+        incidences = self.structure.incidences
+        known: set[Node] = {("body", self.structure.ground)}
         found: list[StructureBlock] = []
         for equations, _ in form.blocks:
             edges = [
-                (("body", self.incidences[e][0]), ("point", self.incidences[e][1]))
+                (("body", incidences[e][0]), ("point", incidences[e][1]))
                 for e in equations
-                if e < len(self.incidences)
+                if e < len(incidences)
             ]
             if not edges:
                 continue
@@ -91,7 +115,7 @@ class Structure:
                 self.neighbours.setdefault(body, []).append(point)
                 self.neighbours.setdefault(point, []).append(body)
             found.append(block)
-        return found
+        return tuple(found)
 
     def _block(self, edges: list[Edge], known: set[Node]) -> StructureBlock:
         graph = _BlockGraph(edges, known)

@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 import unicodedata
 from dataclasses import dataclass
+from functools import lru_cache
 
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.errors import ExpressionError, choices
@@ -325,6 +326,12 @@ def parse(text: str, *, comparing: bool = False) -> Node:
     ExpressionError
         With the column and the expected token.
     """
+    return _parsed(text, comparing)
+
+
+# the same formulas are read for every design of a family and every step of a drag
+@lru_cache(maxsize=1024)
+def _parsed(text: str, comparing: bool) -> Node:
     reader = _Reader(text, comparing)
     node = reader.whole()
     reader.finish()

@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
-__all__ = ["Binary", "Call", "Name", "Negative", "Node", "Number", "names_in"]
+__all__ = [
+    "Binary",
+    "Call",
+    "Name",
+    "Negative",
+    "Node",
+    "Number",
+    "comparisons_in",
+    "names_in",
+    "with_comparisons",
+]
 
 
 @dataclass(frozen=True)
@@ -70,3 +80,39 @@ def names_in(node: Node) -> Iterator[Name]:
                 yield from names_in(argument)
         case Number():
             return
+
+
+def comparisons_in(node: Node) -> Iterator[Binary]:
+    """All comparisons, inner ones first."""
+    match node:
+        case Negative():
+            yield from comparisons_in(node.operand)
+        case Binary():
+            yield from comparisons_in(node.left)
+            yield from comparisons_in(node.right)
+            if node.operator in ("<", "<=", ">", ">="):
+                yield node
+        case Call():
+            for argument in node.arguments:
+                yield from comparisons_in(argument)
+        case _:
+            return
+
+
+def with_comparisons(node: Node, values: Mapping[Node, float]) -> Node:
+    """The formula with some of its comparisons replaced by numbers."""
+    if not values:
+        return node
+    if node in values:
+        return Number(values[node])
+    match node:
+        case Negative():
+            return replace(node, operand=with_comparisons(node.operand, values))
+        case Binary():
+            left = with_comparisons(node.left, values)
+            return replace(node, left=left, right=with_comparisons(node.right, values))
+        case Call():
+            inner = tuple(with_comparisons(argument, values) for argument in node.arguments)
+            return replace(node, arguments=inner)
+        case _:
+            return node

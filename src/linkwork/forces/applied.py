@@ -10,10 +10,11 @@ import numpy as np
 
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet, evaluate
-from linkwork.expression.tree import names_in
+from linkwork.expression.tree import Node, names_in, with_comparisons
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.elementwise import cis
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.units import force_of_inertia
@@ -47,6 +48,7 @@ class AppliedLoads:
 
     ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
     springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
+    ``switches``: comparisons in formulas that do not follow the rows, with their value 0 or 1.
     """
 
     geometry: Geometry
@@ -57,6 +59,7 @@ class AppliedLoads:
     kinetic: list[Array] = field(default_factory=list)
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
+    switches: Mapping[Node, float] = FrozenDict()
 
     @property
     def moves(self) -> bool:
@@ -73,11 +76,15 @@ class AppliedLoads:
 
     def value(self, number: Number) -> Array:
         """A number or formula in all rows, (B,)."""
-        geometry, model = self.geometry, self.geometry.model
         if not isinstance(number, str):
-            still: Array = np.zeros(geometry.shape) + geometry.numbers(number)
+            still: Array = np.zeros(self.geometry.shape) + self.geometry.numbers(number)
             return still
-        tree = parse(number, comparing=True)
+        return self.formula(parse(number, comparing=True))
+
+    def formula(self, tree: Node) -> Array:
+        """The value of a formula in all rows, (B,)."""
+        geometry, model = self.geometry, self.geometry.model
+        tree = with_comparisons(tree, self.switches)
         names = {node.name: self._named(node.name) for node in names_in(tree)}
         with np.errstate(all="ignore"):
             known = {name: jet for name, jet in names.items() if jet is not None}
@@ -95,7 +102,9 @@ class AppliedLoads:
         if name in CONSTANTS:
             return None
         asked = model.motion_quantities.find(name)
-        return _constant(np.atleast_1d(asked.values(self.geometry.solved, model.speed)))
+        # without a speed there is a rate in simulations only
+        speed = np.nan if model.speed is None else model.speed
+        return _constant(np.atleast_1d(asked.values(self.geometry.solved, speed)))
 
     def weigh(self, loaded: LoadedBodies) -> None:
         """Add the weight and the inertia of all masses."""

@@ -149,6 +149,7 @@ class Coupling:
             done = np.abs(rest).max(axis=1) <= largest
             if done.all():
                 break
+            # sizes have edges: Newton-Raphson takes the slope of one side there (semismooth)
             step = _solved(self._jacobian(u, share), rest)
             # NaN leaves the row where it is: it did not converge
             s = np.where(done[:, None] | ~np.isfinite(step), s, s - step)
@@ -198,6 +199,7 @@ class Coupling:
                 break
             own = self.rows(on)
             aim = np.minimum(share[on] + step[on], 1.0)
+            # Euler's prediction: ds/dλ = J⁻¹ σ
             u = own._unknowns(s[on])
             more = np.where(self.rubs, own._values(u), 0.0) * (aim - share[on])[:, None]
             guess = s[on] + _solved(own._jacobian(u, share[on]), more)
@@ -244,6 +246,7 @@ class Coupling:
         u = self._unknowns(s)
         slopes = self._slopes(u)
         g = self._values(u) - np.einsum("bjk,bk->bj", slopes, s)
+        # y H = ρ y with ρ ≥ 1 is such a row where H has no negative entries (Perron)
         values, vectors = np.linalg.eig(np.swapaxes(slopes, 1, 2))
         found = np.zeros(len(s), dtype=bool)
         for k in range(len(self.sizes)):

@@ -65,7 +65,8 @@ class Reading:
     """A quantity Σ factor · unknown + constant, (B,) each, and the amount of ``follow``.
 
     ``pushes``: the joint can only push, so that a negative value means that it lifts off;
-    ``adhesion``: it slips beyond this part of an unknown.
+    ``adhesion``: it slips beyond this part of an unknown. ``pin``: of a force in a pin its point,
+    the link on which it acts, and the one that exerts it, "" if several do.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Reading:
     follow: int | None = None
     pushes: bool = False
     adhesion: tuple[int, float] | None = None
+    pin: tuple[str, ...] = ()
 
 
 @dataclass(eq=False)

@@ -118,6 +118,7 @@ def joint_forces(bodies: FreeBodies, acts: Iterable[Act], direction: Array) -> J
             bodies=bodies, balance=known, answers=(), unknowns=start, amounts=np.zeros((rows, 0)),
             doubtful=np.zeros((rows, 0), dtype=bool), found=every, proved=every,
         )  # fmt: skip
+    # friction in a stressed joint is as unknown as its force
     doubtful = _doubtful(bodies, known, answers)
     first, change = np.zeros((rows, count, 2)), np.zeros((rows, count, 2, count))
     for j, follower in enumerate(followers):
@@ -154,10 +155,12 @@ def _doubtful(bodies: FreeBodies, known: Balance, answers: Sequence[Array]) -> B
     found = np.zeros((rows, count), dtype=bool)
     unit = np.zeros_like(answers[0])
     for k, follower in enumerate(bodies.following):
+        # a self-stress may load one component of a force only
         for own in follower.size.unknowns:
             unit[:] = 0.0
             unit[:, own] = 1.0
             found[:, k] |= known.undetermined(unit)
+    # doubts spread by reactions: at most through all followers
     for _ in range(count):
         for k, follower in enumerate(bodies.following):
             for own in follower.size.unknowns:

@@ -32,7 +32,11 @@ def join_pins(bodies: FreeBodies) -> None:
                 forces.append(force)
                 for name in _names(bodies, point, other, axis):
                     about = f"force of the pin {point} on {other}"
-                    bodies.read(name, Kind.FORCE, about, force)
+                    reading = Reading(
+                        name=name, kind=Kind.FORCE, about=about, terms=((force, 1.0),),
+                        pin=(point, other, links[0]),
+                    )  # fmt: skip
+                    bodies.readings.append(reading)
             _rub_pin(bodies, point, other, links[0], (forces[0], forces[1]))
 
 
@@ -70,5 +74,6 @@ def read_first_links(bodies: FreeBodies, known: Sequence[Act]) -> None:
                     about=f"force of the pin {point} on {links[0]}",
                     terms=tuple((k, part(force)) for k, force in forces if np.any(force)),
                     constant=part(given),
+                    pin=(point, links[0], ""),
                 )
             )

@@ -27,7 +27,7 @@ from linkwork.results.quantities.definition import (
 )
 from linkwork.results.quantity import Kind
 
-__all__ = ["force_quantities"]
+__all__ = ["check_formulas", "force_quantities"]
 
 
 def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
@@ -38,7 +38,7 @@ def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
     MechanismError
         For loads that use unknown quantities.
     """
-    _check_formulas(model)
+    check_formulas(model, at_rest=True)
     # the names only: at the guess, which need not be a position
     v = model.compiled.solver.solve(model.equations.start[None, :]).v
     still = np.zeros_like(v)
@@ -51,6 +51,7 @@ def force_quantities(model: Model) -> tuple[RowQuantity, ...]:
             needs=2,
             of=_Whole(force.kind),
             evaluate=_Evaluation(solved, name),
+            pin=force.pin,
         )
         for name, force in solve_forces(model, guess).values.items()
     )
@@ -146,31 +147,40 @@ class _Evaluation:
         return Jet(value, UNKNOWN, UNKNOWN)
 
 
-def _check_formulas(model: Model) -> None:
-    """Refuse loads that use quantities which the mechanism does not have."""
+def check_formulas(model: Model, *, at_rest: bool) -> None:
+    """Refuse loads that use quantities which the mechanism does not have.
+
+    ``at_rest``: accept the time and rates even if the input has no speed, as simulations have them.
+
+    Raises
+    ------
+    MechanismError
+        With every such load.
+    """
     description = model.description
     assert isinstance(description, Linkage | Loops)
     problems = []
     for k, load in enumerate(description.loads):
         for key, number in load.formulas:
-            message = _mistake(model, number) if isinstance(number, str) else None
+            message = _mistake(model, number, at_rest) if isinstance(number, str) else None
             if message is not None:
                 problems.append(Problem(key=("loads", k, *key), message=message))
     if problems:
         raise MechanismError(problems, f'mechanism "{description.name}"')
 
 
-def _mistake(model: Model, formula: str) -> str | None:
+def _mistake(model: Model, formula: str, at_rest: bool) -> str | None:
     """What is wrong with the names of a formula."""
     for node in names_in(parse(formula, comparing=True)):
         if node.name in CONSTANTS or node.name in model.description.numbers.known:
             continue
         if node.name == "t":
-            if model.speed is None:
+            if model.speed is None and not at_rest:
                 return f"column {node.column}: the time t needs the speed of an input"
             continue
         try:
-            model.motion_quantities.find(node.name).check_rate(model.speed)
+            speed = 0.0 if at_rest and model.speed is None else model.speed
+            model.motion_quantities.find(node.name).check_rate(speed)
         except LinkworkError as error:
             return f"column {node.column}: {error}"
     return None

@@ -6,10 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from linkwork.equations.input_motion import TIME
+from linkwork.forces.quantities import check_formulas
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.value_types import check_class
+from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
+from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.definition import Solved
@@ -30,7 +35,13 @@ def forces_of_position(model: Model, position: Position) -> Reactions:
 
 
 def forces_of_motion(model: Model, motion: Motion) -> Reactions:
-    """Efforts and reactions in all rows of a motion; raises like :func:`forces_of_position`."""
+    """Efforts and reactions in all rows of a motion of the mechanism; raises like
+    :func:`forces_of_position`, and for other motions.
+    """
+    check_class("the motion", motion, Motion)
+    if model.untimed is None and TIME in motion.inputs:  # a simulated motion
+        model = model_in_time(model)
+    check_own_motion(model, motion)
     return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),))
 
 
@@ -46,6 +57,7 @@ def _reactions(
             f"nothing loads {model.description.name}: add [masses], [[loads]] or a spring with a "
             "stiffness"
         )
+    check_formulas(model, at_rest=False)
     rows = solve_forces(model, solved)
     values = rows.values.items()
     return Reactions(

@@ -104,6 +104,7 @@ class _Search:
                 near, last = row, near
             else:
                 far = row
+        # rows near the stall are too ill-conditioned to be proved: step back from it
         width = near.value - far.value
         ends = self._proved(near, moving, width), self._proved(far, locked, -width)
         known = [

@@ -47,7 +47,8 @@ class ForceValue:
     """A quantity of forces in B rows.
 
     ``undetermined``: where a self-stress changes it; ``lifted``: where a joint that can only push
-    would have to pull; ``slipping``: where a rolling wheel would need more adhesion.
+    would have to pull; ``slipping``: where a rolling wheel would need more adhesion. ``pin``: of a
+    force on a point this point, the link on which it acts and the one that exerts it.
     """
 
     kind: Kind
@@ -56,6 +57,7 @@ class ForceValue:
     undetermined: BoolArray
     lifted: BoolArray
     slipping: BoolArray
+    pin: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,7 +89,7 @@ class _Solution:
 
     def add(
         self, name: str, kind: Kind, about: str, value: Array,
-        undetermined: BoolArray | None = None, *, pushes: bool = False,
+        undetermined: BoolArray | None = None, *, pushes: bool = False, pin: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
         none = np.zeros(self.geometry.rows, dtype=bool)
         unknown = none if undetermined is None else undetermined & self.regular
@@ -96,7 +98,13 @@ class _Solution:
         # rounding of a contact without force is no lift-off
         lifted = value < -1e-9 * size if pushes else none
         self.values[name] = ForceValue(
-            kind=kind, about=about, value=value, undetermined=unknown, lifted=lifted, slipping=none
+            kind=kind,
+            about=about,
+            value=value,
+            undetermined=unknown,
+            lifted=lifted,
+            slipping=none,
+            pin=pin,
         )
 
 
@@ -136,7 +144,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
         for name, kind, about, value in totals(geometry, applied):
-            found.add(name, kind, about, value)
+            point, pushed, _ = name.partition(".load.")
+            found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
     status[lost] = ForceStatus.NO_POSITION.code
@@ -215,6 +224,7 @@ def known_acts(bodies: FreeBodies) -> list[Act]:
 
 def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     """All readings, from the unknowns and what follows from them."""
+    # the same acts serve both ways
     acts = known_acts(bodies)
     direction = _direction(found)
     forces = joint_forces(bodies, acts, direction)
@@ -227,7 +237,10 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     read_first_links(bodies, [*acts, *forces.acts()])
     for reading in bodies.readings:
         value, doubt = forces.read(reading)
-        found.add(reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes)
+        found.add(
+            reading.name, reading.kind, reading.about, value, doubt, pushes=reading.pushes,
+            pin=reading.pin,
+        )  # fmt: skip
         if reading.adhesion is not None:
             normal, mu = reading.adhesion
             found.slips(reading.name, np.abs(value) > mu * np.abs(forces.unknowns[:, normal]))

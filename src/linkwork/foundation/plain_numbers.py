@@ -21,6 +21,8 @@ def plain_number(given: object) -> float | None:
 
     Booleans, texts and rows are not numbers; a number too large for a float is infinite.
     """
+    if type(given) is float:  # most are, and abstract classes take long to ask
+        return given
     if isinstance(given, np.ndarray) and given.ndim == 0:
         given = given[()]
     # True is a number for Python, and a mistake here

@@ -80,6 +80,16 @@ class PhaseGroups:
         """|W| by group, (N, G)."""
         return self._grouped[0]
 
+    @property
+    def members(self) -> IndexArray:
+        """The group of each term, (T,)."""
+        return self._grouped[1]
+
+    @property
+    def roundings(self) -> IndexArray:
+        """How many roundings there are in computing a phase, (G,)."""
+        return self._grouped[2]
+
     @cached_property
     def _sorted_in(self) -> ComplexArray:
         """Adds terms into (row, group) places, (T, R G)."""
@@ -119,10 +129,10 @@ class PhaseGroups:
         slip = UNIT_ROUNDOFF * (len(rows.row) + rows.rows + 8) * np.abs(alpha)
         d = self.pairs[2]
         phase = np.abs(alpha @ c) + slip @ size  # eq. (30): |α C|
-        return phase, np.abs(alpha @ d) + slip @ self._pair_size  # eq. (30): |α D|
+        return phase, np.abs(alpha @ d) + slip @ self.pair_size  # eq. (30): |α D|
 
     @cached_property
-    def _pair_size(self) -> Array:
+    def pair_size(self) -> Array:
         """Sums of moduli in the pairs' coefficients, (R, P)."""
         rows, (lengths, groups, d) = self.rows, self.pairs
         size = np.zeros(d.shape)

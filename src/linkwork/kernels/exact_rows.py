@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -85,6 +85,7 @@ def _quarter() -> int:
     return 2 * (4 * arc(5) - arc(239))
 
 
+@lru_cache(maxsize=256)  # many terms of a mechanism turn together
 def _cosine_and_sine(angle: int) -> tuple[int, int]:
     """cos and sin of ``angle`` · 2^-B, times 2^B."""
     quarter = _quarter()

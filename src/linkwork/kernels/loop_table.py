@@ -19,6 +19,7 @@ from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import FunctionRow, LinearRows
+from linkwork.kernels.single_position import SinglePosition
 
 __all__ = ["LoopTable", "TableSplitter"]
 
@@ -162,6 +163,11 @@ class LoopTable:
             return not gained.any()
         added = [(rows.coefficient * gained)[rows.row == row] for row in range(rows.rows)]
         return all(abs(sum(each)) <= TURN_ROUNDING * np.abs(each).sum() for each in added)
+
+    @cached_property
+    def single(self) -> SinglePosition | None:
+        """The equations at one position at a time; ``None`` with function rows."""
+        return None if self.functions else SinglePosition(self._groups, self.linear, self.unknowns)
 
     @property
     def straight_parts(self) -> Array:

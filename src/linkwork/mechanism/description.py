@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Self
 
 import numpy as np
@@ -14,12 +14,7 @@ from linkwork.expression.grammar import RESERVED, parse
 from linkwork.expression.tree import Name
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import (
-    ExpressionError,
-    InputError,
-    MechanismError,
-    Problem,
-)
+from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import canonical, is_name
 from linkwork.foundation.plain_numbers import as_told
@@ -177,6 +172,7 @@ class Description:
                 _check_rows(self, which, self.input_key(k), problems)
             else:
                 _check_law(self, which, self.input_key(k), problems)
+            _check_motor(self, which, self.input_key(k), problems)
         self._check_lock_step(problems)
         if self.timed:
             self._check_times(taken, problems)
@@ -285,6 +281,18 @@ class Description:
                 )
 
 
+def _check_motor(description: Description, which: Input, key: Key, problems: Problems) -> None:
+    numbers = description.numbers
+    if which.motor is not None:
+        kind = which.drives[0]
+        for field, message in which.motor.mistakes(kind, numbers, description.length):
+            problems.add((*key, "motor", field), message)
+    if which.inertia is not None:
+        amount = numbers.check_number(problems.add, (*key, "inertia"), which.inertia)
+        if amount < 0:
+            problems.add((*key, "inertia"), f"must not be negative, got {amount:g}")
+
+
 def _check_law(description: Description, which: Input, key: Key, problems: Problems) -> None:
     numbers = description.numbers
     if which.speed is not None:
@@ -341,6 +349,7 @@ def _check_name(problems: Problems, key: Key, name: str, taken: dict[str, str]) 
         taken[folded] = f"[{key[0]}]" if len(key) == 2 else f"[[{key[0]}]]"
 
 
+@lru_cache(maxsize=1024)
 def _reads_as(name: str, folded: str) -> bool:
     """Whether formulas can use the name: they read ``iθ`` as i*θ, ``x²`` as x^2."""
     if folded in RESERVED:

@@ -51,6 +51,8 @@ class Numbers:
         ExpressionError
             If the formula cannot be read or has no finite real value.
         """
+        if type(number) is float and math.isfinite(number):
+            return number
         if isinstance(number, str):
             return value(parse(number), self.known, self.unit, number)
         plain = cast(float, number) if is_batched(number) else plain_number(number)

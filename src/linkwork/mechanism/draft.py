@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.frozen import FrozenDict
@@ -144,9 +145,9 @@ class Draft(JoinedBodies):
 
 
 def _spelled_input(which: Input, same: Callable[[str], str]) -> Input:
-    changes = {
+    changes: dict[str, Any] = {
         field: same(name)
         for field in ("link", "joint", "slider", "cylinder", "relative_to")
-        if (name := getattr(which, field)) is not None
+        if (name := getattr(which, field)) is not None and same(name) != name
     }
-    return replace(which, **changes)
+    return replace(which, **changes) if changes else which

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.input_law import LawSegment
+from linkwork.mechanism.motor import Motor
 
 __all__ = ["Input"]
 
@@ -40,6 +41,11 @@ class Input:
         formula of t.
     begin : number or formula, optional
         With segments: its value at t = 0, by default that of the sketch or guess.
+    motor : Motor, optional
+        What drives it in simulations.
+    inertia : number, optional
+        In simulations: the moment of inertia that turns with it, a flywheel [mass · length²]; of a
+        length a mass.
 
     Examples
     --------
@@ -62,6 +68,8 @@ class Input:
     speed: Number | None = None
     law: tuple[LawSegment, ...] | str | None = None
     begin: Number | None = None
+    motor: Motor | None = None
+    inertia: Number | None = None
 
     def __post_init__(self) -> None:
         if self.law is not None and is_listed(self.law):

@@ -16,6 +16,7 @@ def check_friction(linkage: JoinedBodies, problems: Problems) -> None:
     for name, friction in linkage.friction.items():
         checks = PartChecks(linkage, problems, ("friction", name))
         if name in linkage.points:
+            # cylinders push along their axis only, and have no friction at their pins
             if len(list(linkage.bodies_at(name))) < 2:
                 checks.add("is no pin of two links: friction needs a joint that moves")
                 continue

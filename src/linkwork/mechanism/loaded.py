@@ -13,6 +13,7 @@ from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.mass import Gravity, Mass
+from linkwork.mechanism.stop import Stop
 
 __all__ = ["LoadedBodies", "check_masses"]
 
@@ -29,12 +30,15 @@ class LoadedBodies(Description):
         None unless given.
     masses : Mapping[str, Mass]
         By link.
+    stops : tuple of Stop
+        Bounds of quantities in simulations.
     """
 
     mass: str = "kg"
     force: str = "N"
     gravity: Gravity | None = None
     masses: Mapping[str, Mass] = FrozenDict()
+    stops: tuple[Stop, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -43,6 +47,8 @@ class LoadedBodies(Description):
             raise InputError(f"gravity must be lw.Gravity(…), got {as_told(given)}")
         check_entries("masses", Mass, self.masses.values())
         object.__setattr__(self, "masses", FrozenDict.of(self.masses))
+        check_entries("stops", Stop, self.stops)
+        object.__setattr__(self, "stops", tuple(self.stops))
 
     @property
     def carried(self) -> Mapping[str, tuple[str, ...]]:
@@ -81,6 +87,9 @@ def check_masses(loaded: LoadedBodies, problems: Problems) -> None:
         message = f"masses need a known unit of length ({', '.join(LENGTHS)})"
         problems.add(("length",), f'"{loaded.length}" cannot be converted: {message}')
     _check_gravity(loaded, problems)
+    for k, stop in enumerate(loaded.stops):
+        for field, message in stop.mistakes(loaded.numbers):
+            problems.add(("stops", k, field), message)
     for link, mass in loaded.masses.items():
         key = ("masses", link)
         if link not in loaded.carried:

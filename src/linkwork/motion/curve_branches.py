@@ -13,8 +13,14 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
 from linkwork.numerics.continuation.branch_tracking import Track, TrackOptions, rows_on_track
+from linkwork.numerics.continuation.crossed_step import cut_at_crossing
 from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
-from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
+from linkwork.numerics.continuation.curve_tracing import (
+    Curve,
+    CurveOptions,
+    Leg,
+    trace,
+)
 from linkwork.numerics.continuation.local_parametrization import Parametrization, Parametrizations
 from linkwork.numerics.continuation.turning_point import TurningPoint, turning_points
 from linkwork.results.motion import LimitKind
@@ -51,13 +57,19 @@ def trace_with_proof(
         if not curve.legs:
             return TracedCurve(curve=curve, proof=None, turns=())
         proof = prove_curve(leads, curve) if certify else None
-        found = TracedCurve(curve=curve, proof=proof, turns=tuple(turning_points(leads, curve)))
+        found = TracedCurve(curve=curve, proof=proof, turns=())
         if best is None or found.certified:
             best = found
         if best.certified:
             break
+        if proof is not None and proof.broken is not None and care is careful:
+            # a step across a change point cannot be proved; the way up to that can
+            cut = cut_at_crossing(leads, curve, *proof.broken)
+            if cut is not None:
+                found = TracedCurve(curve=cut, proof=prove_curve(leads, cut), turns=())
+                best = found if found.certified else best
     assert best is not None
-    return best
+    return replace(best, turns=tuple(turning_points(leads, best.curve)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -25,6 +25,8 @@ __all__ = ["derivatives_of"]
 
 def derivatives_of(model: Model, solved: Solved, asked: Asked, order: int) -> Array:
     """What :meth:`Model.derivatives` describes."""
+    if model.untimed is not None and not model.description.timed:
+        raise InputError(f'"{asked.own.name}": a simulated motion has two derivatives')
     return _SeriesOf(model).derivatives(solved, asked, order)
 
 

@@ -186,7 +186,9 @@ class Model:
     def rows_in_file_units(self) -> Array:
         """The table's input values as asked, in file units, (rows, p)."""
         if self.untimed is not None:
-            return self.description.times[:, None]
+            timed = self.description.timed
+            # without a law nothing says when the rows are: only that time leads
+            return self.description.times[:, None] if timed else np.array([[0.0], [1.0]])
         columns = [self.description.rows(which) for which in self.description.inputs]
         if not columns:
             return np.zeros((1, 0))

@@ -127,7 +127,7 @@ def position_of(model: Model, named: Named, row: int, evidence: Evidence, q: Arr
         first=first,
         second=second,
         velocity={} if speed is None else {n: d * speed for n, d in first.items()},
-        acceleration={} if speed is None else {n: d * speed**2 for n, d in second.items()},
+        acceleration={} if speed is None else {n: d * (speed * speed) for n, d in second.items()},
         speed=speed,
         residual=evidence.residual,
         iterations=evidence.iterations,

@@ -166,7 +166,7 @@ def _position(drive: Drive, ahead: TurnAhead, t: float) -> tuple[Array, Parametr
         def beyond(here: Node, place: int = place) -> float:
             return float(here.v[place]) - t
 
-        node = sign_change(led, low, high, beyond, sharp=True)
+        node = sign_change(led, low, high, beyond, to_rounding=True)
         v = led.whole(node.v)
         side = drive.solver.rates(v[None, :], drive.path.rate).orientation
         v[drive.solver.unknowns :] = drive.path.at(t)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -12,11 +14,15 @@ from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.rows import SolvedRows
+from linkwork.numerics.single_rows import LARGE, SingleBlock, rates_singly, solve_singly
 from linkwork.numerics.system import System
 
 __all__ = ["Block", "BlockSolver", "Linearised", "linearise_block"]
 
-_LARGE = 1e3  # condition up to which balanced columns are not tried
+# With arrays Newton-Raphson takes about as long on a block as this much work with numbers,
+_ARRAYS = 150
+_PROOFS = 75  # and a proof as this much;
+_CALL = 15  # any block takes as much as this
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +66,30 @@ class BlockSolver:
     variable_scale: Array
     options: NewtonOptions = field(default_factory=NewtonOptions)
 
+    @cached_property
+    def singles(self) -> list[SingleBlock]:
+        """The blocks in plain numbers; empty if one of them is not known so."""
+        found = [
+            SingleBlock(block.system, one, block.variables)
+            for block in self.blocks
+            if (one := block.system.single) is not None
+        ]
+        return found if len(found) == len(self.blocks) else []
+
+    @cached_property
+    def _share(self) -> float:
+        """Of the work of a whole row, that of one block."""
+        works = [_CALL + block.one.work for block in self.singles]
+        return sum(works) / len(works) if works else math.inf
+
+    def goes_singly(self, count: int) -> bool:
+        """Whether so few rows are solved one by one in plain numbers."""
+        return 0 < count * self._share <= _ARRAYS
+
+    def is_proved_singly(self, count: int) -> bool:
+        """Whether so few rows are proved one by one in plain numbers."""
+        return 0 < count * self._share <= _PROOFS
+
     def solve(
         self,
         start: Array,
@@ -70,6 +100,8 @@ class BlockSolver:
 
         A row whose block fails keeps its guess in all later blocks.
         """
+        if watches is None and self.goes_singly(len(start)):
+            return solve_singly(self.singles, start, options or self.options)
         v = start.copy()
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
@@ -155,6 +187,8 @@ class BlockSolver:
         SolvedRows
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
+        if linear is None and self.goes_singly(len(v)):
+            return rates_singly(self.singles, v, input_rate, input_bend)
         parts = self.linearise(v) if linear is None else linear
         count = len(v)
         first = np.zeros((count, self.variables))
@@ -175,16 +209,17 @@ class BlockSolver:
             # eq. (11)
             x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
             direction[:, :n] = x1
-            # eq. (12)
-            bend = system.second_directional_derivative(here, direction) + matrix_vector(
-                jacobian[:, :, n:], second[:, known]
-            )
-            first[:, block.unknowns] = x1
-            second[:, block.unknowns] = -matrix_vector(inverse, bend)
+            with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
+                # eq. (12)
+                bend = system.second_directional_derivative(here, direction) + matrix_vector(
+                    jacobian[:, :, n:], second[:, known]
+                )
+                x2 = -matrix_vector(inverse, bend)
+            first[:, block.unknowns], second[:, block.unknowns] = x1, x2
             own = _condition(system, jacobian[:, :, :n], inverse)
             condition = np.maximum(condition, own)
             # balancing the columns costs more than the rates themselves
-            if own.max(initial=0.0) > _LARGE:
+            if own.max(initial=0.0) > LARGE:
                 own = _nearness(own, system.equation_scale, jacobian[:, :, :n], inverse)
             nearness = np.maximum(nearness, own)
             orientation[:, k] = parts[k].sign

@@ -78,6 +78,10 @@ class JoinedBlocks:
             found[block.variables] |= block.system.is_angle
         return found[self.order]
 
+    @property
+    def single(self) -> None:
+        """The blocks are joined as arrays only."""
+
     def _whole(self, v: Array) -> Array:
         whole = np.zeros((len(v), self.solver.variables))
         whole[:, self.order] = v

@@ -4,19 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import CONVERGED, Status
 from linkwork.foundation.value_types import check_values
 from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.system import System
 
-__all__ = ["NewtonOptions", "corrections", "newton"]
+__all__ = [
+    "FAR",
+    "SMALLEST_RATIO",
+    "NewtonOptions",
+    "corrections",
+    "newton",
+    "sharp",
+    "unlimited",
+]
 
-_FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
+FAR = 1e9  # weighted size of a correction beyond which the iteration has run away
+#: Below that rounding, not the equations, decides the ratio of two corrections.
+SMALLEST_RATIO = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +62,20 @@ class NewtonOptions:
 
     def __post_init__(self) -> None:
         check_values(self)
+
+
+@cache
+def sharp(options: NewtonOptions) -> NewtonOptions:
+    """The same, iterated down to rounding."""
+    return replace(options, equation_tolerance=EPSILON)
+
+
+@cache
+def unlimited(options: NewtonOptions, max_steps: int, tolerance: float) -> NewtonOptions:
+    """The same for predictions: few plain steps, to a solution tolerance."""
+    return replace(
+        options, max_steps=max_steps, largest_turn=math.inf, solution_tolerance=tolerance
+    )
 
 
 Watch = Callable[[int, Array, Array, Array | None], None]
@@ -135,7 +161,7 @@ class _Iteration:
         error = np.abs(f / system.equation_scale).max(axis=1, initial=0.0)
         self.residual[self.live] = error
         # "not <" instead of ">=": an error of NaN is lost too
-        lost = ~(error < np.inf) | (self.last > _FAR) & (k > 0)
+        lost = ~(error < np.inf) | (self.last > FAR) & (k > 0)
         done = (error <= opt.equation_tolerance) | (self.last <= opt.solution_tolerance)  # eq. (8)
         if jacobian is None or k == opt.max_steps or lost.any() or done.any():
             self._leave(lost, Status.DIVERGED)
@@ -157,8 +183,7 @@ class _Iteration:
         if k == 0:
             self.first[self.live] = size
         else:
-            # below that rounding, not the equations, decides the ratio of two corrections
-            ratio = np.where(size > 1e-9, size / self.last, 0.0)
+            ratio = np.where(size > SMALLEST_RATIO, size / self.last, 0.0)
             self.contraction[self.live] = np.maximum(self.contraction[self.live], ratio)
         self.last = size
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
-__all__ = ["Curvature", "SmallSystem", "System"]
+__all__ = ["Curvature", "SingleCurvature", "SingleSystem", "SmallSystem", "System"]
 
 
 class SmallSystem(Protocol):
@@ -32,6 +33,10 @@ class System(SmallSystem, Protocol):
     """Equations with the further functions that path following and proofs need."""
 
     @property
+    def single(self) -> SingleSystem | None:
+        """The same at one position at a time, where that is known."""
+
+    @property
     def is_angle(self) -> BoolArray:
         """(N,) which variables are angles."""
 
@@ -55,6 +60,66 @@ class System(SmallSystem, Protocol):
 
     def curvature(self, v: Array, matrix: Array) -> Curvature:
         """Moduli of the second derivatives multiplied by a matrix (B, n, m)."""
+
+
+class SingleSystem(Protocol):
+    """Equations at one position v (N,), in plain numbers; results are not to be changed."""
+
+    @property
+    def unknowns(self) -> int:
+        """n."""
+
+    @property
+    def variables(self) -> int:
+        """N."""
+
+    @property
+    def work(self) -> int:
+        """Of one evaluation, about the number of products."""
+
+    @property
+    def loop_rows(self) -> int:
+        """How many of the m equations belong to loops."""
+
+    @property
+    def phases(self) -> Sequence[Sequence[tuple[int, float]]]:
+        """Variables and weights of the G phases."""
+
+    @property
+    def pairs(self) -> Sequence[tuple[int, int]]:
+        """The variable length and the phase of P pairs."""
+
+    def residual(self, v: Sequence[float]) -> list[float]:
+        """F, (m,)."""
+
+    def residual_and_jacobian(self, v: Sequence[float]) -> tuple[list[float], list[list[float]]]:
+        """F, (m,), and dF/dv, (m, N)."""
+
+    def second_directional_derivative(self, v: Sequence[float], d: Sequence[float]) -> list[float]:
+        """D²F[d, d], (m,)."""
+
+    def curvature(self, v: Sequence[float], matrix: Sequence[list[float]]) -> SingleCurvature:
+        """As :meth:`System.curvature`."""
+
+
+class SingleCurvature(Protocol):
+    """As :class:`Curvature` at one position, every phase one of loops."""
+
+    @property
+    def phase(self) -> list[list[float]]:
+        """(n, G)."""
+
+    @property
+    def slide(self) -> list[list[float]]:
+        """(n, P)."""
+
+    @property
+    def rounding(self) -> list[float]:
+        """(m,)."""
+
+    @property
+    def jacobian_rounding(self) -> list[list[float]]:
+        """(m, N)."""
 
 
 class Curvature(Protocol):

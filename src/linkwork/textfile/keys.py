@@ -28,9 +28,11 @@ from linkwork.foundation.units import FORCES, MASSES
 from linkwork.mechanism.friction import FRICTION_KEYS
 from linkwork.mechanism.input_law import LAW_KEYS
 from linkwork.mechanism.mass import GRAVITY_KEYS, MASS_KEYS
+from linkwork.mechanism.motor import MOTOR_KEYS
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import HIDDEN
+from linkwork.mechanism.stop import STOP_KEYS
 from linkwork.mechanism.tolerances import CLEARANCES, TOLERANCES
 
 __all__ = ["EQUATIONS", "FORMAT", "FORMS", "LINKAGE", "LOOPS", "Form", "form_of"]
@@ -96,6 +98,7 @@ _FORCE_UNITS = (
 _MASSES = (
     Key("gravity", Table(GRAVITY_KEYS), "Gravity: size and direction; none unless given"),
     Key("masses", Named(Table(MASS_KEYS)), "Masses of links: crank = { mass = 1.2, … }"),
+    Key("stops", Tables(STOP_KEYS), "Bounds of quantities in simulations"),
 )
 _FRICTION = Key(
     "friction",
@@ -156,6 +159,8 @@ _RANGE = (
         "How the input moves in time: segments from t = 0, or a formula of t",
     ),
     Key("begin", Number("driven"), "With segments: input value at t = 0; default: the sketch's"),
+    Key("motor", Table(MOTOR_KEYS), "What drives the input in simulations"),
+    Key("inertia", Number("area"), "Flywheel on the input in simulations"),
 )
 _DRIVES = (
     Key("link", Text(of="link"), "The link whose angle is driven"),

@@ -15,9 +15,11 @@ from linkwork.mechanism.input_law import LawSegment
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
 from linkwork.mechanism.mass import Gravity, Mass
+from linkwork.mechanism.motor import Motor
 from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.question import Question
+from linkwork.mechanism.stop import Stop
 from linkwork.textfile.keys import EQUATIONS, FORMAT, LINKAGE, LOOPS, Form, form_of
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.structure import Structure
@@ -33,6 +35,9 @@ __all__ = [
     "read_file",
     "read_text",
 ]
+
+#: Keys that are words of Python's ranges there.
+_RENAMED = {"from": "start", "to": "stop"}
 
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
@@ -235,6 +240,7 @@ def _masses(content: dict[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {key: content[key] for key in ("mass", "force") if key in content}
     if "gravity" in content:
         found["gravity"] = Gravity(**content["gravity"])
+    found["stops"] = tuple(map(_stop, content.get("stops", ())))
     masses = content.get("masses", {}).items()
     return {**found, "masses": {link: Mass(**table) for link, table in masses}}
 
@@ -257,9 +263,14 @@ def _question(table: dict[str, Any]) -> Question:
     return Question(**{**table, **listed})
 
 
+def _stop(table: dict[str, Any]) -> Stop:
+    return Stop(**{_RENAMED.get(key, key): entry for key, entry in table.items()})
+
+
 def _input(table: dict[str, Any]) -> Input:
-    renamed = {"from": "start", "to": "stop"}
-    fields = {renamed.get(key, key): entry for key, entry in table.items()}
+    fields = {_RENAMED.get(key, key): entry for key, entry in table.items()}
     if isinstance(fields.get("law"), list):
         fields["law"] = tuple(LawSegment(**segment) for segment in fields["law"])
+    if "motor" in fields:
+        fields["motor"] = Motor(**fields["motor"])
     return Input(**fields)

@@ -163,7 +163,7 @@ def _masses(description: LoadedBodies) -> _Tables:
     gravity = description.gravity
     # a table without keys would be left out
     given = {} if gravity is None else {"size": gravity.size, **_given(gravity)}
-    return {"gravity": given, "masses": masses}
+    return {"gravity": given, "masses": masses, "stops": [_given(s) for s in description.stops]}
 
 
 def _inputs(description: Description) -> _Tables:
@@ -181,10 +181,16 @@ def _given(part: Any) -> dict[str, Any]:
     usual = {field.name: field.default for field in fields(part)}
     names = {key.attribute: key.name for key in getattr(part, "keys", ())}
     return {
-        names.get(key, key): _rows(entry) if isinstance(entry, tuple) else entry
+        names.get(key, key): _plain_entry(entry)
         for key, entry in vars(part).items()
         if entry is not None and entry != usual[key]
     }
+
+
+def _plain_entry(entry: Any) -> Any:
+    if isinstance(entry, tuple):
+        return _rows(entry)
+    return _given(entry) if is_dataclass(entry) else entry
 
 
 def _rows(entry: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -95,7 +95,10 @@ def _clipped(kept: Array) -> tuple[Array, float]:
 
 
 def _plain(values: Array, found: BoolArray, order: int) -> PackedColumn:
-    kept = np.where(np.isfinite(values[found]), values[found], np.nan).astype(_FLOATS[order])
+    kind = np.dtype(_FLOATS[order])
+    # larger values are gaps, as those that are not finite
+    fitting = np.abs(values[found]) <= np.finfo(kind).max
+    kept = np.where(fitting, values[found], np.nan).astype(kind)
     return PackedColumn(step=1.0, order=order, content=base64.b64encode(kept.tobytes()).decode())
 
 

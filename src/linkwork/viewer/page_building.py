@@ -22,7 +22,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.vector_loop import MovingLoop
 from linkwork.viewer.loop_arrows import loop_arrows
 from linkwork.viewer.packing import Pack, packed
-from linkwork.viewer.page_columns import columns_of, numbers_of
+from linkwork.viewer.page_columns import columns_of, numbers_of, reactions_of
 from linkwork.viewer.page_data import (
     Equation,
     ForceData,
@@ -136,6 +136,7 @@ def drawn_page(
             replace(
                 _motion(name, motion, scene, () if loops is None else loops(motion), pack),
                 columns=tuple(columns_of(motion, pack, asked)),
+                reactions=tuple(reactions_of(motion)),
                 numbers=() if brief else tuple(numbers_of(motion, asked)),
                 answers=() if brief else tuple(answers_of(motion)),
                 view=own.edges,

@@ -18,9 +18,9 @@ from linkwork.results.quantities.time_ratio import TIME_RATIO
 from linkwork.results.quantities.transmission import RECOMMENDED, TRANSMISSION_ANGLE
 from linkwork.results.quantity import Rate
 from linkwork.viewer.packing import Pack
-from linkwork.viewer.page_data import Column, MotionNumber
+from linkwork.viewer.page_data import Column, MotionNumber, ReactionData
 
-__all__ = ["columns_of", "numbers_of", "usual_columns"]
+__all__ = ["columns_of", "numbers_of", "reactions_of", "usual_columns"]
 
 _MOST_NUMBERED = 5  # quantities with numbers of the motion by default
 
@@ -60,6 +60,18 @@ def usual_columns(motion: Motion) -> Iterator[tuple[str, str]]:
     for name, asked in motion.quantities.derived.items():
         if asked.row is not None and (not asked.row.of_path or asked.part in traced):
             yield name, "derived"
+
+
+def reactions_of(motion: Motion) -> Iterator[ReactionData]:
+    """The forces of pins and loads, whose components are columns."""
+    numbers = {name: k for k, name in enumerate(motion.points)}
+    for name, asked in motion.quantities.derived.items():
+        stem, _, axis = name.rpartition(".")
+        if asked.row is not None and asked.row.pin and axis == "x":
+            point, on, by = asked.row.pin
+            if point in numbers:
+                x, y = f"{stem}.x", f"{stem}.y"
+                yield ReactionData(point=numbers[point], on=on, by=by, x=x, y=y)
 
 
 def _column(motion: Motion, asked: Asked, group: str, pack: Pack) -> Column:

@@ -22,6 +22,7 @@ __all__ = [
     "Part",
     "PointData",
     "QuestionData",
+    "ReactionData",
     "RoleStyle",
     "RowEvidence",
     "SliderData",
@@ -155,6 +156,19 @@ class ForceData:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ReactionData:
+    """A force on a point, given by index, of the link ``by`` on the link ``on``, "" for loads;
+    ``x`` and ``y`` name the columns of its components.
+    """
+
+    point: int
+    on: str
+    by: str
+    x: str
+    y: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class LimitMark:
     """A row at a dead point or change point."""
 
@@ -230,6 +244,7 @@ class MotionData:
     numbers: tuple[MotionNumber, ...] = ()
     answers: tuple[AnswerData, ...] = ()
     view: tuple[float, ...] = ()
+    reactions: tuple[ReactionData, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork import batch
+from tests.campaigns.fuzzing.loads import LOADED
 from tests.campaigns.fuzzing.odd import OBJECTS, pick
 from tests.campaigns.fuzzing.witness import Witness
 
@@ -41,11 +42,12 @@ _FIELDS = (
     "gears",
     "belts", "racks", "rolling", "cams", "curves", "springs", "welds", "noncircular_gears",
     "loops", "guess",
-    "equations", "ground",
+    "equations", "ground", "masses", "loads", "gravity", "mass", "force", "questions",
 )  # fmt: skip
 _PARTS = (
     lw.Belt, lw.Cam, lw.Curve, lw.Cylinder, lw.Force, lw.Gear, lw.Input, lw.NewtonOptions,
-    lw.NoncircularGear, lw.Rack, lw.Rolling, lw.Segment, lw.Slider, lw.Slot, lw.Spring, lw.Weld,
+    lw.Gravity, lw.Load, lw.Mass, lw.NoncircularGear, lw.Question, lw.Rack, lw.Rolling, lw.Segment,
+    lw.Slider, lw.Slot, lw.Spring, lw.Weld,
 )  # fmt: skip
 _FUNCTIONS: tuple[Callable[..., Any], ...] = (
     lw.load, lw.loads, lw.example, lw.example_text, batch.from_table, batch.grid,
@@ -56,7 +58,7 @@ _METHODS = (
     "solve", "sweep", "configurations", "circuits", "family", "with_dimensions", "changed",
     "inversion",
     "driven_by", "iterates", "nearest_assembly", "pulled_guess", "approximate_sweep",
-    "moving_loops", "scene",
+    "moving_loops", "scene", "forces", "link",
 )  # fmt: skip
 _MOTION = ("__getitem__", "trace", "value", "series", "place", "quantity", "table")
 
@@ -64,6 +66,11 @@ _MOTION = ("__getitem__", "trace", "value", "series", "place", "quantity", "tabl
 @cache
 def _mechanism() -> lw.Mechanism:
     return lw.linkage(**_BAR)
+
+
+@cache
+def _loaded() -> lw.Mechanism:
+    return lw.loads(LOADED)
 
 
 @cache
@@ -86,7 +93,13 @@ def python_call(rng: np.random.Generator, witness: Witness) -> None:
             made = _odd(rng, witness, part, part.__name__)
             field = pick(rng, _FIELDS) if rng.random() < 0.2 else _field_of(part)
             if made is not None and field:
-                entry = made if field == "inputs" else [made]
+                entry = (
+                    made
+                    if field in ("inputs", "gravity")
+                    else {"crank": made}
+                    if field == "masses"
+                    else [made]
+                )
                 witness.call(
                     f"linkage {field}={made!r}"[:300], lambda: lw.linkage(**{**_BAR, field: entry})
                 )
@@ -95,7 +108,8 @@ def python_call(rng: np.random.Generator, witness: Witness) -> None:
             _odd(rng, witness, function, function.__name__)
         case 3 | 4:
             name = pick(rng, _METHODS)
-            _odd(rng, witness, getattr(_mechanism(), name), name)
+            mechanism = _mechanism() if rng.random() < 0.7 else _loaded()
+            _odd(rng, witness, getattr(mechanism, name), name)
         case _:
             source = _motion() if rng.random() < 0.7 else _family()
             name = pick(rng, [n for n in _MOTION if hasattr(source, n)])
@@ -103,7 +117,13 @@ def python_call(rng: np.random.Generator, witness: Witness) -> None:
 
 
 def _field_of(part: type) -> str:
-    named = {"Input": "inputs", "Rolling": "rolling", "NoncircularGear": "noncircular_gears"}
+    named = {
+        "Input": "inputs",
+        "Rolling": "rolling",
+        "NoncircularGear": "noncircular_gears",
+        "Gravity": "gravity",
+        "Mass": "masses",
+    }
     return named.get(
         part.__name__,
         f"{part.__name__.lower()}s" if part not in (lw.Force, lw.NewtonOptions, lw.Segment) else "",

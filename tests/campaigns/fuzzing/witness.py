@@ -11,9 +11,11 @@ from typing import TypeVar
 
 from linkwork.foundation.errors import LinkworkError
 
-__all__ = ["LIMIT", "TooLongError", "Witness"]
+__all__ = ["LIMIT", "SHOWS_PROGRESS", "TooLongError", "Witness"]
 
 LIMIT = 2.0  # seconds of processor time of one call
+#: Seconds of calls that may take longer because they show progress.
+SHOWS_PROGRESS = 30.0
 #: What no message may contain: paths of the package, and Python's own words.
 _INTERNAL = re.compile(
     r"src/linkwork/|site-packages|Traceback|RuntimeWarning|"

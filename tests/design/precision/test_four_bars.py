@@ -101,6 +101,14 @@ def test_nothing_is_proved_of_a_linkage_that_misses_a_point() -> None:
     assert not prove_linkages(far, linkage).holds.any()
 
 
+def test_a_task_without_real_solutions_has_an_empty_list(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("linkwork.design.precision.solving.ALMOST_REAL", 0.0)
+    found = four_bars_through(positions(LINE, None, 0.0, 1.0), track_in_batches)
+    assert (len(found), found.real, found.roots.complete) == (0, 0, True)
+    assert found.moving_a.shape == found.guided.shape == (0, 5)
+    assert found.lengths.shape == (0, 4)
+
+
 def test_freedoms_that_positions_leave_are_drawn() -> None:
     _, _, points = four_bar_points(CRANK[:4])
     rng = np.random.default_rng(1)

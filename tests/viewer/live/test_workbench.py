@@ -730,6 +730,26 @@ def test_a_file_that_is_no_mechanism_is_opened_and_mended(
     assert only(bench.handle(ask.SetText(text=FOUR_BAR)), tell.FileState).lacks == ()
 
 
+def test_entries_of_a_text_that_is_not_toml_cannot_be_edited(tmp_path: Path) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_text("format = 1\n[points]\nA = [0; 0]\n", encoding="utf-8")
+    bench = Workbench(MechanismFile(file), lw.loads)
+    point = ask.AddPoint(name="B", x=0.0, y=1.0)
+    for edit in (point, ask.Mirror(places={}), ask.Together(edits=(point,))):
+        message = only(bench.handle(edit), tell.Refused).message
+        assert message.startswith("correct the text first: line 3 is not TOML: unclosed array")
+
+
+def test_a_question_that_is_wrong_is_listed_without_a_thing_to_remove(tmp_path: Path) -> None:
+    path = tmp_path / "asks.toml"
+    question = '[[questions]]\ntext = "How far?"\nanswer = "stroke(X.x)"\ntolerance = 1\n'
+    path.write_text(FOUR_BAR + question, encoding="utf-8")
+    bench = Workbench(MechanismFile(path), lw.loads)
+    (lack,) = only(bench.opened(), tell.FileState).lacks
+    assert (lack.kind, lack.remedies) == ("", ())
+    assert lack.key == "questions[1].answer"
+
+
 @pytest.mark.parametrize("content", [None, "", " \n"])
 def test_a_missing_or_empty_file_is_a_blank_sheet(content: str | None, tmp_path: Path) -> None:
     path = tmp_path / "new.toml"

@@ -63,6 +63,8 @@ def test_a_link_that_cannot_be_drawn_is_removed_by_its_remedy(tmp_path: Path) ->
 @pytest.mark.parametrize("edit", [*EDITS, ask.AddPoint(name="P", x=1.0, y=1.0)])
 def test_a_text_that_is_not_toml_is_not_edited(edit: ask.Edit, tmp_path: Path) -> None:
     bench = opened("format = 1\n[points]\nA = [0, 0\n", tmp_path)
-    (problem, *_) = bench.handle(edit)
-    assert isinstance(problem, tell.ProblemsFound)
-    assert "TOML" in problem.problems[0].message
+    begun = bench.text
+    (refused, *_) = bench.handle(edit)
+    assert isinstance(refused, tell.Refused)
+    assert refused.message.startswith("correct the text first: line 3 is not TOML")
+    assert bench.text == begun

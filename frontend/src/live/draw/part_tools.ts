@@ -15,6 +15,7 @@ const LOOKS: Readonly<Record<string, readonly [string, string, string]>> = {
   rolling: ["Rolling", "r", "M12 10m-7 0a7 7 0 1 0 14 0a7 7 0 1 0-14 0M3 17h18M12 10l4-4M6 20l-2 2M12 20l-2 2M18 20l-2 2"],
   cams: ["Cam", "a", "M12 3a5.500 5.500 0 0 1 4.500 8.500a6 6 0 1 1-9 0A5.500 5.500 0 0 1 12 3M12 15m-1.200 0a1.200 1.200 0 1 0 2.400 0a1.200 1.200 0 1 0-2.400 0"],
   curves: ["Curve", "u", "M3 17c3-12 7-12 9-5s6 5 9-4M12 12m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"],
+  loads: ["Load", "j", "M5 19L19 5M19 5h-6M19 5v6M5 19m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"],
   springs: ["Spring", "n", "M2 12h3l1.500-5 3 10 3-10 3 10 3-10 1.500 5h2"],
 };
 

@@ -24,7 +24,7 @@ __all__ = ["ProvedLinkages", "prove_linkages"]
 
 _BITS = 320  # of a number of the size of the task, behind the point
 _ROUNDS = 12  # refinements at most
-_EXACT = 1e-30  # relative: a correction that needs no further one
+_EXACT = 1e-20  # relative: a correction that needs no further one
 _LEAST_WEIGHT = 1e-3  # least weight of an unknown, in units of the task's size
 _HALVINGS, _SERIES = 16, 24  # of an angle's series: 2^-16 to the 24th, over 24!, is below 2^-400
 _TURN_ERROR = 1e-80  # of the series, with all its rounding
@@ -57,23 +57,28 @@ def prove_linkages(given: PrecisionPositions, linkage: ComplexArray) -> ProvedLi
     data, count = _given_numbers(given, bits), len(linkage)
     guess = _start(given, equations, linkage)
     whole = [[_whole(z, bits) for z in row] + data for row in guess.tolist()]
-    v = np.empty((count, equations.size))
-    correction, unit = np.full((count, equations.unknowns), np.inf), 0.5**bits
+    n, unit = equations.unknowns, 0.5**bits
+    v, f = np.empty((count, equations.size)), np.empty((count, n))
+    jacobian, inverse = (np.empty((count, n, n)) for _ in range(2))
+    live = np.arange(count)
     with np.errstate(all="ignore"):
-        for _ in range(_ROUNDS):
-            v[:] = [[float(z) * unit for z in row] for row in whole]
-            jacobian = equations.jacobian(v)
-            inverse = _inverses(jacobian)
-            f = np.array([_rounded(equations.exact_residual(row), bits) for row in whole])
-            correction = matrix_vector(inverse, f.reshape(count, -1))
-            scale = _LEAST_WEIGHT * given.size + np.abs(v[:, : equations.unknowns])
-            size = (np.abs(correction) / scale).max(axis=1, initial=0.0)
-            if not (size > _EXACT).any():
+        for _ in range(_ROUNDS if count else 0):
+            v[live] = [[float(z) * unit for z in whole[k]] for k in live]
+            f[live] = [_rounded(equations.exact_residual(whole[k]), bits) for k in live]
+            jacobian[live] = equations.jacobian(v[live])
+            inverse[live] = _inverses(jacobian[live])
+            correction = matrix_vector(inverse[live], f[live])
+            scale = _LEAST_WEIGHT * given.size + np.abs(v[live, :n])
+            size = (np.abs(correction) / scale).max(axis=1)
+            # what is as large as the numbers themselves leads elsewhere
+            moving = (size > _EXACT) & (size < 1.0)
+            live, correction = live[moving], correction[moving]
+            if not len(live):
                 break
-            for row, step, moved in zip(whole, correction.tolist(), size, strict=True):
-                if _EXACT < moved < 1.0:
-                    for k, change in enumerate(step):
-                        row[k] -= _whole(change, bits)
+            for k, step in zip(live, correction.tolist(), strict=True):
+                for i, change in enumerate(step):
+                    whole[k][i] -= _whole(change, bits)
+        scale = _LEAST_WEIGHT * given.size + np.abs(v[:, :n])
         holds, error = _prove(equations, v, jacobian, inverse, f, scale)
     pairs = v[:, 0::2] + 1j * v[:, 1::2]
     return ProvedLinkages(
@@ -105,7 +110,10 @@ def _prove(
     w = scale
     for _ in range(3):
         w = np.maximum(scale, 4.0 * matrix_vector(defect, w))
-    rest = np.abs(f) * (1.0 + (n + 4.0) * UNIT_ROUNDOFF) + _TURN_ERROR * np.abs(v).max() ** 2
+    rest = (
+        np.abs(f) * (1.0 + (n + 4.0) * UNIT_ROUNDOFF)
+        + _TURN_ERROR * np.abs(v).max(initial=0.0) ** 2
+    )
     y = (matrix_vector(own, rest) / w).max(axis=1) * inside
     z = (matrix_vector(defect, w) / w).max(axis=1) * inside
     omega = (matrix_vector(own, equations.curvature(w)) / w).max(axis=1) * inside

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice, product
+from typing import Any
 
 import numpy as np
 
@@ -263,7 +264,7 @@ class _Drawing:
 
     def _input(self, variable: Variable, which: Input) -> Input:
         """The input as a quantity of the linkage."""
-        part: dict[str, str]
+        part: dict[str, Any]
         if variable.kind == "angle":
             link, other, scale = driven_pair(self.joints, variable)
             begin = _direction(self.places[link])

@@ -154,6 +154,7 @@ class _Page:
         """As in ``forces``: pins, guides and fixed joints, then the effort."""
         linkage, units = self.linkage, self.book.model.units
         force, moment = units.of(Kind.FORCE), units.of(Kind.MOMENT)
+        # loads on a pin act on its first link, so that this one needs no unknown of its own
         carriers = linkage.carriers()
         for point, links in carriers.items():
             for other in links[1:]:
@@ -164,6 +165,7 @@ class _Page:
                     )
         for slider in linkage.sliders:
             x, y = self.along[slider.name]
+            # the normal is to the left of the line
             point = slider.points[0]
             acts = self._pair(slider.link, slider.on, point, _minus(y), x)
             yield _Unknown(f"{slider.name}.normal", force, acts)
@@ -257,6 +259,7 @@ class _Page:
         size, style = len(unknowns), self.book.style
         self._heads("W r + b = 0", *(unknown.name for unknown in unknowns), "b")
         top = self.row
+        # values for programs that do not calculate; the formulas stand on their own
         matrix, right = np.zeros((size, size)), np.zeros(size)
         for k, link in enumerate(self.bodies):
             for part, word in enumerate(_ROWS):

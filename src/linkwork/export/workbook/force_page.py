@@ -123,6 +123,7 @@ class _Page:
         for point, order, stem in points:
             found, still = self._rates(point, order, stem)
             names |= found
+            # points at rest have no cells of rates
             for name, zero in still.items():
                 text = text.replace(name, zero)
         return text, names
@@ -189,6 +190,7 @@ class _Page:
         bends = {
             "x": f"sx-al*{arm['y']}-w^2*{arm['x']}", "y": f"sy+al*{arm['x']}-w^2*{arm['y']}",
         }  # fmt: skip
+        # v = v₀ + iω r and a = a₀ + (iα - ω²) r, r the arm from the first point
         for axis in "xy":
             text, rates = self._formula(speeds[axis], (first, 1, "v"))
             key = f"{link} speed {axis}"
@@ -258,6 +260,7 @@ class _Page:
     def _push(self, point: str, link: str | None, x: str, y: str) -> None:
         """A force on a point, and its virtual work."""
         self.columns.forces.append((point, link, x, y))
+        # forces on points at rest do no work
         for axis, key in (("x", x), ("y", y)):
             rate = rate_key(coordinate_name(point, axis), 1)
             if rate in self.book.values:
@@ -296,6 +299,7 @@ class _Page:
             load, _, moved = term.partition("*")
             names |= {f"f{k}": load, f"v{k}": moved}
             terms.append(f"f{k}*v{k}")
+        # eq. (71), both sides times the speed of the input
         text = f"-({'+'.join(terms)})/s" if terms else "0"
         kind = Kind.FORCE if lead.kind == "length" else Kind.MOMENT
         shown = f"{lead.name}.effort"

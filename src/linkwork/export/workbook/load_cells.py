@@ -70,6 +70,7 @@ def _key(book: Book, name: str) -> str | None:
         for word, order in (("velocity", 1), ("acceleration", 2)):
             if canonical(name) == canonical(f"{variable.name}.{word}"):
                 return rate_key(variable.symbol, order)
+    # dimensions last: a file may not give them the names of its unknowns
     known = {canonical(d.name): d.key for d in book.dimensions if d.kind == "dimensions"}
     if canonical(name) in known:
         return known[canonical(name)]
@@ -125,6 +126,7 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
     book.title(sheet, "masses, loads and springs")
     note = "Edit a yellow cell: the sheets Forces and Equilibrium follow."
     sheet.write(1, 0, note, book.style["note"])
+    # the sheet Velocities has rates at unit speed without one, which load nothing
     moving = 0.0 if book.motion.speed is None else 1.0
     cells.number("moving", "moving", moving, "", "1: masses have inertia; 0: at rest")
     if linkage.masses:
@@ -136,6 +138,7 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
         given = None if gravity is None else gravity.angle
         angle = _DOWN if given is None else numbers(given) * linkage.angle.radians
         for axis, part in (("x", math.cos(angle)), ("y", math.sin(angle))):
+            # cos(-90°) is not zero in floating point
             part = 0.0 if abs(part) < 1e-16 else part
             about = f"gravity along {axis}"
             cells.number(

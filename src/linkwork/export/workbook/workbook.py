@@ -36,8 +36,8 @@ from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.page_layout import set_up_page
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
 from linkwork.foundation.errors import InputError, MissingPackageError
-from linkwork.foundation.value_types import check_class
 from linkwork.motion.model import Model
+from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 
 __all__ = ["WrittenWorkbook", "workbook_of"]
@@ -168,13 +168,7 @@ def _check_size(rows: int, columns: int) -> None:
 
 
 def _check(model: Model, motion: Motion) -> None:
-    check_class("the motion", motion, Motion)
-    names = [v.name for v in model.equations.inputs]
-    if motion.mechanism != model.description.name or list(motion.inputs) != names:
-        raise InputError(
-            f'the motion belongs to "{motion.mechanism}", not to "{model.description.name}": '
-            "give a sweep of this mechanism"
-        )
+    check_own_motion(model, motion)
     rows = int(motion.asked.sum())
     if rows > _MOST_ROWS:
         raise InputError(

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.march.fold_programs import FoldPrograms, fold_programs
-from linkwork.kernels.program.compiling import compiled
+from linkwork.kernels.program.compiling import compiled, compiled_within
 from linkwork.kernels.program.interpreter import LANES, run
 from linkwork.kernels.program.program import Code
 
@@ -255,7 +255,7 @@ class _Runner:
         return proved
 
 
-@compiled
+@compiled_within
 def _is_zero(w: Array, row: int) -> bool:
     total = 0.0
     for i in range(LANES):
@@ -263,7 +263,7 @@ def _is_zero(w: Array, row: int) -> bool:
     return total == 0.0
 
 
-@compiled
+@compiled_within
 def _solve(iterate: Code, w: Array, live: int) -> None:
     w[live, :] = 1.0
     for _ in range(_STEPS):
@@ -272,7 +272,7 @@ def _solve(iterate: Code, w: Array, live: int) -> None:
             break
 
 
-@compiled
+@compiled_within
 def _load(w: Array, places: IndexArray, given: Array, base: int) -> None:
     """The designs from ``base`` on; the last one in lanes that are left."""
     for lane in range(LANES):
@@ -281,7 +281,7 @@ def _load(w: Array, places: IndexArray, given: Array, base: int) -> None:
             w[places[j], lane] = given[j, member]
 
 
-@compiled
+@compiled_within
 def _store(w: Array, wanted: IndexArray, base: int, out: Array) -> None:
     """Columns of ``out`` from ``base`` on, as many as it has."""
     for lane in range(min(LANES, out.shape[1] - base)):

@@ -16,7 +16,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, CountArray, IndexArray
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.named_trial import correct_and_judge
-from linkwork.kernels.march.step_control import aim, grow, is_lost, stride
+from linkwork.kernels.march.step_control import aim, grow, is_lost, row_from, stride
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
@@ -123,7 +123,7 @@ def _give_task(
             load_lane(w, lane, nodes[(role - turn) % ROLES], tasks.node, following)
         work.known[lane], work.h[lane] = 1, table.steps[0]
         work.spacing[lane, :] = np.inf  # equal to no spacing, so that weights are computed
-        above = np.searchsorted(rows, w[nodes[(1 - turn) % ROLES, size - 1], lane])
+        above = row_from(w[nodes[(1 - turn) % ROLES, size - 1], lane], rows)
         work.row[lane] = above if work.way[lane] == 1 else above - 1
         following += 1
     return following

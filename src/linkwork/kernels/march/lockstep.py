@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.named_trial import correct_and_judge
+from linkwork.kernels.march.step_control import row_from
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
@@ -31,8 +32,8 @@ from linkwork.kernels.march.work_arrays import (
     Tasks,
 )
 from linkwork.kernels.program.compiling import (
-    compiled,
     compiled_for,
+    inlined,
     memcpy,
     njit_no_refcount,
     prefetch,
@@ -187,7 +188,7 @@ def _set_out(
     for i in range(width):
         if not begun[base + i]:
             continue
-        above = np.searchsorted(rows, w[t, i])
+        above = row_from(w[t, i], rows)
         own = above if way == 1 else above - 1
         if own < 0 or own >= len(rows):
             continue
@@ -231,7 +232,7 @@ def _aim_at_row(
     return away, parts
 
 
-@compiled
+@inlined
 def _march_one_way(
     base: int,
     way: int,

@@ -7,7 +7,7 @@ import numpy as np
 from linkwork.foundation.arrays import AnyArray, Array, CountArray
 from linkwork.kernels.march.march_programs import NODES
 from linkwork.kernels.march.step_trial import Topology
-from linkwork.kernels.program.compiling import compiled, njit_no_refcount
+from linkwork.kernels.program.compiling import compiled_within, njit_no_refcount
 from linkwork.kernels.program.program import ROLES
 
 __all__ = [
@@ -48,7 +48,7 @@ def hermite_weights_of_lanes(
             )
 
 
-@compiled
+@compiled_within
 def predict_from_nodes(
     topology: Topology, turn: int, w: Array, lanes: int, used: int, unknowns: int, cells: Array
 ) -> None:
@@ -79,7 +79,7 @@ def predict_from_nodes(
                 w[guess, i] += cells[2 * j, i] * value + cells[2 * j + 1, i] * rate
 
 
-@compiled
+@compiled_within
 def choose_knots(width: int) -> CountArray:
     """The lanes of this many rows from which the next rows are predicted, the last one first."""
     count = min(KNOTS, width)

@@ -6,6 +6,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.kernels.march.named_trial import correct_and_judge
+from linkwork.kernels.march.step_control import row_from
 from linkwork.kernels.march.step_trial import (
     GOOD,
     RADIUS,
@@ -99,7 +100,7 @@ def _joins_start(
     """Whether the start (S,) is proved to lie on the branch of the row next to it."""
     nodes, n = topology.nodes, len(scale)
     last = nodes.shape[1] - 1
-    row = min(np.searchsorted(rows, start[-1]), len(rows) - 1)
+    row = min(row_from(start[-1], rows), len(rows) - 1)
     if row > 0 and start[-1] - rows[row - 1] < rows[row] - start[-1]:
         row -= 1
     for k in range(n):

@@ -31,7 +31,13 @@ from linkwork.kernels.march.step_trial import (
     update_weights,
 )
 from linkwork.kernels.march.work_arrays import INPUT_TABLE, MARCH_RESULT, InputTable, MarchResult
-from linkwork.kernels.program.compiling import compiled, compiled_for, njit_no_refcount, types
+from linkwork.kernels.program.compiling import (
+    compiled,
+    compiled_for,
+    compiled_within,
+    njit_no_refcount,
+    types,
+)
 from linkwork.kernels.program.interpreter import LANES
 from linkwork.kernels.program.kernel_cache import say_that_it_compiles
 from linkwork.kernels.program.program import ROLES
@@ -79,7 +85,7 @@ def _store_node(topology: Topology, turn: int, w: Array, lane: int, node: Array)
         node[j] = w[topology.nodes[-turn % ROLES, j], lane]
 
 
-@compiled
+@compiled_within
 def _solve_start(topology: Topology, w: Array, guess: Array, scale: Array, node: Array) -> bool:
     """The position at a guess (n + 1,) close to it, into ``node`` (S,); whether it is close."""
     nodes, n, last = topology.nodes, len(scale), topology.nodes.shape[1] - 1
@@ -97,7 +103,7 @@ def _solve_start(topology: Topology, w: Array, guess: Array, scale: Array, node:
     return near == n
 
 
-@compiled
+@compiled_within
 def _march_to(
     topology: Topology, w: Array, turn: int, known: int, end: float, steps: Array, enough: int
 ) -> tuple[int, int]:
@@ -124,7 +130,7 @@ def _march_to(
     return turn, known
 
 
-@compiled
+@compiled_within
 def _find_nodes(
     topology: Topology, w: Array, node: Array, row: int, table: InputTable
 ) -> tuple[int, int]:
@@ -137,7 +143,7 @@ def _find_nodes(
     return turn, known
 
 
-@njit_no_refcount
+@compiled
 def _is_smooth(
     topology: Topology,
     turn: int,
@@ -171,7 +177,7 @@ def _is_smooth(
     return rough == 0
 
 
-@compiled
+@compiled_within
 def _solve_stretch(
     topology: Topology,
     w: Array,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from linkwork.foundation.arrays import Array
 from linkwork.kernels.program.compiling import njit_no_refcount
 from linkwork.marching import prediction, step_size
 
@@ -14,6 +15,7 @@ __all__ = [
     "is_lost",
     "is_same_spacing",
     "keep_spacing",
+    "row_from",
     "stride",
     "trusted_nodes",
 ]
@@ -29,3 +31,17 @@ trusted_nodes = njit_no_refcount(prediction.trusted_nodes)
 hermite_weights = njit_no_refcount(prediction.hermite_weights)
 is_same_spacing = njit_no_refcount(prediction.is_same_spacing)
 keep_spacing = njit_no_refcount(prediction.keep_spacing)
+
+
+@njit_no_refcount
+def row_from(t: float, rows: Array) -> int:
+    """The first of the increasing rows that is not below t; how many there are if none is."""
+    # NumPy's search would take the compiler a second
+    low, high = 0, len(rows)
+    while low < high:
+        middle = (low + high) // 2
+        if rows[middle] < t:
+            low = middle + 1
+        else:
+            high = middle
+    return low

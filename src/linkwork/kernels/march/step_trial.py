@@ -22,7 +22,7 @@ from linkwork.kernels.march.step_control import (
 )
 from linkwork.kernels.program.compiling import (
     call_at,
-    compiled,
+    inlined,
     named_tuple,
     njit_no_refcount,
     types,
@@ -104,18 +104,18 @@ TOPOLOGY = named_tuple(
 )
 
 
-@njit_no_refcount
+@inlined
 def _run_program(topology: Topology, turn: int, w: Array, number: int, lanes: int) -> None:
     first, spans = turn * topology.length, topology.spans
     run_part(topology.code, first + spans[number, 0], first + spans[number, 1], w, lanes)
 
 
-@njit_no_refcount
+@inlined
 def _blocks(topology: Topology) -> int:
     return len(topology.noted) - LIVE
 
 
-@njit_no_refcount
+@inlined
 def proves_trials(topology: Topology) -> bool:
     """Whether its trials are proved."""
     return len(topology.spans) > BLOCKS + 3 * _blocks(topology)
@@ -139,7 +139,7 @@ def any_live(topology: Topology, w: Array, standing: Array, lanes: int) -> bool:
     return found
 
 
-@njit_no_refcount
+@inlined
 def _iterate(
     topology: Topology,
     turn: int,
@@ -158,7 +158,7 @@ def _iterate(
     return most
 
 
-@njit_no_refcount
+@inlined
 def judge(topology: Topology, turn: int, w: Array, lanes: int) -> None:
     """Proofs, if there are any, and the judgement."""
     for program in range(BLOCKS + 3 * _blocks(topology), len(topology.spans)):
@@ -231,7 +231,7 @@ def run_trial(
     return 1 + most
 
 
-@compiled
+@inlined
 def correct_slowly(topology: Topology, w: Array, lanes: int) -> None:
     """From a guess in role 1 to a position, with small steps; its own proof.
 

@@ -109,7 +109,9 @@ class SweepKernel:
         self.scout = SweepKernel(table, parts, zeros, certified=False) if certified else None
         #: The workspace of the steps asked for last; replaced whole, for threads share a kernel.
         self._blank: tuple[Steps, Array] | None = None
-        self._trial: Any = None  # written out; kept, for its address is used
+        # written out; the loaded one is kept, for its address is used
+        self._trial: Any = None
+        self._loaded: Any = None
 
     @property
     def trial(self) -> int:
@@ -125,15 +127,24 @@ class SweepKernel:
         InputError
             If it is asked for, and the folder for compiled code cannot be written to.
         """
-        if execution.specialised is False:
-            self._trial = None
-        elif execution.specialised:
-            self._trial = self._trial or load_compiled(self.source(), "trial")
-        elif self._trial is None and execution.pays_compiled(len(self.code)):
-            source = self.source()
-            if execution.pays(len(self.code)) or is_cached(source):
-                with suppress(InputError):  # compiled code was not required: the interpreter serves
-                    self._trial = load_compiled(source, "trial")
+        self._trial = None  # not what was chosen before: values may not depend on that
+        if execution.specialised:
+            self._trial = self._written_out()
+        elif execution.specialised is None and self._pays_written_out(execution):
+            with suppress(InputError):  # compiled code was not required: the interpreter serves
+                self._trial = self._written_out()
+
+    def _written_out(self) -> Any:
+        if self._loaded is None:
+            self._loaded = load_compiled(self.source(), "trial")
+        return self._loaded
+
+    def _pays_written_out(self, execution: Execution) -> bool:
+        length = len(self.code)
+        return execution.pays(length) or (
+            execution.pays_compiled(length)
+            and (self._loaded is not None or is_cached(self.source()))
+        )
 
     def source(self) -> str:
         """A trial of this topology written out: prediction, one correction, proof, judgement."""

@@ -14,7 +14,7 @@ from linkwork.foundation.arrays import Array, CountArray, IndexArray, StatusArra
 from linkwork.kernels.paths.lane_elimination import solve_in_lanes
 from linkwork.kernels.paths.path_program import Layout
 from linkwork.kernels.program.compiling import compiled, compiled_for, named_tuple, types
-from linkwork.kernels.program.interpreter import LANES, run
+from linkwork.kernels.program.interpreter import LANES, run_part
 from linkwork.kernels.program.kernel_cache import PATH_LOOP, say_that_it_compiles
 from linkwork.kernels.program.program import Code
 from linkwork.marching import solution_path
@@ -32,6 +32,7 @@ _FIRST_STEP, _NEAR = solution_path.FIRST_STEP, solution_path.NEAR
 _ARRIVED, _SINGULAR, _LOST = solution_path.ARRIVED, solution_path.SINGULAR, solution_path.LOST
 _SMALLEST = solution_path.SMALLEST_CHANGE
 _NO_PATH = -1
+_VECTOR = 8  # lanes that a processor computes at once
 
 
 class PathLanes(NamedTuple):
@@ -91,10 +92,10 @@ def _take_path(lanes: PathLanes, i: int, task: int, start: Array) -> None:
 
 
 @compiled
-def _predict(w: Array, at: Layout, lanes: PathLanes) -> None:
+def _predict(w: Array, at: Layout, lanes: PathLanes, width: int) -> None:
     """Put the predicted points and their σ into the registers."""
     path = lanes.path
-    for i in range(LANES):
+    for i in range(width):
         here, step, gone = lanes.sigma[i], lanes.step[i], lanes.gone[i]
         h = min(step, here)
         # exactly 0: the last system is the one that was asked for
@@ -111,12 +112,12 @@ def _predict(w: Array, at: Layout, lanes: PathLanes) -> None:
 
 
 @compiled
-def _correct(code: Code, w: Array, at: Layout, lanes: PathLanes) -> None:
+def _correct(code: Code, w: Array, at: Layout, lanes: PathLanes, width: int) -> None:
     """Newton's step in all lanes; ∂H/∂σ becomes the slope."""
-    run(code, w)
-    solve_in_lanes(w, at.unknowns, at.jacobian, at.value, at.change, lanes.best, lanes.row)
+    run_part(code, 0, code.shape[0], w, width)
+    solve_in_lanes(w, at.unknowns, at.jacobian, at.value, at.change, lanes.best, lanes.row, width)
     for k in range(2 * at.unknowns):
-        for i in range(LANES):
+        for i in range(width):
             w[at.point + k, i] -= w[at.value + k, i]
 
 
@@ -185,6 +186,27 @@ def _has_ended(lanes: PathLanes, i: int, care: Care, ends: PathEnds) -> bool:
     return True
 
 
+@compiled
+def _close_ranks(lanes: PathLanes, width: int) -> int:
+    """Move the paths that are left into the first lanes; how many lanes they take."""
+    first = 0
+    for i in range(width):
+        task = lanes.task[i]
+        if task == _NO_PATH:
+            continue
+        if i != first:
+            lanes.task[first], lanes.tried[first] = task, lanes.tried[i]
+            lanes.sigma[first], lanes.step[first] = lanes.sigma[i], lanes.step[i]
+            lanes.gone[first] = lanes.gone[i]
+            for j in range(4):
+                for k in range(lanes.path.shape[1]):
+                    lanes.path[j, k, first] = lanes.path[j, k, i]
+        first += 1
+    for i in range(first, width):
+        lanes.task[i] = _NO_PATH
+    return int(_VECTOR * ((first + _VECTOR - 1) // _VECTOR))
+
+
 @compiled_for(
     types.void(
         types.Array(types.uint32, 2, "C"), _LAYOUT, _TABLE, _TABLE, _CARE, _ENDS,
@@ -203,8 +225,9 @@ def follow_paths(
         np.full(LANES, _NO_PATH), np.zeros(LANES, np.int64),
         np.zeros(LANES), np.zeros(LANES, np.int64),
     )  # fmt: skip
-    following, busy = 0, 0
-    for i in range(LANES):
+    following, busy = int(np.int64(0)), int(np.int64(0))
+    width = min(LANES, _VECTOR * ((start.shape[1] + _VECTOR - 1) // _VECTOR))
+    for i in range(width):
         # idle lanes compute with the first path
         _take_path(lanes, i, min(following, start.shape[1] - 1), start)
         if following < start.shape[1]:
@@ -212,12 +235,12 @@ def follow_paths(
         else:
             lanes.task[i] = _NO_PATH
     while busy > 0:
-        _predict(w, at, lanes)
-        _correct(code, w, at, lanes)
-        for i in range(LANES):
+        _predict(w, at, lanes, width)
+        _correct(code, w, at, lanes, width)
+        for i in range(width):
             lanes.error[i] = _relative_size(w, at, care.floor, i)
-        _correct(code, w, at, lanes)
-        for i in range(LANES):
+        _correct(code, w, at, lanes, width)
+        for i in range(width):
             if lanes.task[i] == _NO_PATH:
                 continue
             _judge(w, at, lanes, i, care, ends)
@@ -228,3 +251,5 @@ def follow_paths(
                     following += 1
                 else:
                     lanes.task[i], busy = _NO_PATH, busy - 1
+        if busy <= width - _VECTOR:
+            width = _close_ranks(lanes, width)

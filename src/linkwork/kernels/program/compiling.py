@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, cast
+from functools import partial
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, Protocol, TypeVar, cast
 
 from linkwork.foundation.errors import MissingPackageError
 
@@ -34,6 +35,8 @@ __all__ = [
     "carray",
     "compiled",
     "compiled_for",
+    "compiled_within",
+    "inlined",
     "memcpy",
     "named_tuple",
     "njit_no_refcount",
@@ -78,10 +81,22 @@ class _SourcesCache(FunctionCache):
         file._source_stamp = (file._source_stamp, sources_digest())
 
 
+def _enter_nothing(*_: object) -> None:
+    """Enter no function among those that Python can call."""
+
+
+def _refuse(function: Any, *_: object) -> NoReturn:
+    raise TypeError(f"{function.__qualname__} is called by compiled functions only")
+
+
 def _compiling(signature: object, **options: object) -> Compiling:
     def compile_function(function: Any, /) -> Any:
         made = _numba.njit(nogil=True, **_OPTIONS, **options)(function)
         made._cache = _SourcesCache(function)
+        if "no_cpython_wrapper" in options:
+            # Python would call a function that is not there
+            made._insert = _enter_nothing  # noqa: V101  # Numba calls it
+            made._compile_for_args = partial(_refuse, function)  # noqa: V101  # Numba calls it
         if signature is not None:
             made.compile(signature)
             made.disable_compile()
@@ -94,14 +109,24 @@ def compiled_for(signature: object) -> Compiling:
     """Compiled when the module is loaded, for arrays of the signature; ``None``: at the first
     call, for the arrays that are met.
     """
-    return _compiling(signature)
+    return _compiling(signature, no_cfunc_wrapper=True)
 
 
 compiled = compiled_for(None)
 
+# to compile the way in from Python takes longer than to compile most functions
+_WITHIN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: The same for functions that only compiled ones call: Python cannot.
+compiled_within: Compiling = _compiling(None, **_WITHIN)
+
 #: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.
-njit_no_refcount: Compiling = _compiling(None, _nrt=False)
+njit_no_refcount: Compiling = _compiling(None, _nrt=False, **_WITHIN)
+
+#: The same for functions that become part of those that call them, before these are compiled: for
+#: short ones, and those that would be compiled for every constant argument.
+inlined: Compiling = _compiling(None, _nrt=False, inline="always")
 say_that_it_compiles()
 
 

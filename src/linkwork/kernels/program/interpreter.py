@@ -13,7 +13,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.kernels.program.compiling import (
     called_by_name,
     carray,
-    njit_no_refcount,
+    inlined,
     types,
 )
 from linkwork.kernels.program.program import Code, Op
@@ -28,7 +28,7 @@ HIGH = 1 << 24  # registers: more than any workspace has, for its height is not 
 
 
 # long: one branch for each instruction; a call for each would cost as much as the instruction.
-@njit_no_refcount
+@inlined
 def _interpret(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
     for k in range(first, end):
@@ -112,13 +112,13 @@ def _interpret_at(instructions: Array, first: int, end: int, workspace: Array, l
     return 0
 
 
-@njit_no_refcount
+@inlined
 def run_part(code: Code, first: int, end: int, w: Array, lanes: int) -> None:
     """Run some instructions of a program in the first lanes."""
     _interpret_at((code.ctypes.data, first, end, w.ctypes.data, lanes))
 
 
-@njit_no_refcount
+@inlined
 def run(code: Code, w: Array) -> None:
     """Run a program (K, 5) over a workspace (R, LANES)."""
     run_part(code, 0, code.shape[0], w, LANES)

@@ -60,6 +60,10 @@ class Load(Part):
     torque: Number | None = None
 
     @property
+    def acts(self) -> bool:
+        return True
+
+    @property
     def label(self) -> str:
         return f"load on {self.point or self.link}"
 

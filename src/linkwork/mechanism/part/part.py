@@ -75,6 +75,11 @@ class Part:
         return ()
 
     @property
+    def acts(self) -> bool:
+        """Whether it loads the mechanism by itself."""
+        return False
+
+    @property
     def drive(self) -> str:
         """The input key that drives the part: slider or cylinder."""
         return ""

@@ -86,6 +86,10 @@ class Spring(NamedPart):
         """Whether it has a stiffness or a damping."""
         return self.stiffness != 0 or self.damping != 0
 
+    @property
+    def acts(self) -> bool:
+        return self.pulls
+
     def check(self, checks: PartChecks) -> None:
         if (self.between is None) == (self.links is None):
             what = "both" if self.links is not None else "neither"

@@ -82,5 +82,5 @@ def _bottom(leads: ParametrizedTable, v: Array) -> tuple[float, Array] | None:
 
     if not rate(low) * rate(high) < 0.0:
         return None
-    here = led.whole(sign_change(led, low, high, rate, sharp=True).v)
+    here = led.whole(sign_change(led, low, high, rate, to_rounding=True).v)
     return float(smallest_singular_values(leads, here[None, :])[0]), here

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,9 +19,20 @@ from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["BOLD", "End", "InputPath", "Node", "Track", "TrackOptions", "follow", "rows_on_track"]
+__all__ = [
+    "BOLD",
+    "End",
+    "InputPath",
+    "Node",
+    "Track",
+    "TrackOptions",
+    "follow",
+    "quintic",
+    "rows_on_track",
+]
 
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
@@ -219,13 +230,8 @@ class _Trial:
 
     def __init__(self, solver: BlockSolver, path: InputPath, options: TrackOptions) -> None:
         self.solver, self.path, self.options = solver, path, options
-        self.quick = replace(
-            # a prediction that needs more steps was too far: halving costs less
-            solver.options,
-            max_steps=6,
-            largest_turn=math.inf,
-            solution_tolerance=_NODE_TOLERANCE,
-        )
+        # a prediction that needs more steps was too far: halving costs less
+        self.quick = unlimited(solver.options, 6, _NODE_TOLERANCE)
 
     def room(self, here: Node, sign: float) -> float:
         """How far a step may go towards a dead point, where rates grow like 1/√distance.
@@ -297,7 +303,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     """
     guess, left = _interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
-    found = solver.solve(guess, replace(solver.options, max_steps=12, largest_turn=math.inf))
+    found = solver.solve(guess, unlimited(solver.options, 12, solver.options.solution_tolerance))
     v, status = found.v.copy(), found.status.copy()
     rates = solver.rates(found.v, path.rate)
     weights = solver.variable_scale
@@ -329,19 +335,24 @@ def _nearest(track: Track, left: int, t: float) -> Node:
 def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = rows_of_nodes(track.nodes)
-    times, v, d1, d2 = nodes.t, nodes.v, nodes.first, nodes.second
+    times = nodes.t
     if len(nodes) == 1:
-        return np.repeat(v, len(t), axis=0), np.zeros(len(t), dtype=np.intp)
+        return np.repeat(nodes.v, len(t), axis=0), np.zeros(len(t), dtype=np.intp)
     # the last node belongs to the last step
     left = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(nodes) - 2)
     h = (times[left + 1] - times[left])[:, None]
     s = (t[:, None] - times[left][:, None]) / h
-    v0, v1 = v[left], v[left + 1]
-    a1, b1 = d1[left] * h, d1[left + 1] * h
-    a2, b2 = d2[left] * h * h, d2[left + 1] * h * h
+    return quintic(s, h, nodes.take(left), nodes.take(left + 1)), left
+
+
+def quintic(s: Array, h: Array, left: SolvedRows, right: SolvedRows) -> Array:
+    """The polynomials through both ends of steps of length h (B or 1, 1), at the fractions s."""
+    v0, v1 = left.v, right.v
+    a1, b1 = left.first * h, right.first * h
+    a2, b2 = left.second * h * h, right.second * h * h
     rise = v1 - v0
     c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2  # eq. (20)
     c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
     c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
     value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
-    return value, left
+    return value

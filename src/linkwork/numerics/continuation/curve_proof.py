@@ -29,12 +29,14 @@ _MOST_EXACT = 400  # of those with residuals that are rounded once, which take f
 class ProvenCurve:
     """``legs`` (L,): every step of the leg. ``junctions`` (L-1,): from a leg to the next.
     ``closed``: that the last position is the first one again. ``steps``: how many were proved.
+    ``broken``: the leg, and the node behind it, of the first step that is not proved.
     """
 
     legs: BoolArray
     junctions: BoolArray
     closed: bool
     steps: int
+    broken: tuple[int, int] | None = None
 
     @property
     def whole(self) -> bool:
@@ -46,12 +48,15 @@ def prove_curve(leads: Parametrizations, curve: Curve, most: int = _MOST_STEPS) 
     """Prove every step of a curve; of very many steps only the ``most`` first ones."""
     legs = np.zeros(len(curve.legs), dtype=bool)
     junctions = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
-    steps = 0
+    steps, broken = 0, None
     if all(leg.led.provable for leg in curve.legs):
         for k, leg in enumerate(curve.legs):
             proof = _proof_of(leg, max(most - steps, 0))
             # from its first position, which the previous leg has proved
-            legs[k] = proof.connected_to(0).all()
+            joined = proof.connected_to(0)
+            legs[k] = joined.all()
+            if broken is None and not legs[k]:
+                broken = (k, int(np.argmin(joined)) - 1)
             steps += int(proof.pieces.sum())
             if steps > most or proof.given_up.any():
                 break
@@ -67,7 +72,7 @@ def prove_curve(leads: Parametrizations, curve: Curve, most: int = _MOST_STEPS) 
         closed = same_solution(own, first.led, first.v[0])
         closed = closed and same_solution(last.led, own, last.v[-1])
         closed = closed and _meets(leads, own, first.v[0], last.v[-1])
-    return ProvenCurve(legs=legs, junctions=junctions, closed=closed, steps=steps)
+    return ProvenCurve(legs=legs, junctions=junctions, closed=closed, steps=steps, broken=broken)
 
 
 def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:

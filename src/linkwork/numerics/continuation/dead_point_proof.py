@@ -133,7 +133,7 @@ def _rate_errors(solver: BlockSolver, v: Array, rates: Array) -> _Errors | None:
         return None
     errors = np.zeros_like(rates)
     for block, part, at in zip(solver.blocks, linear, places, strict=True):
-        assert at is not None  # the position is proved
+        assert isinstance(at, Expansion)  # the position is proved, with arrays
         found = _block_errors(block, part, at, v, rates, position.error_bound, errors)
         if found is None:
             return None

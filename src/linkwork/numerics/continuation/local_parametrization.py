@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -12,6 +12,7 @@ from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, node_at
+from linkwork.numerics.newton import sharp
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
 __all__ = [
@@ -137,8 +138,8 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
         return True
     # both at exactly one value of the parameter, so that only one branch is compared with the other
     near[:, p] = a[p]
-    sharp = replace(own.solver.options, equation_tolerance=EPSILON)
-    found = own.solver.sharpen(own.solver.solve(near[:, own.order], sharp).v)
+    done = own.solver.solve(near[:, own.order], sharp(own.solver.options))
+    found = own.solver.sharpen(done.v)
     off = np.abs(found[1] - found[0])
     if own.provable:
         input_radius = np.full((1, 1), rounding)

@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
-from linkwork.foundation.rounding import UNIT_ROUNDOFF
-from linkwork.foundation.status import CONVERGED
-from linkwork.numerics.block_solver import BlockSolver, Linearised
+from linkwork.foundation.arrays import BoolArray, CountArray
+from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
-from linkwork.numerics.proof.kantorovich import Expansion
-from linkwork.numerics.proof.position_proof import (
-    Proof,
-    expansions,
-    prove,
-    reach,
-    rounding_of_inputs,
-    steps_connected,
+from linkwork.numerics.continuation.step_halving import (
+    Allowance,
+    Halving,
+    OpenSteps,
+    Prover,
+    prove_steps,
+    take_expansions,
 )
+from linkwork.numerics.proof.position_proof import Proof, prove
 from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["ProvenPath", "prove_path"]
 
-_ROUNDS = 45  # halvings of one step before it counts as not proved
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and this many more for each of its own positions
 _PIECE = 1024  # positions proved together: arrays that fit the cache
-_LANES = 1024  # steps halved together
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,8 +95,8 @@ def prove_path(
     position solved in between. Many open steps are worked on together.
     """
     count = len(points.t)
-    prover = _Prover(solver, path, exact)
-    allowance = _Allowance(_MOST + _MOST_EACH * count if most is None else most)
+    prover = Prover(solver, path, exact)
+    allowance = Allowance(_MOST + _MOST_EACH * count if most is None else most)
     begins = list(range(0, max(count - 1, 1), _PIECE))
     if anchor is not None:
         # near the anchor first: beyond a step that is not proved no other one is of use
@@ -130,19 +126,6 @@ def prove_path(
     )
 
 
-class _Allowance:
-    """How many positions may still be solved in between."""
-
-    def __init__(self, left: int) -> None:
-        self.left = left
-
-    def take(self, wanted: int) -> int:
-        """As many as there are, at most ``wanted``."""
-        given = min(wanted, self.left)
-        self.left -= given
-        return given
-
-
 def _behind_first(p: Proof) -> Proof:
     return Proof(
         holds=p.holds[1:],
@@ -152,26 +135,11 @@ def _behind_first(p: Proof) -> Proof:
     )
 
 
-@dataclass(frozen=True)
-class _Prover:
-    """The equations of a path; ``exact``: with residuals that are rounded once."""
-
-    solver: BlockSolver
-    path: InputPath
-    exact: bool
-
-    def expansions(
-        self, v: Array, linear: Sequence[Linearised] | None = None
-    ) -> list[Expansion | None]:
-        """What proofs need of positions (B, N)."""
-        return expansions(self.solver, v, linear, exact=self.exact)
-
-
 def _piece(
-    prover: _Prover,
+    prover: Prover,
     points: SolvedRows,
     anchor: int | None,
-    allowance: _Allowance,
+    allowance: Allowance,
 ) -> ProvenPath:
     solver, places = prover.solver, prover.expansions(points.v)
     position = prove(solver, points.v, points.input_radius, places)
@@ -182,169 +150,26 @@ def _piece(
         return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
     left, right = points.take(slice(None, -1)), points.take(slice(1, None))
     near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
-    connected = _steps(solver, left, right, near, _take_expansions(places, slice(None, -1)))
+    connected, apart = prove_steps(
+        solver, left, right, near, take_expansions(places, slice(None, -1))
+    )
     connected &= position.holds[1:] & position.holds[:-1]
     open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
     if len(open_):
         # a step towards a change point is often proved from its far end only
-        back = _take_expansions(places, open_ + 1)
-        connected[open_] = _steps(solver, right.take(open_), left.take(open_), near[open_], back)
+        back = take_expansions(places, open_ + 1)
+        backwards = prove_steps(solver, right.take(open_), left.take(open_), near[open_], back)
+        connected[open_], apart[open_] = backwards[0], apart[open_] | backwards[1]
         open_ = open_[~connected[open_]]
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
-    work = _Halving(prover, steps, anchor, position.holds)
-    work.run(
-        _Open(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_),
-        allowance,
-    )
+    work = Halving(prover, steps, anchor, position.holds)
+    work.lose(np.flatnonzero(apart))
+    queue = OpenSteps(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_)
+    queue = work.of_use(queue)
+    ends = (take_expansions(places, queue.owner), take_expansions(places, queue.owner + 1))
+    work.run(work.divide(queue, ends, allowance), allowance)
     connected[open_] = work.proved[open_]
     return ProvenPath(
         position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
     )
-
-
-def _take_expansions(
-    places: Sequence[Expansion | None], index: IndexArray | slice
-) -> list[Expansion | None]:
-    return [None if place is None else place.take(index) for place in places]
-
-
-def _steps(
-    solver: BlockSolver,
-    start: SolvedRows,
-    goal: SolvedRows,
-    near: Array,
-    places: Sequence[Expansion | None] | None = None,
-) -> BoolArray:
-    """Which steps are proved from their start, for all inputs from those of one end to the other's.
-
-    The inputs are taken from the positions: those of a row may differ from the path's by rounding.
-    """
-    # the factor covers the rounding of the difference
-    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
-    input_radius += start.input_radius + goal.input_radius
-    return steps_connected(start.v, goal.v, reach(solver, start.v, input_radius, places), near)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Open:
-    """Steps to be proved (L,): their ends, how far the true positions may be from these (L, N),
-    and the number of the step of the path that they are a part of.
-    """
-
-    left: SolvedRows
-    right: SolvedRows
-    near: Array
-    owner: IndexArray
-
-    def take(self, index: IndexArray | slice) -> _Open:
-        return _Open(
-            left=self.left.take(index),
-            right=self.right.take(index),
-            near=self.near[index],
-            owner=self.owner[index],
-        )
-
-    def with_(self, other: _Open) -> _Open:
-        return _Open(
-            left=SolvedRows.concatenate([self.left, other.left]),
-            right=SolvedRows.concatenate([self.right, other.right]),
-            near=np.concatenate([self.near, other.near]),
-            owner=np.concatenate([self.owner, other.owner]),
-        )
-
-
-class _Halving:
-    """Steps of a path (K,) halved as often as their proof needs.
-
-    ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
-    solved in between.
-    """
-
-    def __init__(self, prover: _Prover, steps: int, anchor: int | None, holds: BoolArray) -> None:
-        self.prover, self.anchor = prover, anchor
-        self.proved = np.ones(steps, dtype=bool)
-        self.given_up = np.zeros(steps, dtype=bool)
-        self.pieces = np.zeros(steps, dtype=np.int64)
-        # beyond a step that cannot be proved no other is of use
-        self.cut = np.flatnonzero(~(holds[1:] & holds[:-1]))
-        self.width = np.zeros(steps)
-
-    def run(self, queue: _Open, allowance: _Allowance) -> None:
-        """Prove all steps of a queue as far as the allowance goes."""
-        self.width[queue.owner] = queue.right.t - queue.left.t
-        while True:
-            queue = self._of_use(queue)
-            if not len(queue.owner):
-                return
-            now = allowance.take(min(len(queue.owner), _LANES))
-            if not now:
-                self.proved[queue.owner] = False
-                self.given_up[queue.owner] = True
-                return
-            queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
-
-    def _of_use(self, queue: _Open) -> _Open:
-        """The steps that may still be proved, nearest to the anchor first."""
-        hopeful = self.proved[queue.owner]
-        if self.anchor is None:
-            return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
-        below, above = queue.owner < self.anchor, queue.owner >= self.anchor
-        lowest = max(self.cut[self.cut < self.anchor], default=-1)
-        highest = min(self.cut[self.cut >= self.anchor], default=len(self.proved))
-        moot = (below & (queue.owner < lowest)) | (above & (queue.owner > highest))
-        self.proved[queue.owner[moot]] = False
-        keep = np.flatnonzero(hopeful & ~moot)
-        away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
-        return queue.take(keep[np.argsort(away, kind="stable")])
-
-    def _halve(self, lanes: _Open) -> _Open:
-        """Halve some steps once more; return the halves that are not proved."""
-        solver = self.prover.solver
-        np.add.at(self.pieces, lanes.owner, 1)
-        middle, found, places = _between(self.prover, lanes.left, lanes.right)
-        proof = prove(solver, middle.v, middle.input_radius, places)
-        good = found & proof.holds
-        # no number is left between the ends
-        good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
-        # a step that has shrunk to nothing is not going to be proved
-        good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
-        lost = np.flatnonzero(np.bincount(lanes.owner[~good]))
-        if len(lost):
-            self.proved[lost] = False
-            self.cut = np.union1d(self.cut, lost)
-        keep = np.flatnonzero(self.proved[lanes.owner])
-        if not len(keep):
-            return lanes.take(keep)
-        lanes, middle, places = lanes.take(keep), middle.take(keep), _take_expansions(places, keep)
-        near = np.maximum(lanes.near, proof.error_bound[keep])
-        halves = [
-            _Open(left=lanes.left, right=middle, near=near, owner=lanes.owner),
-            _Open(left=middle, right=lanes.right, near=near, owner=lanes.owner),
-        ]
-        # both halves from the middle, where everything is computed
-        for k, ends in enumerate((lanes.left, lanes.right)):
-            open_ = ~_steps(solver, middle, ends, near, places)
-            halves[k] = halves[k].take(np.flatnonzero(open_))
-        return halves[0].with_(halves[1])
-
-
-def _between(
-    prover: _Prover, left: SolvedRows, right: SolvedRows
-) -> tuple[SolvedRows, BoolArray, list[Expansion | None]]:
-    """Positions halfway in t, started from the quintic through both ends; which were found; their
-    expansions for proofs.
-    """
-    solver, path = prover.solver, prover.path
-    h = (right.t - left.t)[:, None]
-    guess = 0.5 * (left.v + right.v) + 5.0 / 32.0 * h * (left.first - right.first)  # eq. (21)
-    guess += h * h / 64.0 * (left.second + right.second)
-    t = 0.5 * (left.t + right.t)
-    guess[:, solver.unknowns :] = path.at(t)
-    done = solver.solve(guess)
-    v = solver.sharpen(done.v) if prover.exact else done.v
-    linear = solver.linearise(v)
-    rates = solver.rates(v, path.rate, linear)
-    input_radius = rounding_of_inputs(v, solver.unknowns)
-    points = SolvedRows(t=t, v=v, first=rates.first, second=rates.second, input_radius=input_radius)
-    return points, done.status == CONVERGED, prover.expansions(v, linear)

@@ -12,8 +12,8 @@ from linkwork.foundation.status import CONVERGED
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node, Watch, node_at, predict
-from linkwork.numerics.proof.kantorovich import Expansion
 from linkwork.numerics.proof.position_proof import (
+    Place,
     Proof,
     expansions,
     prove,
@@ -50,7 +50,7 @@ class _ProvedTrial:
         self.solver, self.path = solver, path
         self.here, self.places = self._proof(start.v[None, :])
 
-    def _proof(self, v: Array) -> tuple[Proof, list[Expansion | None]]:
+    def _proof(self, v: Array) -> tuple[Proof, list[Place]]:
         places = expansions(self.solver, v, exact=True)
         return prove(self.solver, v, rounding_of_inputs(v, self.solver.unknowns), places), places
 

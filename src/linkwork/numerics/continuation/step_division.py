@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import Node, follow, node_at
 from linkwork.numerics.continuation.local_parametrization import Parametrization
+from linkwork.numerics.newton import sharp
 
 __all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
@@ -25,17 +25,17 @@ _SHARES = np.linspace(0.0, 1.0, 65)
 
 
 def node_between(
-    led: Parametrization, low: Node, high: Node, s: float, sharp: bool = False
+    led: Parametrization, low: Node, high: Node, s: float, to_rounding: bool = False
 ) -> Node | None:
     """The node at the fraction s of a step; ``None`` if it is not found.
 
     Newton-Raphson from the cubic through both ends; where that fails, or comes onto another branch,
-    by steps from the nearer end. ``sharp``: iterate down to rounding.
+    by steps from the nearer end. ``to_rounding``: iterate down to rounding.
     """
     h = high.t - low.t
     guess = _hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
-    options = replace(led.solver.options, equation_tolerance=EPSILON) if sharp else None
+    options = sharp(led.solver.options) if to_rounding else None
     found = led.solver.solve(guess[None, :], options)
     if found.status[0] == CONVERGED:
         here = node_at(led.solver, led.path, float(guess[-1]), found.v[0])
@@ -74,7 +74,11 @@ def one_way(led: Parametrization, place: int, before: Node, after: Node) -> list
 
 
 def sign_change(
-    led: Parametrization, low: Node, high: Node, rate: Callable[[Node], float], sharp: bool = False
+    led: Parametrization,
+    low: Node,
+    high: Node,
+    rate: Callable[[Node], float],
+    to_rounding: bool = False,
 ) -> Node:
     """The node between two at which a rate changes sign, to rounding.
 
@@ -95,7 +99,7 @@ def sign_change(
             # bracket
             s = s if width < 0.25 * before else 0.5
             before = width
-        here = node_between(led, low, high, min(max(s, _EDGE), 1.0 - _EDGE), sharp)
+        here = node_between(led, low, high, min(max(s, _EDGE), 1.0 - _EDGE), to_rounding)
         if here is None or here.t in (low.t, high.t):
             break
         value = rate(here)

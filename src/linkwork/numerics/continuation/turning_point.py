@@ -38,6 +38,7 @@ from linkwork.numerics.continuation.local_parametrization import (
 )
 from linkwork.numerics.continuation.proved_tracking import follow_with_proof
 from linkwork.numerics.continuation.step_division import divide_step, node_between
+from linkwork.numerics.newton import sharp
 
 __all__ = ["TurnAhead", "TurningPoint", "turn_beyond", "turning_points"]
 
@@ -271,7 +272,7 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
     det J has the sign of both nodes; halving where a step comes onto another branch.
     """
     best = here = low if abs(low.first[place]) < abs(high.first[place]) else high
-    sharp = replace(led.solver.options, equation_tolerance=EPSILON)
+    options = sharp(led.solver.options)
     for _ in range(60):
         step = _to_level(here, place)
         if abs(step) <= 4.0 * EPSILON * max(1.0, abs(here.t)):
@@ -281,12 +282,12 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
         if edges[0] < here.t + step < edges[1]:
             guess = predict(here, here.t + step)  # eq. (17)
             guess[-1] = here.t + step
-            done = led.solver.solve(guess[None, :], sharp)
+            done = led.solver.solve(guess[None, :], options)
             if done.status[0] == CONVERGED:
                 found = node_at(led.solver, led.path, float(guess[-1]), done.v[0])
         if found is None or not np.array_equal(found.orientation, low.orientation):
             # Newton has left the sign change or the branch: halve the interval
-            found = node_between(led, low, high, 0.5, sharp=True)
+            found = node_between(led, low, high, 0.5, to_rounding=True)
             if found is None or not np.array_equal(found.orientation, low.orientation):
                 break
             step = found.t - here.t

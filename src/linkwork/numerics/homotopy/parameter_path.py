@@ -35,10 +35,10 @@ __all__ = [
 
 #: Every unknown has a size of its own: isotropic coordinates differ by powers of ten. Near a
 #: singular end corrections are as large as rounding makes them; solutions are polished afterwards.
-QUICK = PathOptions(error=1e-2, contraction=0.1, rounding=1e-6, floor=0.1, attempts=2000)
+QUICK = PathOptions(error=1e-2, contraction=0.1, rounding=1e-6, floor=0.1, attempts=1500)
 #: The same with more care.
 SURE = PathOptions(
-    error=1e-3, contraction=0.05, rounding=1e-6, floor=0.1, attempts=20_000, smallest=1e-11
+    error=1e-3, contraction=0.05, rounding=1e-6, floor=0.1, attempts=5000, smallest=1e-11
 )
 _POLISH = 8  # steps of Newton's method
 _NOISE = 1e-10  # relative: smaller corrections may be rounding

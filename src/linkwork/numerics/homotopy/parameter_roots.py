@@ -27,7 +27,11 @@ __all__ = ["MirroredFamily", "ParameterRoots", "roots_at"]
 
 _FAR = 10.0  # a path whose end is so much larger than at σ = 1e-4 runs to infinity
 _VERY_FAR = 1e6
+_ROUGH = 1e-3  # relative: how well a singular end is known
 _DETOURS = 3
+_DETOUR_PAYS = 8  # missing solutions, in small families too
+_MANY = 0.4  # of the paths: so many are lost in special tasks only
+_FEW = 0.05  # of the paths: more are missing for a reason that a detour does not change
 
 
 class MirroredFamily(Family, Protocol):
@@ -104,7 +108,11 @@ class _Search:
         if self.family.is_real(self.goal):
             found, by_mirror, closed = self._close(found)
         by_detour = detours = 0
-        while len(found) + settled < len(self.member.x) and detours < _DETOURS:
+        paths = len(self.member.x)
+        while (
+            0 < paths - settled - len(found) <= max(_DETOUR_PAYS, _FEW * paths)
+            and detours < _DETOURS
+        ):
             more = self._new_ones(found, self._by_detour(rng))
             detours += 1
             by_detour += len(more)
@@ -113,10 +121,12 @@ class _Search:
                 if closed is not None:
                     found, mirrored, closed = self._close(found)
                     by_mirror += mirrored
+        # a mirror image may have shown that an end is regular after all
+        singular = self._apart(found, ends.x[ends.singular])
         return ParameterRoots(
             x=found,
-            singular=ends.x[ends.singular],
-            paths=len(self.member.x),
+            singular=singular,
+            paths=paths,
             at_infinity=int(ends.infinite.sum()),
             lost=int(ends.lost.sum()),
             by_mirror=by_mirror,
@@ -129,6 +139,10 @@ class _Search:
         ends = self._follow(self.member.parameters, self.member.x, QUICK)
         again = np.flatnonzero(ends.lost | self._meeting(ends))
         if not len(again):
+            return ends
+        if len(again) > _MANY * len(ends.x):
+            # the task is special: care would take long and change little
+            ends.regular[again] = False
             return ends
         more = self._follow(self.member.parameters, self.member.x[again], SURE)
         for whole, part in (
@@ -179,6 +193,16 @@ class _Search:
         both = np.concatenate([found, more])
         kept = self._first_of_each(both)
         return both[kept[kept >= len(found)]]
+
+    def _apart(self, found: ComplexArray, ends: ComplexArray) -> ComplexArray:
+        """Singular ends that are not near a solution found, each as often as paths lead there."""
+        prints, others = (self.family.fingerprint(x, self.goal) for x in (found, ends))
+        near = [
+            (np.abs(prints - row).max(axis=1) < _ROUGH * (1.0 + np.abs(row).max())).any()
+            for row in others
+        ]
+        apart: ComplexArray = ends[~np.array(near, dtype=bool)]
+        return apart
 
     def _meeting(self, ends: _Ends) -> BoolArray:
         """Paths that ended at the same regular solution: one of them has jumped."""

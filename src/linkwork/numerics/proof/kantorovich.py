@@ -33,14 +33,14 @@ __all__ = ["Bounds", "Expansion", "Majorant", "Radii", "expansion", "radii", "we
 
 # Rounds in which weights are fitted; empirical, any number near it serves. The bounds are computed
 # for the weights found, so that too few rounds can lose a proof, but never give a wrong one.
-_FITTINGS = 4
+FITTINGS = 4
 # c and d of fitted weights. In them Y ≤ 1, and every row has c ω + d Z ≤ 1. If one row has both
 # largest values, (1 - Z)² - 2 ω Y is at least (1 - 2/c) + 2 (d/c - 1) Z + Z²: positive for c > 2
 # and d ≥ c. With these it is 0.2 or more, room for rounds that have not converged.
-_BENDING, _SHIFTING = 2.5, 3.0
-_LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
-_MOST = 1e3  # of the usual weight: where the proof fails weights grow without end
-_TINY = 1e-200
+BENDING, SHIFTING = 2.5, 3.0
+LEAST = 1e-12  # of the largest weight: an unknown that does not move has this one
+MOST = 1e3  # of the usual weight: where the proof fails weights grow without end
+TINY = 1e-200
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -242,12 +242,12 @@ class Majorant:
             The usual weights.
         """
         largest = (self.y / scale).max(axis=1, keepdims=True)
-        start: Array = np.maximum(self.y, np.maximum(_LEAST * largest, _TINY) * scale)
+        start: Array = np.maximum(self.y, np.maximum(LEAST * largest, TINY) * scale)
         w = start
-        for _ in range(_FITTINGS):
-            grown = _BENDING * self.quadratic(w) + _SHIFTING * self.linear(w)  # eq. (32)
+        for _ in range(FITTINGS):
+            grown = BENDING * self.quadratic(w) + SHIFTING * self.linear(w)  # eq. (32)
             # where the proof fails weights would grow without end
-            w = np.maximum(start, np.minimum(grown, _MOST * scale))
+            w = np.maximum(start, np.minimum(grown, MOST * scale))
         return w
 
 

@@ -22,8 +22,18 @@ from linkwork.numerics.proof.kantorovich import (
     expansion,
     weighted_radii,
 )
+from linkwork.numerics.proof.single_proof import (
+    PlacesOfRow,
+    SingleExpansions,
+    chain_radii,
+    expand_rows,
+    fitted_radii_singly,
+    radii_singly,
+    rows_of,
+)
 
 __all__ = [
+    "Place",
     "Proof",
     "Reach",
     "expansions",
@@ -32,7 +42,12 @@ __all__ = [
     "reach",
     "rounding_of_inputs",
     "steps_connected",
+    "steps_disproved",
 ]
+
+
+#: The data of a block at some positions; ``None`` without a curvature bound.
+Place = Expansion | SingleExpansions | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,14 +90,16 @@ def expansions(
     linear: Sequence[Linearised] | None = None,
     *,
     exact: bool = False,
-) -> list[Expansion | None]:
+) -> list[Place]:
     """The data that proofs need of positions v (B, N), block by block.
 
     ``exact``: see :func:`~linkwork.numerics.proof.kantorovich.expansion`. ``None`` for a block
     without a curvature bound (function rows).
     """
+    if linear is None and solver.is_proved_singly(len(v)):
+        return list(expand_rows(solver, v, exact=exact))
     parts = solver.linearise(v) if linear is None else linear
-    found: list[Expansion | None] = []
+    found: list[Place] = []
     with np.errstate(all="ignore"):
         for block, part in zip(solver.blocks, parts, strict=True):
             here = v[:, block.variables]
@@ -99,7 +116,7 @@ def prove(
     solver: BlockSolver,
     v: Array,
     input_radius: Array,
-    places: Sequence[Expansion | None] | None = None,
+    places: Sequence[Place] | None = None,
 ) -> Proof:
     """Prove positions for all inputs within ``input_radius`` of those in v.
 
@@ -115,15 +132,18 @@ def prove(
     -----
     A block without a curvature bound (function rows) proves nothing: ``holds`` is false.
     """
+    places = expansions(solver, v) if places is None else places
+    singly = rows_of(places)
+    if singly is not None:
+        return _prove_singly(solver, singly, input_radius)
     count = len(v)
     error_bound = np.zeros((count, solver.variables))
     error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
     existence_radius = np.full((count, len(solver.blocks)), np.inf)
     uniqueness_radius = np.zeros((count, len(solver.blocks)))
-    places = expansions(solver, v) if places is None else places
     for k, (block, place) in enumerate(zip(solver.blocks, places, strict=True)):
-        if place is None:
+        if not isinstance(place, Expansion):
             holds[:] = False
             continue
         found = _position(block, place, error_bound)
@@ -138,6 +158,42 @@ def prove(
         existence_radius=existence_radius,
         uniqueness_radius=uniqueness_radius,
         error_bound=error_bound,
+    )
+
+
+def _prove_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Array) -> Proof:
+    """``prove`` for a few rows, one after the other."""
+    holds, existence, uniqueness, errors = [], [], [], []
+    for places, given in zip(rows, radius.tolist(), strict=True):
+        own, error_bound = chain_radii(solver, places, given, radii_singly)
+        holds.append(all(radii.holds for radii in own))
+        existence.append([radii.existence_radius for radii in own])
+        uniqueness.append([radii.uniqueness_radius for radii in own])
+        errors.append(error_bound)
+    return Proof(
+        holds=np.array(holds),
+        existence_radius=np.array(existence),
+        uniqueness_radius=np.array(uniqueness),
+        error_bound=np.array(errors),
+    )
+
+
+def _reach_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Array) -> Reach:
+    """``reach`` for a few rows, one after the other."""
+    n, holds, errors, isolations = solver.unknowns, [], [], []
+    for places, given in zip(rows, radius.tolist(), strict=True):
+        own, error_bound = chain_radii(solver, places, given, fitted_radii_singly)
+        holds.append(all(radii.holds for radii in own))
+        errors.append(error_bound[:n])
+        isolation = [0.0] * n
+        for block, radii in zip(solver.singles, own, strict=True):
+            for k, x in zip(block.unknowns, radii.isolation_radius, strict=True):
+                isolation[k] = x
+        isolations.append(isolation)
+    return Reach(
+        holds=np.array(holds),
+        error_bound=np.array(errors),
+        isolation_radius=np.array(isolations),
     )
 
 
@@ -202,20 +258,23 @@ def reach(
     solver: BlockSolver,
     v: Array,
     input_radius: Array,
-    places: Sequence[Expansion | None] | None = None,
+    places: Sequence[Place] | None = None,
 ) -> Reach:
     """How far around positions v (B, N) one solution exists for all inputs in ``input_radius``.
 
     As :func:`prove`, in weights fitted to each step.
     """
+    places = expansions(solver, v) if places is None else places
+    singly = rows_of(places)
+    if singly is not None:
+        return _reach_singly(solver, singly, input_radius)
     count = len(v)
     error_bound = np.zeros((count, solver.variables))
     error_bound[:, solver.unknowns :] = input_radius
     holds = np.ones(count, dtype=bool)
     isolation_radius = np.zeros((count, solver.unknowns))
-    places = expansions(solver, v) if places is None else places
     for block, place in zip(solver.blocks, places, strict=True):
-        if place is None:
+        if not isinstance(place, Expansion):
             holds[:] = False
             continue
         found = _radii(block, place, error_bound, fitted=True)
@@ -245,4 +304,16 @@ def steps_connected(v: Array, following: Array, reached: Reach, near: Array) -> 
     n = reached.isolation_radius.shape[1]
     inside = np.abs(following - v)[:, :n] + near[:, :n] < reached.isolation_radius  # eq. (33)
     held: BoolArray = reached.holds & inside.all(axis=1)
+    return held
+
+
+def steps_disproved(v: Array, following: Array, reached: Reach, near: Array) -> BoolArray:
+    """Whether each step from v to ``following`` is proved to lead to another branch, (B,).
+
+    The branch of v stays within the error bound for all inputs up to those of ``following``.
+    Parameters are those of :func:`steps_connected`.
+    """
+    n = reached.isolation_radius.shape[1]
+    outside = np.abs(following - v)[:, :n] - near[:, :n] > reached.error_bound
+    held: BoolArray = reached.holds & outside.any(axis=1)
     return held

@@ -112,6 +112,9 @@ class RowQuantity:
         Whether it is about the path of a point: pages list it for traced points only.
     kind : Kind
         What formulas take it for.
+    pin : tuple of str
+        Of a component of a force on a point: the point, the link on which the force acts and the
+        one that exerts it, "" if it is none or several.
     """
 
     word: str
@@ -121,6 +124,7 @@ class RowQuantity:
     evaluate: Callable[[MechanismNames, Solved, str], Jet]
     of_path: bool = False
     kind: Kind = Kind.NUMBER
+    pin: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,6 +14,7 @@ from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.mass_entries import drop_lost_loads, put_mass
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
 from linkwork.viewer.live.number_edits import set_input, set_number
@@ -158,6 +159,7 @@ def _(edit: ask.RemoveLink, text: TextEdits, before: Before) -> Followed:
     text.remove(("links", edit.name))
     drop_loose_dimensions(text)
     drop_lost_inputs(text, edit.name)
+    drop_lost_loads(text, edit.name)
     return Followed()
 
 
@@ -185,6 +187,13 @@ def _(edit: ask.RemovePoint, text: TextEdits, before: Before) -> Followed:
         left = [point for point in traced if canonical(point) != canonical(edit.name)]
         text.put(("trace", "points"), left)
     drop_loose_dimensions(text)
+    drop_lost_loads(text, edit.name)
+    return Followed()
+
+
+@applied.register
+def _(edit: ask.SetMass, text: TextEdits, before: Before) -> Followed:
+    put_mass(edit, text)
     return Followed()
 
 
@@ -212,6 +221,7 @@ def _(edit: ask.SetPart, text: TextEdits, before: Before) -> Followed:
 def _(edit: ask.RemovePart, text: TextEdits, before: Before) -> Followed:
     text.remove(part_row(text, edit.name))
     drop_lost_inputs(text, edit.name)
+    drop_lost_loads(text, edit.name)
     if edit.whole and isinstance(before.description, Draft):
         for each in alone_with(edit.name, before.description):
             applied(each, text, before)
@@ -296,6 +306,8 @@ def edit_title(edit: ask.Edit) -> str:
             return f"move {', '.join(edit.places)}"
         case ask.DrawPart():
             return f"add {PARTS[edit.table].title.lower()}"
+        case ask.SetMass():
+            return f"mass of {edit.link}"
         case ask.SetPart():
             return f"{edit.name}: {edit.key}"
         case ask.ChangeUnits():

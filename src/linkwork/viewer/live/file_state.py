@@ -13,6 +13,7 @@ __all__ = [
     "FileState",
     "Lack",
     "Link",
+    "MassShown",
     "PaletteField",
     "PalettePart",
     "PartShown",
@@ -76,6 +77,18 @@ class Link:
 
     name: str
     points: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MassShown:
+    """The mass of a moving link as it would be typed; empty without one. ``rod``: a uniform rod."""
+
+    link: str
+    mass: str
+    x: str
+    y: str
+    inertia: str
+    rod: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,6 +197,8 @@ class FileState:
     links: tuple[Link, ...]
     parts: tuple[str, ...]
     part_entries: tuple[PartShown, ...]  # noqa: V107
+    masses: tuple[MassShown, ...]
+    mass_unit: str  # noqa: V107
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]

@@ -53,7 +53,9 @@ def part_of(
 
 
 def part_name(row: Mapping[str, object]) -> str:
-    """The label of a part: its name, or the two links of a weld."""
+    """The label of a part: its name, the two links of a weld, or what a load acts on."""
+    if "force" in row or "torque" in row:
+        return f"load on {row.get('point', row.get('link', ''))}"
     links = row.get("links")
     if isinstance(links, Sequence) and not isinstance(links, str):
         return " ".join(map(str, links))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["AddPart", "DrawPart", "Picked", "RemovePart", "SetPart", "Typed"]
+__all__ = ["AddPart", "DrawPart", "Picked", "RemovePart", "SetMass", "SetPart", "Typed"]
 
 #: User input of a field: one entry or several; a row of numbers or of a table is one line,
 #: "10, 20".
@@ -68,3 +68,18 @@ class RemovePart:
 
     name: str
     whole: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetMass:
+    """Set the mass of a link; without ``mass`` it has none.
+
+    ``x``, ``y``: its centre in the frame of the link; without them a link of two points is a
+    uniform rod. ``inertia``: about the centre.
+    """
+
+    link: str
+    mass: float | str | None = None
+    x: float | str | None = None
+    y: float | str | None = None
+    inertia: float | str | None = None

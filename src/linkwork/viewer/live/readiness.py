@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from linkwork.foundation.errors import Problem, key_text
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.part.index import PARTS
 from linkwork.mechanism.part.wheel_pair import ArmPair
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.file_state import Lack, Remedy
@@ -105,8 +106,8 @@ def _thing(problem: Problem, draft: Draft) -> tuple[str, str]:
             return "point", name
         case ("links", str(name), *_):
             return "link", name
-        case (str(table), int(row), *_) if table != "input":
-            parts = getattr(draft, table, ())
+        case (str(table), int(row), *_) if table in PARTS:
+            parts = getattr(draft, table)
             return ("part", parts[row].label) if row < len(parts) else ("", "")
     return "", ""
 

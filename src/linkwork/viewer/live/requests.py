@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwork.viewer.live.part_requests import AddPart, DrawPart, Picked, RemovePart, SetPart
+from linkwork.viewer.live.part_requests import (
+    AddPart,
+    DrawPart,
+    Picked,
+    RemovePart,
+    SetMass,
+    SetPart,
+)
 from linkwork.viewer.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
@@ -49,6 +56,7 @@ __all__ = [
     "Save",
     "SetGround",
     "SetInput",
+    "SetMass",
     "SetNumber",
     "SetPart",
     "SetSheet",
@@ -204,6 +212,7 @@ Edit = (
     | MovePoint
     | MovePoints
     | SetInput
+    | SetMass
     | AddPoint
     | RemovePoint
     | AddLink

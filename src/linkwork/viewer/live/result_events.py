@@ -24,6 +24,7 @@ from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.exported_file import ExportedFile
 from linkwork.viewer.live.history import History
+from linkwork.viewer.live.mass_entries import masses_shown
 from linkwork.viewer.live.part_entries import parts_shown
 from linkwork.viewer.live.readiness import lacks_of
 from linkwork.viewer.live.subject import Subject
@@ -347,6 +348,8 @@ def file_state(
         links=_links_of(description),
         parts=tuple(part.name for part in parts),
         part_entries=parts,
+        masses=tuple(masses_shown(description)),
+        mass_unit=getattr(description, "mass", ""),
         drives=_drives_of(sheet, description),
         traceable=tuple(getattr(description, "points", ())),
         traced=description.trace,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.textfile.text_edits import TextEdits
+from linkwork.textfile.toml_text import data_of
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import sketch_at
 from linkwork.viewer.live.answers import About, reply
@@ -139,7 +140,7 @@ class Workbench:
         live = bool(getattr(edit, "live", False))
         drag = self._drag
         if drag is None:
-            drag = Drag(kind=same_thing(edit), text=TextEdits(self.text), before=self._before())
+            drag = Drag(kind=same_thing(edit), text=self._text_edits(), before=self._before())
         self._drag = drag
         try:
             followed = applied(edit, drag.text, drag.before)
@@ -152,6 +153,17 @@ class Workbench:
             drag.latest, drag.what = text, edit_title(edit)
         return [*_followed(edit, followed), *told]
 
+    def _text_edits(self) -> TextEdits:
+        """The text, for edits of its entries."""
+        if not self.cycle.subject.readable:
+            try:
+                data_of(self.text, self._file.name)
+            except MechanismError as error:
+                (problem,) = error.problems
+                place = f"line {problem.line} " if problem.line else "it "
+                raise InputError(f"correct the text first: {place}{problem.message}") from None
+        return TextEdits(self.text)
+
     def _after_refusal(self, request: ask.Request) -> Events:
         """End a refused drag at its last accepted change, and report it."""
         drag = self._drag
@@ -162,7 +174,7 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.Together) -> Events:
-        text, before = TextEdits(self.text), self._before()
+        text, before = self._text_edits(), self._before()
         for edit in request.edits:
             applied(edit, text, before)
         return self._accepted(text.text, "; ".join(map(edit_title, request.edits)))

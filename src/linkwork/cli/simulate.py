@@ -1,0 +1,137 @@
+"""``linkwork simulate``"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import click
+
+from linkwork.api import Mechanism
+from linkwork.cli import picture
+from linkwork.cli.mechanism_source import read_mechanism
+from linkwork.cli.options import (
+    at_option,
+    change_points_option,
+    columns_option,
+    debug_option,
+    file_argument,
+    input_values,
+    json_option,
+    number_or_formula,
+    set_option,
+)
+from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.simulation_page import equilibria_lines, motion_data, simulation_lines
+from linkwork.cli.terminal import print_json, print_lines, progress
+from linkwork.drawing.charts.plotting import motion_plot
+from linkwork.export import csv_lines
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+
+__all__ = ["simulate"]
+
+
+@click.command
+@file_argument
+@click.option("--until", type=float, metavar="SECONDS", help="The last time.")
+@click.option("--step", type=float, metavar="SECONDS", help="Between rows; default 400 rows.")
+@at_option
+@click.option(
+    "--start-speed", metavar="SPEED", default="0", help='Of the input: "60 rad/s"; default 0.'
+)
+@change_points_option
+@click.option("--equilibria", is_flag=True, help="List the positions of rest, and no motion.")
+@columns_option("Print, write and plot only this quantity.")
+@click.option("--no-certificates", is_flag=True, help="Skip the proofs (faster).")
+@click.option("--csv", metavar="PATH", help="Write the table of all rows; - is standard output.")
+@click.option("--plot", metavar="PATH", help="Plot the quantities over time.")
+@set_option
+@json_option
+@debug_option
+@click.pass_context
+def simulate(
+    context: click.Context,
+    file: str,
+    until: float | None,
+    step: float | None,
+    at: tuple[str, ...],
+    start_speed: str,
+    change_points: str,
+    equilibria: bool,
+    names: tuple[str, ...],
+    no_certificates: bool,
+    csv: str | None,
+    plot: str | None,
+    changes: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Compute the motion in time under masses, loads, springs and a motor.
+
+    The input is free: it starts at the sketch, or at --at, with --start-speed.
+    Rows are added where loads switch and where stops are hit.
+
+    \b
+      linkwork simulate pump.toml --until 2 --start-speed "60 rad/s"
+      linkwork simulate pump.toml --until 2 --columns crank.velocity --plot v.png
+      linkwork simulate pump.toml --until 2 --step 0.01 --csv -
+      linkwork simulate lamp.toml --equilibria
+    """
+    if as_json and csv == "-":
+        raise InputError("--json and --csv - both use standard output: name a file for the table")
+    if plot is not None:
+        picture.check_picture(plot)
+    check_outputs(file, csv, plot)
+    mechanism = read_mechanism(file, changes)
+    start = input_values(mechanism, at)
+    if equilibria:
+        if until is not None or csv is not None or plot is not None:
+            raise InputError("--equilibria lists positions of rest: leave out --until and files")
+        _list_equilibria(mechanism, start, change_points, as_json)
+        return
+    if until is None:
+        raise InputError("--until is missing: the last time in seconds")
+    speed = number_or_formula(start_speed)
+    with progress("simulating") as tell:
+        motion = mechanism.simulate(
+            until,
+            step=step,
+            at=start,
+            start_speed=speed,
+            change_points=change_points,
+            certify=not no_certificates,
+            progress=tell,
+        )
+    table = motion.table(*names)
+    written = []
+    if csv == "-":
+        for line in csv_lines(table):
+            click.echo(line, nl=False)
+    elif csv is not None:
+        write_text(csv, csv_lines(table))
+        written.append(f"Wrote {csv}: {len(motion)} rows.")
+    if plot is not None:
+        written.append(_plotted(mechanism, motion, names, plot))
+    if as_json:
+        print_json(motion_data(motion, table))
+    elif csv != "-":
+        page = simulation_lines(motion, names)
+        print_lines([*page, *(["", *written] if written else [])])
+    if not motion.found.all():
+        context.exit(1)
+
+
+def _list_equilibria(
+    mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
+) -> None:
+    found = mechanism.equilibria(start, change_points=change_points)
+    if as_json:
+        print_json({"equilibria": [asdict(each) for each in found]})
+    else:
+        print_lines(equilibria_lines(mechanism, found))
+
+
+def _plotted(mechanism: Mechanism, motion: Motion, names: tuple[str, ...], path: str) -> str:
+    shown = names or (mechanism.description.inputs[0].column + ".velocity",)
+    with progress("drawing"):
+        picture.write(motion_plot(motion, shown), path)
+    return f"Wrote {path}: {', '.join(shown)} over time."

@@ -1,0 +1,97 @@
+"""Simulated motions and equilibria as pages of text."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwork.api import Mechanism
+from linkwork.cli.motion_page import range_lines
+from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
+from linkwork.cli.text_table import Column, fixed, significant, table_lines
+from linkwork.results.equilibrium import Equilibrium
+from linkwork.results.motion import Motion
+from linkwork.results.table import Table
+
+__all__ = ["equilibria_lines", "motion_data", "simulation_lines"]
+
+
+def simulation_lines(motion: Motion, names: Sequence[str] = ()) -> list[str]:
+    """How a simulation ended, its events and the ranges of its quantities."""
+    whole = bool(motion.found.all())
+    message = motion.message[:1].upper() + motion.message[1:]
+    lines = [*title_lines(motion.mechanism), *sentence(good if whole else bad, message)]
+    lines += fields(list(_facts(motion)))
+    listed = list(names) or [*motion.unknowns, *(f"{n}.velocity" for n in _driven(motion))]
+    ranges = range_lines(motion, listed)
+    return [*lines, "", *ranges] if ranges else lines
+
+
+def _driven(motion: Motion) -> Iterator[str]:
+    """The former input: the last variable of the mechanism."""
+    yield from list(motion.unknowns)[-1:]
+
+
+def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
+    yield "rows", f"{int(motion.asked.sum())}"
+    events = Counter(word for word in motion.limit if word)
+    for word, count in events.items():
+        if word != "end":
+            yield "event", f"{word}, {count} times" if count > 1 else word
+    yield "certified", f"{int(motion.certified.sum())} of {int(motion.found.sum())}"
+    if "load_power" in motion.quantities.derived:
+        energy = motion["kinetic_energy"] + motion["stored_energy"]
+        fine = energy[np.isfinite(energy)]
+        if len(fine):
+            unit = motion.quantity("kinetic_energy").unit
+            yield "energy", f"{fine[0]:.10g} at first, {fine[-1]:.10g} at last {unit}"
+
+
+def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list[str]:
+    """A table of equilibria."""
+    lines = title_lines(mechanism.description.name)
+    if not found:
+        return [*lines, *sentence(bad, "No equilibrium on the circuit of the start")]
+    name = mechanism.description.inputs[0].column
+    unit = next(iter(mechanism.model.input_units.values()))
+    head = f"{len(found)} equilibri{'um' if len(found) == 1 else 'a'} on the circuit of the start"
+    return [
+        *lines,
+        *sentence(good, head),
+        "",
+        *table_lines(
+            [
+                Column(
+                    header=f"{name} [{unit}]" if unit else name,
+                    cells=[fixed(each.input, 6) for each in found],
+                    align="point",
+                ),
+                Column(
+                    header="", cells=["stable" if each.stable else "unstable" for each in found]
+                ),
+                Column(
+                    header="frequency [Hz]",
+                    cells=[significant(each.frequency) if each.stable else "-" for each in found],
+                    align="point",
+                ),
+            ]
+        ),
+    ]
+
+
+def motion_data(motion: Motion, table: Table) -> dict[str, Any]:
+    """A simulated motion as JSON-ready data."""
+    return {
+        "mechanism": motion.mechanism,
+        "message": motion.message,
+        "units": dict(table.units),
+        "events": [
+            {"t": float(t), "event": word}
+            for t, word in zip(motion["t"], motion.limit, strict=True)
+            if word
+        ],
+        "columns": {name: column.tolist() for name, column in table.columns.items()},
+    }

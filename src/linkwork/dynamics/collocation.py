@@ -1,0 +1,131 @@
+"""Steps of s̈ = a(s, ṡ, t) by collocation at Gauss points, with polynomials between.
+
+At n points the polynomial of degree n - 1 for s̈ equals a; its integrals give ṡ and s. The ends of
+steps are of order 2n (Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3); between
+them the last coefficients of the polynomial show its error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.rounding import EPSILON
+
+__all__ = ["Step", "try_step"]
+
+_POINTS = 12
+_MOST_ROUNDS = 12
+_SETTLED = 1e-15  # of the accelerations: a change that is rounding
+_TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
+_LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
+
+_x, _w = legendre.leggauss(_POINTS)
+_FIT = np.linalg.inv(legendre.legvander(_x, _POINTS - 1))
+_C = 0.5 * (_x + 1.0)
+
+
+def _integrals(once: AnyArray) -> Array:
+    """The matrix from values to the coefficients of an integral from 0, for t from 0 to 1."""
+    return np.stack([0.5 * legendre.legint(column, lbnd=-1) for column in once.T], axis=1)
+
+
+_SPEED = _integrals(_FIT)  # (n + 1, n)
+_PLACE = _integrals(_SPEED)  # (n + 2, n)
+_AT_SPEED = legendre.legvander(_x, _POINTS) @ _SPEED
+_AT_PLACE = legendre.legvander(_x, _POINTS + 1) @ _PLACE
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Step:
+    """A step from ``t`` to ``t + h``: s, ṡ at its beginning, accelerations at its points (n,)."""
+
+    t: float
+    h: float
+    s: float
+    speed: float
+    accelerations: Array
+
+    @cached_property
+    def _coefficients(self) -> Array:
+        """Of the place beyond that at constant speed, the gained speed, the acceleration."""
+        found = np.zeros((_POINTS + 2, 3))
+        found[:, 0] = self.h**2 * (_PLACE @ self.accelerations)
+        found[:-1, 1] = self.h * (_SPEED @ self.accelerations)
+        found[:-2, 2] = _FIT @ self.accelerations
+        return found
+
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
+        """s, ṡ and s̈ at times (B,) within the step."""
+        x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
+        moved, gained, bend = (legendre.legvander(x, _POINTS + 1) @ self._coefficients).T
+        place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
+        return place, self.speed + gained, bend
+
+
+def try_step(
+    acceleration: Callable[[Array, Array, Array], Array], t: float, s: float, speed: float, h: float
+) -> tuple[Step | None, float]:
+    """A step of the length ``h``, ``None`` if it does not succeed, and the length to try next."""
+    times = t + h * _C
+    guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
+    a = np.full(_POINTS, float(guess[0]))
+    jacobian = None
+    for round_ in range(_MOST_ROUNDS):
+        w = speed + h * (_AT_SPEED @ a)
+        place = s + h * _C * speed + h**2 * (_AT_PLACE @ a)
+        if jacobian is None or round_ == _MOST_ROUNDS // 2:
+            found, jacobian = _linearise(acceleration, place, w, times, h)
+        else:
+            found = acceleration(place, w, times)
+        if not np.isfinite(found).all() or not np.isfinite(jacobian).all():
+            return None, _SMALLEST * h
+        change = np.linalg.solve(jacobian, found - a)
+        a = a + change
+        size = np.abs(a).max() + abs(speed) / abs(h)
+        if np.abs(change).max() <= _SETTLED * _POINTS * size:
+            break
+    else:
+        if np.abs(change).max() > 1e-10 * size:
+            return None, 0.5 * h
+    tail = float(np.abs((_FIT @ a)[-2:]).max())
+    scale = max(abs(speed), abs(h) * float(np.abs(a).max()))
+    error = abs(h) * tail / scale if scale > 0.0 else 0.0
+    factor = _LARGEST
+    if error > 0.0:
+        factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / _POINTS))
+    if error > 30.0 * _TOLERANCE:
+        return None, max(_SMALLEST, min(factor, 0.7)) * h
+    step = Step(t=t, h=h, s=s, speed=speed, accelerations=a)
+    return step, max(factor, _SMALLEST) * h
+
+
+def _linearise(
+    acceleration: Callable[[Array, Array, Array], Array],
+    place: Array,
+    w: Array,
+    times: Array,
+    h: float,
+) -> tuple[Array, Array]:
+    """Accelerations at all points, and the Jacobian of the collocation equations, (n, n)."""
+    eps = math.sqrt(EPSILON)
+    ds = eps * max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps, 1e-12)
+    dw = eps * max(float(np.abs(w).max()), abs(ds / h))
+    many = acceleration(
+        np.concatenate([place, place + ds, place]),
+        np.concatenate([w, w, w + dw]),
+        np.concatenate([times] * 3),
+    ).reshape(3, -1)
+    by_place, by_speed = (many[1] - many[0]) / ds, (many[2] - many[0]) / dw
+    jacobian = (
+        np.eye(_POINTS)
+        - by_place[:, None] * (h**2 * _AT_PLACE)
+        - by_speed[:, None] * (h * _AT_SPEED)
+    )
+    return many[0], jacobian

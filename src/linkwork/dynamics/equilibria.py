@@ -1,0 +1,118 @@
+"""Equilibria of a mechanism with one input, their stability and natural frequency."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+import numpy as np
+
+from linkwork.dynamics.reduced import ReducedLeg
+from linkwork.dynamics.simulation import start_of
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.policy import ChangePointPolicy
+from linkwork.motion.model import Model
+from linkwork.results.equilibrium import Equilibrium
+from linkwork.results.quantity import Kind
+
+__all__ = ["equilibria"]
+
+_LOOKS = 256  # places of a panel at which the sign of the net force is compared
+_ROUNDS = 12
+_SLOPE = 1e-4  # of a panel: differences for the stiffness
+_SAME_PLACE = 1e-9  # of a turn, or of the longest link
+_BALANCED = 1e-9  # of the largest net force: a zero, not a jump of a comparison
+
+
+def equilibria(
+    model: Model,
+    at: float | Mapping[str, float] | None = None,
+    *,
+    change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
+) -> tuple[Equilibrium, ...]:
+    """All equilibria on the circuit of the start, in its order.
+
+    The net force along the motion is zero there, at rest and at t = 0. Two equilibria between two
+    of 256 places of a panel are not seen.
+
+    Raises
+    ------
+    InputError
+        As :func:`linkwork.dynamics.simulate`.
+    """
+    policy = ChangePointPolicy.of(change_points)
+    reduction, curve = start_of(model, at, policy, False)
+    found: list[Equilibrium] = []
+    for leg in curve.legs:
+        reduced = ReducedLeg(reduction, leg)
+        places = sorted(_zeros(reduced), reverse=leg.begin > leg.end)
+        found += [_equilibrium(reduced, s) for s in places]
+    kept: list[Equilibrium] = []
+    for each in found:
+        if not any(_same(model, each, other) for other in kept):
+            kept.append(each)
+    return tuple(kept)
+
+
+def _force(leg: ReducedLeg, s: Array) -> Array:
+    still = np.zeros_like(s)
+    return leg.acceleration(s, still, still, np.zeros(leg.variables)) * leg.numbers(s)[:, 0]
+
+
+def _zeros(leg: ReducedLeg) -> Iterator[float]:
+    edges = leg.table.edges
+    looks = np.concatenate([np.linspace(a, b, _LOOKS + 1)[:-1] for a, b in pairwise(edges)])
+    looks = np.append(looks, edges[-1])
+    force = _force(leg, looks)
+    largest = float(np.abs(force).max())
+    for end in (0, -1):
+        # a zero at the joint of two legs may change its sign on neither
+        if largest and abs(float(force[end])) <= _BALANCED * largest:
+            yield float(looks[end])
+    for k in np.flatnonzero((force[:-1] > 0.0) != (force[1:] > 0.0)):
+        low, high = float(looks[k]), float(looks[k + 1])
+        for _ in range(_ROUNDS):
+            inside = np.linspace(low, high, 17)
+            over = _force(leg, inside) > 0.0
+            cut = int(np.flatnonzero(over[1:] != over[:-1])[0])
+            low, high = float(inside[cut]), float(inside[cut + 1])
+            if high - low <= 4.0 * np.spacing(abs(low)):
+                break
+        s = 0.5 * (low + high)
+        if abs(float(_force(leg, np.array([s]))[0])) <= _BALANCED * largest:
+            yield s
+
+
+def _equilibrium(leg: ReducedLeg, s: float) -> Equilibrium:
+    model = leg.reduction.model
+    panel = int(leg.table.locate(np.array([s]))[0][0])
+    step = _SLOPE * float(leg.table.edges[panel + 1] - leg.table.edges[panel])
+    two = _force(leg, np.array([s - step, s + step]))
+    stiffness = -float(two[1] - two[0]) / (2.0 * step)
+    mass = float(leg.numbers(np.array([s]))[0, 0])
+    # eq. (93)
+    frequency = math.copysign(math.sqrt(abs(stiffness) / mass), stiffness) / FULL_TURN
+    v = leg.leg.rows(np.array([s]), False).v[0]
+    names = model.equations.variables
+    values = {
+        variable.name: float(value) / model.units.scale(Kind(variable.kind))
+        for variable, value in zip(names, v, strict=True)
+    }
+    return Equilibrium(
+        input=values[names[-1].name], values=values, stable=stiffness > 0.0, frequency=frequency
+    )
+
+
+def _same(model: Model, one: Equilibrium, other: Equilibrium) -> bool:
+    """Whether two are one position, whole turns apart or at the joint of two legs."""
+    turn = model.units.angle.turn
+    size = model.equations.length_scale
+    for variable in model.equations.variables:
+        gap = one.values[variable.name] - other.values[variable.name]
+        angle = variable.kind == "angle"
+        gap = math.remainder(gap, turn) / turn if angle else gap / size
+        if abs(gap) > _SAME_PLACE:
+            return False
+    return True

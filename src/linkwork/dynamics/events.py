@@ -1,0 +1,88 @@
+"""Events of a simulation: comparisons that switch loads, stops, the ends of legs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.dynamics.collocation import Step
+from linkwork.dynamics.reduced import ReducedLeg
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.mechanism.stop import Stop
+from linkwork.results.quantities.asked import Asked
+
+__all__ = ["Bound", "Event", "first_event"]
+
+_LOOKS = 24  # places of a step at which signs are compared
+_ROUNDS = 60  # halvings are the worst case
+_NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next one is looked for
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bound:
+    """One side of a stop: ``side`` +1 for a least value, -1 for a greatest one."""
+
+    stop: Stop
+    asked: Asked
+    value: float
+    side: float
+    restitution: float
+
+    def margin(self, leg: ReducedLeg, s: Array, speed: Array, t: Array, gain: Array) -> Array:
+        """How far the quantity is inside, (B,)."""
+        solved = leg.state(s, speed, t, gain).moving.solved
+        found: Array = self.side * (np.atleast_1d(self.asked.values(solved, 1.0)) - self.value)
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Margin ``number`` changes its sign between two times, as near as rounding allows."""
+
+    number: int
+    before: float
+    after: float
+
+
+Margins = Callable[[Array, Array, Array], Array]
+
+
+def first_event(step: Step, end: float, margins: Margins, falling: BoolArray) -> Event | None:
+    """The first sign change of margins (B, K) on a step up to the time ``end``.
+
+    ``falling`` (K,): which margins count only where they become negative.
+    """
+    times = np.linspace(step.t, end, _LOOKS + 1)
+    values = margins(*step.at(times)[:2], times)
+    changes = (values[1:] > 0.0) != (values[:-1] > 0.0)
+    changes &= ~falling | (values[:-1] > 0.0)
+    if not changes.any():
+        return None
+    k = int(np.flatnonzero(changes.any(axis=1))[0])
+    both = np.flatnonzero(changes[k])
+    low, high = values[k, both], values[k + 1, both]
+    # the first one of those between two places, by the straight line
+    number = int(both[np.argmin(low / (low - high))])
+    return _located(step, margins, number, times[k : k + 2], values[k : k + 2, number])
+
+
+def _located(step: Step, margins: Margins, number: int, times: Array, values: Array) -> Event:
+    """The sign change between two times, to rounding."""
+    (low, high), (below, above) = times.tolist(), values.tolist()
+    for _ in range(_ROUNDS):
+        width = high - low
+        if width <= 4.0 * np.spacing(max(abs(low), abs(high))):
+            break
+        guess = low + width * below / (below - above)
+        # around the place on the straight line, and in the middle if that is of no use
+        near = np.array([guess - _NEAR * width, guess + _NEAR * width, 0.5 * (low + high)])
+        inside = np.sort(near[(near > low) & (near < high)])
+        found = margins(*step.at(inside)[:2], inside)[:, number]
+        all_times = np.concatenate([[low], inside, [high]])
+        all_values = np.concatenate([[below], found, [above]])
+        k = int(np.flatnonzero((all_values[1:] > 0.0) != (all_values[:-1] > 0.0))[0])
+        low, high = all_times[k : k + 2].tolist()
+        below, above = all_values[k : k + 2].tolist()
+    return Event(number=number, before=low, after=high)

@@ -1,0 +1,324 @@
+"""The motion along the curve of positions, step by step, from event to event."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.dynamics.collocation import Step, try_step
+from linkwork.dynamics.curve import PositionCurve
+from linkwork.dynamics.events import Bound, Event, first_event
+from linkwork.dynamics.reduced import ReducedLeg, Reduction
+from linkwork.expression.tree import Node
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.frozen import FrozenDict
+
+__all__ = ["Sample", "Travel"]
+
+_BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
+_LOOKS = 33  # places at which a step is looked at
+_SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
+_FIRST = 0.02  # of the time in which the leg would be passed: the first step
+_SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
+_RESTS = 1e-8  # of the whole time: a bounce that lasts no longer is rest
+_MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
+_CHATTER = 1e-7
+_AT_REST = 1e-5  # of the fastest speed so far
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sample:
+    """A state at a time: the leg, laps gained, place, speed and acceleration of the leader.
+
+    ``event``: what happens there, "" for one that was asked for.
+    """
+
+    t: float
+    leg: int
+    lap: int
+    s: float
+    speed: float
+    acceleration: float
+    event: str = ""
+
+
+@dataclass(eq=False)
+class Travel:
+    """A motion under way.
+
+    ``times`` (B,): those asked for, rising. ``samples``: the states found so far. ``ended``: why
+    the motion ended early, "" if it did not. ``held``: since when switching loads keep it at rest.
+    """
+
+    curve: PositionCurve
+    reduction: Reduction
+    bounds: Sequence[Bound]
+    times: Array
+    progress: Callable[[float], None] | None = None
+    samples: list[Sample] = field(default_factory=list)
+    ended: str = ""
+    t: float = 0.0
+    lap: int = 0
+    held: float | None = None
+
+    def __post_init__(self) -> None:
+        self.until = float(self.times[-1])
+        self.number, self.s, self.speed = self.curve.home, self.curve.value, 0.0
+        self.taken = 0
+        self.legs: dict[int, ReducedLeg] = {}
+        self.steps: list[tuple[int, int, Step, float]] = []
+        self.lapped: tuple[float, float, int] | None = None
+        self.recent: list[float] = []
+
+    @property
+    def leg(self) -> ReducedLeg:
+        """The leg that the motion is on."""
+        if self.number not in self.legs:
+            self.legs[self.number] = ReducedLeg(self.reduction, self.curve.legs[self.number])
+        return self.legs[self.number]
+
+    @property
+    def gain(self) -> Array:
+        """What the variables have gained in laps, (N,)."""
+        return self.lap * self.curve.gain
+
+    def _acceleration(self, s: Array, speed: Array, t: Array) -> Array:
+        return self.leg.acceleration(s, speed, t, self.gain)
+
+    def begin(self, input_speed: float) -> None:
+        """Set the speed of the input at the start, [rad/s] or [length/s]."""
+        self.speed = input_speed / float(self.leg.input_slope(np.array([self.s]))[0])
+        self._switch()
+        self._record(0.0, self.s, self.speed, self._now())
+        edges = self.leg.table.edges
+        way = self.speed or self._now()
+        # a start at the end of a leg that moves away from it is on the leg before
+        if (self.s <= edges[0] and way < 0.0) or (self.s >= edges[-1] and way > 0.0):
+            self._leave(0 if way < 0.0 else 1)
+
+    def _now(self) -> float:
+        here = (np.array([x]) for x in (self.s, self.speed, self.t))
+        return float(self._acceleration(*here)[0])
+
+    def run(self) -> None:
+        """Step until all times are reached or the motion ends."""
+        h = self._first_step()
+        while self.t < self.until and not self.ended:
+            if self._rests():
+                continue
+            short = self.until - self.t
+            step, following = try_step(
+                self._acceleration, self.t, self.s, self.speed, min(h, short)
+            )
+            shorter = None if step is None else self._shorter(step)
+            if shorter is not None:
+                step, following = None, shorter
+            if step is None:
+                h = following
+                if h < _SHORTEST * self.until:
+                    self.ended = "the accelerations have no bound there"
+                continue
+            event = self._event(step)
+            end = step.t + step.h if event is None else self._end(event)
+            self._take(step, end)
+            h = following if event is None and step.h < short else max(following, h)
+            if event is not None:
+                self._meet(event)
+                if event.number >= 2:  # the accelerations have jumped
+                    h = min(h, self._first_step())
+            if self.progress is not None:
+                self.progress(min(1.0, self.t / self.until))
+
+    def _first_step(self) -> float:
+        low, high = sorted((self.leg.leg.begin, self.leg.leg.end))
+        pace, pull = abs(self.speed), abs(self._now())
+        times = [self.until]
+        if pace > 0.0:
+            times.append((high - low) / pace)
+        if math.isfinite(pull) and pull > 0.0:
+            times.append(math.sqrt((high - low) / pull))
+        return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
+
+    def _shorter(self, step: Step) -> float | None:
+        """The length that leads just beyond the end of the leg, of a step that goes on further."""
+        edges = self.leg.table.edges
+        low = edges[0] - _BEYOND * (edges[1] - edges[0])
+        high = edges[-1] + _BEYOND * (edges[-1] - edges[-2])
+        times = np.linspace(step.t, step.t + step.h, _LOOKS)
+        s = step.at(times)[0]
+        outside = np.flatnonzero((s < low) | (s > high))
+        if not len(outside):
+            return None
+        # between the last place that is known and the first one that is not
+        k = int(outside[0])
+        within = float(times[k - 1] - step.t) if k > 1 else 0.0
+        return max(within, 0.5 * float(times[k] - step.t))
+
+    # Events: margins of the leg's two ends, of the stops, of the comparisons, in this order
+
+    def _event(self, step: Step) -> Event | None:
+        edges, gain, leg = self.leg.table.edges, self.gain, self.leg
+        comparisons = len(self.reduction.comparisons)
+        falling = np.array([True] * (2 + len(self.bounds)) + [False] * comparisons)
+
+        def margins(s: Array, speed: Array, t: Array) -> Array:
+            found = [s - edges[0], edges[-1] - s]
+            found += [bound.margin(leg, s, speed, t, gain) for bound in self.bounds]
+            rows = np.stack(found, axis=1)
+            if not comparisons:
+                return rows
+            return np.concatenate([rows, leg.margins(s, speed, t, gain)], axis=1)
+
+        return first_event(step, step.t + step.h, margins, falling)
+
+    def _end(self, event: Event) -> float:
+        """Stops are met just before, all others just after."""
+        return event.before if 2 <= event.number < 2 + len(self.bounds) else event.after
+
+    def _take(self, step: Step, end: float) -> None:
+        times = self.times[self.taken :]
+        times = times[(times > step.t) & (times <= end)]
+        if len(times):
+            for t, s, speed, bend in zip(times, *step.at(times), strict=True):
+                self._record(float(t), float(s), float(speed), float(bend))
+            self.taken += len(times)
+        self.steps.append((self.number, self.lap, step, end))
+        place, pace, _ = step.at(np.array([end]))
+        self.t, self.s, self.speed = end, float(place[0]), float(pace[0])
+
+    def _record(
+        self, t: float, s: float, speed: float, acceleration: float, event: str = ""
+    ) -> None:
+        self.samples.append(
+            Sample(
+                t=t, leg=self.number, lap=self.lap, s=s, speed=speed, acceleration=acceleration,
+                event=event,
+            )
+        )  # fmt: skip
+
+    def _meet(self, event: Event) -> None:
+        bounds = len(self.bounds)
+        if event.number < 2:
+            self._leave(event.number)
+        elif event.number < 2 + bounds:
+            self._hit(self.bounds[event.number - 2])
+        else:
+            self._record(self.t, self.s, self.speed, self._now(), "switch")
+            self._switch()
+            self._check_chatter()
+
+    def _switch(self) -> None:
+        """Let every comparison have the value that it has now."""
+        if not self.reduction.comparisons:
+            return
+        s, speed, t = (np.array([x]) for x in (self.s, self.speed, self.t))
+        self.reduction.switches = FrozenDict()
+        margins = self.leg.margins(s, speed, t, self.gain)[0]
+        values: dict[Node, float] = {}
+        for each, margin in zip(self.reduction.comparisons, margins, strict=True):
+            over = margin >= 0.0 if each.operator == ">=" else margin > 0.0
+            under = margin <= 0.0 if each.operator == "<=" else margin < 0.0
+            values[each] = float(over if each.operator.startswith(">") else under)
+        self.reduction.switches = FrozenDict(values)
+
+    def _check_chatter(self) -> None:
+        self.recent = [t for t in self.recent if t > self.t - _CHATTER * self.until] + [self.t]
+        if len(self.recent) <= _MOST_EVENTS:
+            return
+        self.ended = "a comparison in a load switches without end there"
+        fastest = max(abs(sample.speed) for sample in self.samples)
+        if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
+            # pushed back as soon as it moves either way: it stays
+            self.ended, self.held = "", self.recent[0]
+            chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
+            self.samples = [k for k in self.samples if k not in chatter]
+            for t in self.times[self.taken :]:
+                self._record(float(t), self.s, 0.0, 0.0)
+            self.taken, self.t = len(self.times), self.until
+
+    def _leave(self, side: int) -> None:
+        """Onto the next leg, where another variable may lead."""
+        leg = self.leg.leg
+        ahead = (leg.begin <= leg.end) == (side == 1)
+        self._note_lap(ahead)
+        number, count = self.number + (1 if ahead else -1), len(self.curve.legs)
+        if not 0 <= number < count:
+            if not self.curve.closed:
+                self.ended = self.curve.ends[1 if ahead else 0]
+                return
+            self.lap += 1 if ahead else -1
+            number %= count
+        old = leg.lead
+        self.number = number
+        new = self.leg.leg
+        self.s = new.begin if ahead else new.end
+        if old != new.lead:
+            self.speed /= float(self.leg.slopes(np.array([self.s]))[0, old])
+
+    def _note_lap(self, ahead: bool) -> None:
+        """Finish at once if a lap has ended as it began and all further ones are the same."""
+        last = len(self.curve.legs) - 1 if ahead else 0
+        repeats = self.curve.closed and self.reduction.of_position and not self.bounds
+        if not repeats or self.number != last:
+            return
+        known = self.lapped
+        self.lapped = (self.t, self.speed, len(self.steps))
+        if known is None or abs(self.speed - known[1]) > _SAME_SPEED * abs(self.speed):
+            return
+        period, lap_steps = self.t - known[0], self.steps[known[2] :]
+        times = self.times[self.taken :]
+        ways = 1 if ahead else -1
+        for t in times:
+            laps = math.floor((t - known[0]) / period)
+            own = t - laps * period
+            number, lap, step, _ = next(
+                (each for each in lap_steps if own <= each[3]), lap_steps[-1]
+            )
+            s, speed, a = (float(x[0]) for x in step.at(np.array([own])))
+            self.number = number
+            turned, self.lap = self.lap, lap + ways * laps
+            self._record(float(t), s, speed, a)
+            self.lap = turned
+        self.taken, self.t = len(self.times), self.until
+        self.number = last
+
+    # Stops
+
+    def _hit(self, bound: Bound) -> None:
+        name = f"stop of {bound.asked.name}"
+        self._record(self.t, self.s, self.speed, self._now(), name)
+        self.speed *= -bound.restitution
+        pull = self._now()
+        bounce = 2.0 * abs(self.speed) / abs(pull) if pull else math.inf
+        if bounce < _RESTS * self.until:
+            self.speed = 0.0
+        self.resting = bound if self.speed == 0.0 else None
+
+    resting: Bound | None = None
+
+    def _rests(self) -> bool:
+        """Stay at a stop as long as the loads push there; whether time has passed."""
+        if self.resting is None:
+            return False
+        looks = np.linspace(self.t, self.until, 400)
+        ones = np.ones_like(looks)
+        pull = self._acceleration(self.s * ones, 0.0 * ones, looks)
+        eps = 1e-6 * (self.leg.table.edges[-1] - self.leg.table.edges[0])
+        two = np.array([self.s - eps, self.s + eps])
+        margin = self.resting.margin(self.leg, two, np.zeros(2), np.full(2, self.t), self.gain)
+        away = math.copysign(1.0, margin[1] - margin[0])
+        leaves = np.flatnonzero(away * pull > 0.0)
+        until = self.until if not len(leaves) else float(looks[leaves[0]])
+        self.resting = None
+        if until <= self.t:
+            return False
+        times = self.times[self.taken :]
+        for t in times[times <= until]:
+            self._record(float(t), self.s, 0.0, 0.0)
+            self.taken += 1
+        self.t = until
+        self._switch()
+        return True

@@ -1,0 +1,102 @@
+"""A motor on an input: its torque, or force, over its speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from linkwork.foundation.errors import ExpressionError
+from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Speed
+from linkwork.foundation.value_types import check_values, is_listed
+from linkwork.mechanism.dimensions import Number, Numbers
+from linkwork.mechanism.speed import speed_per_second
+
+if TYPE_CHECKING:
+    from linkwork.foundation.arrays import Array
+
+__all__ = ["MOTOR_KEYS", "Motor"]
+
+MOTOR_KEYS = (
+    Key("stall", NumberKey("length"), "Torque, or force, at rest; constant without a free speed"),
+    Key("free_speed", Speed(), "Speed at which it has no torque, as 1500 rpm"),
+    Key("speeds", ListOf(Speed(), "speed", 2), "Or a table: rising speeds"),
+    Key("torques", ListOf(NumberKey("length"), "torque", 2), "The torques at these speeds"),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motor:
+    """A motor on an input, for simulations.
+
+    Parameters
+    ----------
+    stall : number, optional
+        The torque, or for a length the force, at rest.
+    free_speed : str or number, optional
+        The speed at which it has no torque: ``"1500 rpm"``; between, the torque falls evenly, and
+        beyond it brakes. Without it the torque is constant.
+    speeds, torques : tuple of number or str
+        Instead: a table, straight between its speeds and level beyond.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.Motor(stall=12, free_speed="1500 rpm").free_speed
+    '1500 rpm'
+    """
+
+    stall: Number | None = None
+    free_speed: Number | None = None
+    speeds: tuple[Number, ...] = ()
+    torques: tuple[Number, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("speeds", "torques"):
+            if is_listed(getattr(self, name)):
+                object.__setattr__(self, name, tuple(getattr(self, name)))
+        check_values(self)
+
+    @property
+    def constant(self) -> bool:
+        """Whether its torque is the same at all speeds."""
+        return self.free_speed is None and not self.speeds
+
+    def mistakes(self, kind: str, numbers: Numbers, length: str) -> Iterator[tuple[str, str]]:
+        """Keys with what is wrong; parameters as of :func:`speed_per_second`."""
+        if (self.stall is None) == (not self.speeds):
+            what = "both" if self.speeds else "neither"
+            yield "stall", f"a motor has either a stall torque or a table, this has {what}"
+            return
+        if len(self.speeds) != len(self.torques):
+            counts = f"{len(self.speeds)} speeds and {len(self.torques)} torques"
+            yield "speeds", f"need as many torques as speeds; there are {counts}"
+            return
+        try:
+            given = (self.stall,) if self.stall is not None else self.torques
+            for torque in given:
+                numbers(torque)
+            if self.free_speed is not None:
+                free = speed_per_second(self.free_speed, kind, numbers, length)
+                if free == 0.0 or self.speeds:
+                    yield "free_speed", "must not be 0, and is used with stall only"
+            rising = [speed_per_second(speed, kind, numbers, length) for speed in self.speeds]
+            if rising and min(np.diff(rising)) <= 0.0:
+                yield "speeds", "must rise"
+        except ExpressionError as error:
+            yield ("free_speed" if self.free_speed is not None else "stall"), error.message
+
+    def curve(self, kind: str, numbers: Numbers, length: str) -> Callable[[Array], Array]:
+        """The torque over speeds (B,) in the unit of the file per second."""
+        if self.speeds:
+            known = [speed_per_second(each, kind, numbers, length) for each in self.speeds]
+            torques = [numbers(each) for each in self.torques]
+            return lambda speed: np.interp(speed, known, torques)
+        assert self.stall is not None
+        stall = numbers(self.stall)
+        if self.free_speed is None:
+            return lambda speed: np.full_like(speed, stall)
+        free = speed_per_second(self.free_speed, kind, numbers, length)
+        return lambda speed: stall * (1.0 - speed / free)

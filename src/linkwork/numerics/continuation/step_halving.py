@@ -1,0 +1,284 @@
+"""Halving steps of a path until each part is proved, many of them together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.status import CONVERGED
+from linkwork.numerics.block_solver import BlockSolver, Linearised
+from linkwork.numerics.continuation.branch_tracking import InputPath, quintic
+from linkwork.numerics.proof.position_proof import (
+    Place,
+    expansions,
+    prove,
+    reach,
+    rounding_of_inputs,
+    steps_connected,
+    steps_disproved,
+)
+from linkwork.numerics.rows import SolvedRows
+
+__all__ = ["Allowance", "Halving", "OpenSteps", "Prover", "prove_steps", "take_expansions"]
+
+_ROUNDS = 45  # halvings of one step before it counts as not proved
+_LANES = 1024  # steps halved together
+_HALFWAY = np.array([0.5])
+_SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
+
+
+class Allowance:
+    """How many positions may still be solved in between."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def take(self, wanted: int) -> int:
+        """As many as there are, at most ``wanted``."""
+        given = min(wanted, self.left)
+        self.left -= given
+        return given
+
+
+@dataclass(frozen=True)
+class Prover:
+    """The equations of a path; ``exact``: with residuals that are rounded once."""
+
+    solver: BlockSolver
+    path: InputPath
+    exact: bool
+
+    def expansions(self, v: Array, linear: Sequence[Linearised] | None = None) -> list[Place]:
+        """What proofs need of positions (B, N)."""
+        return expansions(self.solver, v, linear, exact=self.exact)
+
+
+def take_expansions(places: Sequence[Place], index: IndexArray | slice) -> list[Place]:
+    return [None if place is None else place.take(index) for place in places]
+
+
+def prove_steps(
+    solver: BlockSolver,
+    start: SolvedRows,
+    goal: SolvedRows,
+    near: Array,
+    places: Sequence[Place] | None = None,
+) -> tuple[BoolArray, BoolArray]:
+    """Which steps are proved from their start, for all inputs from those of one end to the other's,
+    and which are proved to lead to another branch.
+
+    The inputs are taken from the positions: those of a row may differ from the path's by rounding.
+    """
+    # the factor covers the rounding of the difference
+    input_radius = np.abs(goal.v - start.v)[:, solver.unknowns :] * (1.0 + 8.0 * UNIT_ROUNDOFF)
+    input_radius += start.input_radius + goal.input_radius
+    reached = reach(solver, start.v, input_radius, places)
+    ends = start.v, goal.v, reached, near
+    return steps_connected(*ends), steps_disproved(*ends)
+
+
+def _parts(solver: BlockSolver, queue: OpenSteps, ends: tuple[Sequence[Place], ...]) -> CountArray:
+    """Into how many parts steps have to be divided at least, so that each half of a part is as
+    short as what is proved from the ends, (L,).
+    """
+    count, tried = len(queue.owner), len(_SHORTER)
+    lanes = np.repeat(np.arange(count), tried)
+    shorter = np.tile(_SHORTER, count)
+    widest = np.zeros(count)
+    for here, there, places, sign in (
+        (queue.left, queue.right, ends[0], 1.0),
+        (queue.right, queue.left, ends[1], -1.0),
+    ):
+        h = sign * (queue.right.t - queue.left.t)[lanes] * shorter
+        first, second = here.first[lanes] * h[:, None], here.second[lanes] * (h * h)[:, None]
+        change = np.abs(first + 0.5 * second)  # eq. (17)
+        input_radius = np.abs(there.v - here.v)[lanes, solver.unknowns :] * shorter[:, None]
+        reached = reach(solver, here.v[lanes], input_radius, take_expansions(places, lanes))
+        inside = change[:, : solver.unknowns] < reached.isolation_radius  # eq. (33)
+        held = (reached.holds & inside.all(axis=1)).reshape(count, tried)
+        share = np.where(held, _SHORTER, 0.0).max(axis=1)
+        widest = share if sign > 0.0 else np.minimum(widest, share)
+    found: CountArray = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 1.0).astype(np.int64)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OpenSteps:
+    """Steps to be proved (L,): their ends, how far the true positions may be from these (L, N),
+    and the number of the step of the path that they are a part of.
+    """
+
+    left: SolvedRows
+    right: SolvedRows
+    near: Array
+    owner: IndexArray
+
+    def take(self, index: IndexArray | slice) -> OpenSteps:
+        return OpenSteps(
+            left=self.left.take(index),
+            right=self.right.take(index),
+            near=self.near[index],
+            owner=self.owner[index],
+        )
+
+    def with_(self, other: OpenSteps) -> OpenSteps:
+        return OpenSteps(
+            left=SolvedRows.concatenate([self.left, other.left]),
+            right=SolvedRows.concatenate([self.right, other.right]),
+            near=np.concatenate([self.near, other.near]),
+            owner=np.concatenate([self.owner, other.owner]),
+        )
+
+
+class Halving:
+    """Steps of a path (K,) halved as often as their proof needs.
+
+    ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
+    solved in between.
+    """
+
+    def __init__(self, prover: Prover, steps: int, anchor: int | None, holds: BoolArray) -> None:
+        self.prover, self.anchor = prover, anchor
+        self.proved = np.ones(steps, dtype=bool)
+        self.given_up = np.zeros(steps, dtype=bool)
+        self.pieces = np.zeros(steps, dtype=np.int64)
+        # beyond a step that cannot be proved no other is of use
+        self.cut = np.flatnonzero(~(holds[1:] & holds[:-1]))
+        self.width = np.zeros(steps)
+
+    def lose(self, steps: IndexArray) -> None:
+        """Note steps that are not going to be proved."""
+        if len(steps):
+            self.proved[steps] = False
+            self.cut = np.union1d(self.cut, steps)
+
+    def run(self, queue: OpenSteps, allowance: Allowance) -> None:
+        """Prove all steps of a queue as far as the allowance goes."""
+        self.width[queue.owner] = queue.right.t - queue.left.t
+        while True:
+            queue = self.of_use(queue)
+            if not len(queue.owner):
+                return
+            now = allowance.take(min(len(queue.owner), _LANES))
+            if not now:
+                self.proved[queue.owner] = False
+                self.given_up[queue.owner] = True
+                return
+            queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
+
+    def divide(
+        self, queue: OpenSteps, ends: tuple[Sequence[Place], ...], allowance: Allowance
+    ) -> OpenSteps:
+        """Divide steps into several parts at once; return what is not proved of them.
+
+        Every second of the positions in between proves the way to both its neighbours. A step
+        stays as it is where one of them is not found, or not proved.
+        """
+        parts = _parts(self.prover.solver, queue, ends)
+        whole = parts < 2
+        if whole.all():
+            return queue
+        lanes, inside = queue.take(np.flatnonzero(~whole)), 2 * parts[~whole] - 1
+        wanted = int(inside.sum())
+        if wanted > allowance.left:
+            return queue
+        allowance.take(wanted)
+        lane = np.repeat(np.arange(len(inside)), inside)
+        place = (
+            np.arange(len(lane)) - (np.cumsum(inside) - inside)[lane] + 1
+        )  # 1, 2, … between the ends
+        left, right = lanes.left.take(lane), lanes.right.take(lane)
+        middle, found, places = _between(self.prover, left, right, place / (inside[lane] + 1))
+        proof = prove(self.prover.solver, middle.v, middle.input_radius, places)
+        points = SolvedRows.concatenate([middle, lanes.left, lanes.right])
+        count, behind = len(lane), place == inside[lane]
+        before = np.where(place == 1, count + lane, np.arange(count) - 1)
+        after = np.where(behind, count + len(inside) + lane, np.arange(count) + 1)
+        good = found & proof.holds & (points.t[before] < middle.t) & (middle.t < points.t[after])
+        kept = np.bincount(lane[~good], minlength=len(inside)) == 0
+        np.add.at(self.pieces, lanes.owner, inside)
+        odd = np.flatnonzero(kept[lane] & (place % 2 == 1))
+        error_bound = np.concatenate([proof.error_bound, lanes.near, lanes.near])
+        both, to = np.tile(odd, 2), np.concatenate([before[odd], after[odd]])
+        near = np.maximum(error_bound[both], error_bound[to])
+        start, goal = points.take(both), points.take(to)
+        held, apart = prove_steps(
+            self.prover.solver, start, goal, near, take_expansions(places, both)
+        )
+        self.lose(np.unique(lanes.owner[lane[both[apart]]]))
+        open_ = np.flatnonzero(~held)
+        down = np.arange(len(both)) < len(odd)
+        low, high = np.where(down, to, both)[open_], np.where(down, both, to)[open_]
+        rest = OpenSteps(
+            left=points.take(low),
+            right=points.take(high),
+            near=near[open_],
+            owner=lanes.owner[lane[both[open_]]],
+        )
+        undivided = np.concatenate([np.flatnonzero(whole), np.flatnonzero(~whole)[~kept]])
+        return queue.take(undivided).with_(rest)
+
+    def of_use(self, queue: OpenSteps) -> OpenSteps:
+        """The steps that may still be proved, nearest to the anchor first."""
+        hopeful = self.proved[queue.owner]
+        if self.anchor is None:
+            return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
+        below, above = queue.owner < self.anchor, queue.owner >= self.anchor
+        lowest = max(self.cut[self.cut < self.anchor], default=-1)
+        highest = min(self.cut[self.cut >= self.anchor], default=len(self.proved))
+        moot = (below & (queue.owner < lowest)) | (above & (queue.owner > highest))
+        self.proved[queue.owner[moot]] = False
+        keep = np.flatnonzero(hopeful & ~moot)
+        away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
+        return queue.take(keep[np.argsort(away, kind="stable")])
+
+    def _halve(self, lanes: OpenSteps) -> OpenSteps:
+        """Halve some steps once more; return the halves that are not proved."""
+        solver = self.prover.solver
+        np.add.at(self.pieces, lanes.owner, 1)
+        middle, found, places = _between(self.prover, lanes.left, lanes.right, _HALFWAY)
+        proof = prove(solver, middle.v, middle.input_radius, places)
+        good = found & proof.holds
+        # no number is left between the ends
+        good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
+        # a step that has shrunk to nothing is not going to be proved
+        good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
+        self.lose(np.flatnonzero(np.bincount(lanes.owner[~good])))
+        keep = np.flatnonzero(self.proved[lanes.owner])
+        if not len(keep):
+            return lanes.take(keep)
+        lanes, middle, places = lanes.take(keep), middle.take(keep), take_expansions(places, keep)
+        near = np.maximum(lanes.near, proof.error_bound[keep])
+        halves = [
+            OpenSteps(left=lanes.left, right=middle, near=near, owner=lanes.owner),
+            OpenSteps(left=middle, right=lanes.right, near=near, owner=lanes.owner),
+        ]
+        # both halves from the middle, where everything is computed
+        for k, ends in enumerate((lanes.left, lanes.right)):
+            held, apart = prove_steps(solver, middle, ends, near, places)
+            self.lose(np.unique(lanes.owner[apart]))
+            halves[k] = halves[k].take(np.flatnonzero(~held))
+        return halves[0].with_(halves[1])
+
+
+def _between(
+    prover: Prover, left: SolvedRows, right: SolvedRows, share: Array
+) -> tuple[SolvedRows, BoolArray, list[Place]]:
+    """Positions at shares (L,) of steps in t, started from the quintic through both ends; which
+    were found; their expansions for proofs.
+    """
+    solver, path = prover.solver, prover.path
+    guess = quintic(share[:, None], (right.t - left.t)[:, None], left, right)
+    t = left.t + share * (right.t - left.t)
+    guess[:, solver.unknowns :] = path.at(t)
+    done = solver.solve(guess)
+    v = solver.sharpen(done.v) if prover.exact else done.v
+    linear = None if solver.is_proved_singly(len(v)) else solver.linearise(v)
+    rates = solver.rates(v, path.rate, linear)
+    input_radius = rounding_of_inputs(v, solver.unknowns)
+    points = SolvedRows(t=t, v=v, first=rates.first, second=rates.second, input_radius=input_radius)
+    return points, done.status == CONVERGED, prover.expansions(v, linear)

@@ -1,0 +1,263 @@
+"""A few rows solved one after the other in plain numbers: what arrays would take longer for.
+
+The methods are those of :mod:`newton` and :mod:`block_solver`, step by step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.status import CONVERGED, Status
+from linkwork.numerics.elimination import inverse_and_sign, solve_linear
+from linkwork.numerics.newton import FAR, SMALLEST_RATIO, NewtonOptions
+from linkwork.numerics.rows import SolvedRows
+from linkwork.numerics.system import SingleSystem, System
+
+__all__ = [
+    "LARGE",
+    "SingleBlock",
+    "SingleLinear",
+    "dot",
+    "linearise_singly",
+    "rates_singly",
+    "solve_singly",
+]
+
+LARGE = 1e3  # condition up to which balanced columns are not tried
+
+Row = list[float]
+
+
+class SingleBlock:
+    """A block with the scales and indices of its variables as lists."""
+
+    def __init__(self, system: System, one: SingleSystem, variables: IndexArray) -> None:
+        self.one, self.n = one, one.unknowns
+        self.variables: list[int] = variables.tolist()
+        self.unknowns = self.variables[: self.n]
+        self.equation_scale: Row = system.equation_scale.tolist()
+        self.weights: Row = system.variable_scale[: self.n].tolist()
+        turns = system.is_angle[: self.n].tolist()
+        self.angles = [k for k, angle in enumerate(turns) if angle]
+
+
+@dataclass(slots=True)
+class SingleSolution:
+    """How Newton-Raphson ended for one row; columns of :class:`SolvedRows`."""
+
+    status: int = CONVERGED
+    failed_block: int = -1
+    iterations: int = 0
+    residual: float = 0.0
+    first_step: float = 0.0
+    contraction: float = 0.0
+
+
+def solve_row(blocks: Sequence[SingleBlock], v: Row, options: NewtonOptions) -> SingleSolution:
+    """Newton-Raphson block by block, in place; a row whose block fails keeps its guess in later
+    ones.
+    """
+    found = SingleSolution()
+    for number, block in enumerate(blocks):
+        here = [v[k] for k in block.variables]
+        _newton(block, here, options, found)
+        for k, x in zip(block.unknowns, here, strict=False):
+            v[k] = x
+        if found.status != CONVERGED:
+            found.failed_block = number
+            break
+    return found
+
+
+def _newton(block: SingleBlock, v: Row, opt: NewtonOptions, found: SingleSolution) -> None:
+    """Solve one block from ``v`` (N,), in place; see :func:`newton`."""
+    one, scales, weights = block.one, block.equation_scale, block.weights
+    last, first, contraction = math.inf, 0.0, 0.0
+    for k in range(opt.max_steps + 1):
+        settled = last <= opt.solution_tolerance
+        if settled:  # only the evidence is missing
+            f, jacobian = one.residual(v), None
+        else:
+            f, jacobian = one.residual_and_jacobian(v)
+        error = 0.0
+        for x, s in zip(f, scales, strict=True):
+            own = abs(x) / s
+            if not own <= error:  # an error of NaN stays
+                error = own
+                if own != own:
+                    break
+        if not error < math.inf or (k and last > FAR):
+            found.status = Status.DIVERGED.code
+            break
+        if settled or error <= opt.equation_tolerance:  # eq. (8)
+            break
+        if k == opt.max_steps:
+            found.status = Status.STEP_LIMIT.code
+            break
+        assert jacobian is not None
+        change = solve_linear(jacobian, f)
+        if change is None or not math.isfinite(sum(change)):
+            found.status = Status.SINGULAR_JACOBIAN.code
+            break
+        if block.angles:
+            turn = max([abs(change[a]) for a in block.angles])
+            if turn > opt.largest_turn:
+                change = [x * (opt.largest_turn / turn) for x in change]  # eq. (7)
+        size = 0.0
+        for i, x in enumerate(change):
+            v[i] -= x  # eq. (6)
+            size = max(size, abs(x) / weights[i])
+        if k:
+            if size > SMALLEST_RATIO:
+                contraction = max(contraction, size / last)
+        else:
+            first = size
+        last = size
+    found.iterations = max(found.iterations, k)
+    found.residual = error if error != error else max(found.residual, error)
+    found.first_step = max(found.first_step, first)
+    found.contraction = max(found.contraction, contraction)
+
+
+def solve_singly(blocks: Sequence[SingleBlock], start: Array, options: NewtonOptions) -> SolvedRows:
+    """``BlockSolver.solve`` for a few rows (B, N)."""
+    rows: list[Row] = start.tolist()
+    done = [solve_row(blocks, v, options) for v in rows]
+    return SolvedRows(
+        v=np.array(rows),
+        status=np.array([x.status for x in done], dtype=np.int8),
+        failed_block=np.array([x.failed_block for x in done]),
+        iterations=np.array([x.iterations for x in done]),
+        residual=np.array([x.residual for x in done]),
+        first_step=np.array([x.first_step for x in done]),
+        contraction=np.array([x.contraction for x in done]),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SingleLinear:
+    """A block at one position: dF/dv (n, N), the inverse of its first n columns, sign of det."""
+
+    jacobian: list[Row]
+    inverse: list[Row]
+    sign: int
+
+
+def linearise_singly(block: SingleBlock, v: Row) -> SingleLinear:
+    """A block at a position of its own variables (N,)."""
+    jacobian = block.one.residual_and_jacobian(v)[1]
+    return SingleLinear(jacobian, *inverse_and_sign(jacobian))
+
+
+def rates_singly(
+    blocks: Sequence[SingleBlock],
+    v: Array,
+    input_rate: Array,
+    input_bend: Array | float = 0.0,
+) -> SolvedRows:
+    """``BlockSolver.rates`` for a few rows (B, N)."""
+    inputs = input_rate.shape[-1]
+    still = [0.0] * (v.shape[1] - inputs)
+    rates = (input_rate if input_rate.ndim > 1 else np.tile(input_rate, (len(v), 1))).tolist()
+    bends = np.broadcast_to(input_bend, (len(v), inputs)).tolist() if np.any(input_bend) else None
+    firsts, seconds, conditions, nearnesses, orientations = [], [], [], [], []
+    for number, row in enumerate(v.tolist()):
+        first = still + rates[number]
+        second = still + ([0.0] * inputs if bends is None else bends[number])
+        condition = nearness = 1.0
+        orientation = []
+        for block in blocks:
+            part = _block_rates(block, [row[k] for k in block.variables], first, second)
+            own = _condition(block, part)
+            condition = max(condition, own)
+            nearness = max(nearness, own if own <= LARGE else _nearness(block, part, own))
+            orientation.append(part.sign)
+        firsts.append(first)
+        seconds.append(second)
+        conditions.append(condition)
+        nearnesses.append(nearness)
+        orientations.append(orientation)
+    return SolvedRows(
+        v=v,
+        first=np.array(firsts),
+        second=np.array(seconds),
+        condition=np.array(conditions),
+        nearness=np.array(nearnesses),
+        orientation=np.array(orientations, dtype=np.int8),
+    )
+
+
+def _block_rates(block: SingleBlock, v: Row, first: Row, second: Row) -> SingleLinear:
+    """The rates of one block, into ``first`` and ``second`` (N of the whole,)."""
+    n, part = block.n, linearise_singly(block, v)
+    direction = [first[k] for k in block.variables]
+    known = [second[k] for k in block.variables[n:]]
+    driven, bent = [], []
+    for row in part.jacobian:
+        x = y = 0.0
+        for slope, a, b in zip(row[n:], direction[n:], known, strict=True):
+            x += slope * a
+            y += slope * b
+        driven.append(x)
+        bent.append(y)
+    for i, row in enumerate(part.inverse):
+        direction[i] = -dot(row, driven)  # eq. (11)
+    bend = block.one.second_directional_derivative(v, direction)
+    bent = [x + y for x, y in zip(bend, bent, strict=True)]
+    for k, x, row in zip(block.unknowns, direction, part.inverse, strict=False):
+        first[k], second[k] = x, -dot(row, bent)  # eq. (12)
+    return part
+
+
+def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    """Σ a b."""
+    total = 0.0
+    for x, y in zip(a, b, strict=False):
+        total += x * y
+    return total
+
+
+def _condition(block: SingleBlock, part: SingleLinear) -> float:
+    """‖J‖·‖J⁻¹‖ in the system's own weights."""
+    w, s = block.weights, block.equation_scale
+    forward = max(
+        [
+            sum([abs(x) * own for x, own in zip(row, w, strict=False)]) / scale
+            for row, scale in zip(part.jacobian, s, strict=True)
+        ]
+    )
+    backward = max(
+        [
+            sum([abs(x) * scale for x, scale in zip(row, s, strict=True)]) / own
+            for row, own in zip(part.inverse, w, strict=True)
+        ]
+    )
+    product = forward * backward  # eq. (14)
+    return product if product < math.inf else math.inf
+
+
+def _nearness(block: SingleBlock, part: SingleLinear, condition: float) -> float:
+    """How near to a singular position; see ``block_solver``."""
+    s, columns = block.equation_scale, range(block.n)
+    scaled = [
+        [abs(x) / scale for x in row[: block.n]]
+        for row, scale in zip(part.jacobian, s, strict=True)
+    ]
+    longest = [max([row[k] for row in scaled]) for k in columns]
+    if not all(longest):
+        return condition
+    forward = max([sum([x / y for x, y in zip(row, longest, strict=True)]) for row in scaled])
+    backward = max(
+        [
+            sum([abs(x) * scale for x, scale in zip(row, s, strict=True)]) * own
+            for row, own in zip(part.inverse, longest, strict=True)
+        ]
+    )
+    balanced = forward * backward
+    least = min(condition, balanced) if balanced < math.inf else condition
+    return math.sqrt(condition) * math.sqrt(least)  # eq. (15)

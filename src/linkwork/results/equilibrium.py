@@ -1,0 +1,43 @@
+"""Positions at which a mechanism can rest under its loads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+__all__ = ["Equilibrium"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibrium:
+    """An equilibrium of a mechanism with one input.
+
+    Parameters
+    ----------
+    input : float
+        The value of the input, in file units.
+    values : Mapping[str, float]
+        All variables by name, in file units.
+    stable : bool
+        Whether a small displacement leads back.
+    frequency : float
+        The natural frequency of small oscillations about a stable one [Hz]; of an unstable one
+        the rate 1/s at which a displacement grows, divided by 2π, negative.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> pendulum = lw.linkage(
+    ...     length="m", points={"O": (0, 0), "A": (1, 0)},
+    ...     links={"ground": ["O"], "bar": ["O", "A"]},
+    ...     inputs=lw.Input(link="bar"), masses={"bar": lw.Mass(mass=1, center=(1, 0))},
+    ...     gravity=lw.Gravity(),
+    ... )
+    >>> [(round(each.input), each.stable) for each in pendulum.equilibria()]
+    [(-90, True), (90, False)]
+    """
+
+    input: float
+    values: Mapping[str, float]
+    stable: bool
+    frequency: float

@@ -1,0 +1,350 @@
+"""Simulated motions against closed forms and published values."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.dynamics.simulation import simulate
+from linkwork.mechanism.loops import Loops
+
+PENDULUM: dict[str, Any] = {
+    "length": "m",
+    "points": {"O": (0, 0), "A": (-1, 0)},
+    "links": {"ground": ["O"], "bar": ["O", "A"]},
+    "masses": {"bar": lw.Mass(mass=1, center=(1, 0))},
+    "gravity": lw.Gravity(),
+    "inputs": lw.Input(link="bar"),
+}
+SLIDER: dict[str, Any] = {
+    "length": "m",
+    "points": {"S": (0, 0), "T": (10, 0), "B": (3, 0)},
+    "links": {"ground": ["S", "T"], "block": ["B"]},
+    "sliders": [lw.Slider(name="d", link="block", points=("B",), on="ground", line=("S", "T"))],
+    "masses": {"block": lw.Mass(mass=2)},
+    "inputs": lw.Input(slider="d", start=0, stop=5, step=1),
+}
+
+
+def test_a_pendulum_is_that_of_the_benchmark() -> None:
+    """IFToMM A01, exact to 18 digits."""
+    motion = lw.linkage(**PENDULUM).simulate(until=10, step=1)
+    exact = {
+        1: (0.986291751131875319, -0.165010853125541169),
+        5: (-0.942305435043757335, -0.334754338414000581),
+        10: (-0.27508746257611686, -0.961419205099125064),
+    }
+    for t, (x, y) in exact.items():
+        assert motion["A.x"][t] == pytest.approx(x, abs=1e-12)
+        assert motion["A.y"][t] == pytest.approx(y, abs=1e-12)
+    # nothing drives it
+    assert np.abs(motion["bar.effort"]).max() < 1e-12
+
+
+def windows(count: int) -> lw.Mechanism:
+    """IFToMM A02: rods of 1 m and 1 kg."""
+    points: dict[str, Any] = {}
+    links: dict[str, Any] = {"ground": [f"A{k}" for k in range(count + 1)]}
+    for k in range(count + 1):
+        points[f"A{k}"], points[f"B{k}"] = (k, 0), (k, 1)
+        links[f"r{k}"] = [f"A{k}", f"B{k}"]
+    for k in range(count):
+        links[f"h{k}"] = [f"B{k}", f"B{k + 1}"]
+    masses = {link: lw.Mass(mass=1, shape="rod") for link in links if link != "ground"}
+    return lw.linkage(
+        length="m", points=points, links=links, masses=masses, gravity=lw.Gravity(),
+        inputs=lw.Input(link="r0"),
+    )  # fmt: skip
+
+
+BENCHMARK = {
+    2: {1: (-0.195020301949435152, -0.980799205662173821),
+        5: (-0.811310461005107567, -0.584615545348975333),
+        10: (0.328458111540815498, 0.944518538178600921)},
+    40: {1: (-0.115356880632109982, -0.993324111300450176),
+         5: (-0.540190050675526618, -0.841543052464442834),
+         10: (0.180512226686728532, 0.983572740582311549)},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [2, pytest.param(40, marks=pytest.mark.extended)])
+def test_four_bars_in_a_row_pass_the_flat_position_twice_a_turn(count: int) -> None:
+    motion = windows(count).simulate(
+        until=10, step=1, start_speed="-1 rad/s", change_points="straight"
+    )
+    assert motion.found.all()
+    for t, (x, y) in BENCHMARK[count].items():
+        assert motion["B0.x"][t] == pytest.approx(x, abs=1e-10)
+        assert motion["B0.y"][t] == pytest.approx(y, abs=1e-10)
+
+
+def squeezer() -> lw.Mechanism:
+    """Andrews' squeezer with the masses and the spring of the Test Set for IVP Solvers."""
+    base = lw.example("andrews-squeezer")
+    own = base.description
+    assert isinstance(own, Loops)
+    place = base.solve()
+    u, zf, zt, e, rr = 0.04, 0.02, 0.04, 0.02, 0.007
+    beta, theta, gamma, phi, delta, omega, eps = (
+        cmath.exp(1j * place[name]) for name in ("β", "Θ", "γ", "Φ", "δ", "Ω", "ε")
+    )
+    points = {name: complex(*xy) for name, xy in place.points.items()}
+    a, b = points["A"], points["B"]
+    centres = [
+        0.00092 * beta,
+        rr * beta - 0.0115 * beta * theta,
+        b + (0.01043 - 0.01874j) * gamma,
+        a + zt * delta - 1j * (e - 0.01421) * phi * delta,
+        a + (0.02308 + 0.00916j) * delta,
+        a - 1j * u * eps + (zf - 0.01421) * omega * eps,
+        a - (0.00449 + 0.01228j) * eps,
+    ]
+    mass = [0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498]
+    inertia = [2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5]
+    masses = {}
+    for k, centre in enumerate(centres):
+        first, second = (points[p] for p in own.links[f"K{k + 1}"][:2])
+        z = (centre - first) / ((second - first) / abs(second - first))
+        masses[f"K{k + 1}"] = lw.Mass(mass=mass[k], center=(z.real, z.imag), inertia=inertia[k])
+    stretch = "hypot(D.x - 0.014, D.y - 0.072)"
+    pull = f"-4530*({stretch} - 0.07785)/{stretch}"
+    return base.changed(
+        points={**own.points, "D": "B + (0.02 - i*0.018)*e^(i*γ)"},
+        links={**own.links, "K3": ("B", "F", "D")},
+        masses=masses,
+        loads=(
+            lw.Load(point="D", link="K3", force=(f"{pull}*(D.x - 0.014)", f"{pull}*(D.y - 0.072)")),
+            lw.Load(link="K1", torque=0.033),
+        ),
+        inputs=lw.Input(variable="β"),
+    )
+
+
+def test_the_squeezer_is_that_of_the_test_set() -> None:
+    motion = squeezer().simulate(until=0.03, step=0.03)
+    assert motion["β.acceleration"][0] == pytest.approx(14222.4439199541138705911625887, rel=1e-12)
+    assert motion["Θ.acceleration"][0] == pytest.approx(-10666.8329399655854029733419715, rel=1e-12)
+    book = {
+        "β": 15.81077119629904, "Θ": -15.75637105984298, "γ": 0.04082224013073101,
+        "Φ": -0.5347301163226948, "δ": 0.5244099658805304, "Ω": 0.5347301163226948,
+        "ε": 1.048080741042263,
+    }  # fmt: skip
+    # good to 1e-9 only: it misses the balance of energy
+    for name, value in book.items():
+        assert motion[name][-1] == pytest.approx(value, abs=1e-8)
+    # two other methods agree on these
+    converged = {
+        "β": 15.81077119515, "Θ": -15.7563710584, "γ": 0.0408222401196, "Φ": -0.534730116342,
+        "δ": 0.52440996588, "Ω": 0.534730116342, "ε": 1.04808074104194,
+    }  # fmt: skip
+    for name, value in converged.items():
+        assert motion[name][-1] == pytest.approx(value, abs=1e-10)
+    assert motion["β.velocity"][-1] == pytest.approx(1139.9203022591, rel=1e-11)
+
+
+def crank_rocker(lead: str, **fields: Any) -> lw.Mechanism:
+    masses = {"crank": 1, "coupler": 2, "rocker": 3}
+    return lw.linkage(
+        length="m",
+        points={"A": (0, 0), "B": (0.4, 0), "C": (1.5, 0.6), "D": (1.2, 0)},
+        links={"ground": ["A", "D"], "crank": ["A", "B"], "coupler": ["B", "C"],
+               "rocker": ["C", "D"]},
+        masses={link: lw.Mass(mass=mass, shape="rod") for link, mass in masses.items()},
+        gravity=lw.Gravity(),
+        inputs=lw.Input(link=lead),
+        **fields,
+    )  # fmt: skip
+
+
+def test_a_thousand_turns_are_the_same_whichever_link_leads() -> None:
+    slopes = crank_rocker("crank").solve().first
+    found = {}
+    for lead in ("crank", "coupler", "rocker"):
+        speed = 30.0 * (1.0 if lead == "crank" else slopes[lead])
+        motion = crank_rocker(lead).simulate(231, step=3.3, start_speed=math.degrees(speed))
+        assert motion.certified.all()
+        energy = motion["kinetic_energy"] + motion["stored_energy"]
+        assert np.ptp(energy) < 1e-10 * np.abs(energy).max()
+        found[lead] = motion["crank"]
+    assert found["crank"][-1] > 1000 * 360
+    for lead in ("coupler", "rocker"):
+        # the period to 1e-12: angles in degrees that have grown to 360,000
+        assert np.abs(found[lead] - found["crank"]).max() < 1e-12 * found["crank"][-1]
+
+
+def test_a_damped_mass_on_a_spring_moves_by_its_closed_form() -> None:
+    spring = lw.Spring(name="k", between=("S", "B"), stiffness=50, free=2, damping=3)
+    motion = lw.linkage(**SLIDER, springs=[spring]).simulate(4, step=0.1)
+    t, decay = motion["t"], 3 / (2 * 2)
+    w = math.sqrt(50 / 2 - decay**2)
+    expected = 2 + np.exp(-decay * t) * (np.cos(w * t) + decay / w * np.sin(w * t))
+    assert motion["d"] == pytest.approx(expected, abs=1e-12)
+    # the spring is as long on the other side of S
+    rests = lw.linkage(**SLIDER, springs=[spring]).equilibria()
+    assert [rest.input for rest in rests] == pytest.approx([-2, 2], abs=1e-12)
+    for rest in rests:
+        assert rest.stable
+        # differences of 1e-4 of a panel
+        assert rest.frequency == pytest.approx(math.sqrt(50 / 2) / (2 * math.pi), rel=1e-7)
+
+
+def test_a_motor_runs_up_to_its_free_speed() -> None:
+    motor = lw.Motor(stall=12, free_speed="1500 rpm")
+    driven = lw.linkage(
+        points=PENDULUM["points"], links=PENDULUM["links"], length="m",
+        inputs=lw.Input(link="bar", motor=motor, inertia=0.4),
+    )  # fmt: skip
+    motion = driven.simulate(1, step=0.1)
+    free = 1500 * math.tau / 60
+    expected = free * (1 - np.exp(-12 / (free * 0.4) * motion["t"]))
+    assert motion["bar.velocity"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_load_that_switches_is_met_when_it_does() -> None:
+    push = lw.Load(point="B", link="block", force=("10*(t < 0.7)", 0))
+    motion = lw.linkage(**SLIDER, loads=[push]).simulate(1, step=0.25)
+    (event,) = np.flatnonzero([word == "switch" for word in motion.limit])
+    # located to rounding
+    assert motion["t"][event] == pytest.approx(0.7, abs=1e-15)
+    assert motion["d"][-1] == pytest.approx(3 + 0.5 * 5 * 0.49 + 5 * 0.7 * 0.3, abs=1e-13)
+    stored = lw.Load(point="B", link="block", force=("10*(d < 3.1)", 0))
+    motion = lw.linkage(**SLIDER, loads=[stored]).simulate(1, step=0.25)
+    (event,) = np.flatnonzero([word == "switch" for word in motion.limit])
+    assert motion["t"][event] == pytest.approx(math.sqrt(0.2 / 5), abs=1e-14)
+
+
+def test_a_mass_bounces_on_a_stop_and_comes_to_rest() -> None:
+    stop = lw.Stop(of="d", stop=3.2, restitution=0.5)
+    push = lw.Load(point="B", link="block", force=(10, 0))
+    motion = lw.linkage(**SLIDER, loads=[push], stops=[stop]).simulate(3, step=0.5)
+    hits = motion["t"][[word == "stop of d" for word in motion.limit]]
+    first = math.sqrt(2 * 0.2 / 5)
+    # flights halve from bounce to bounce
+    assert hits[:3] == pytest.approx([first, 2 * first, 2.5 * first], abs=1e-12)
+    assert motion["d"].max() <= 3.2 + 1e-14
+    assert motion["d"][-1] == pytest.approx(3.2, abs=1e-9)
+    assert motion["d.velocity"][-1] == 0.0
+    dead = lw.linkage(**SLIDER, loads=[push], stops=[lw.Stop(of="d", stop=3.2)]).simulate(1)
+    assert sum(word == "stop of d" for word in dead.limit) == 1
+
+
+def test_a_load_that_holds_back_stops_the_motion() -> None:
+    brake = lw.Load(point="B", link="block", force=("10 - 30*(d.velocity > 0)", 0))
+    motion = lw.linkage(**SLIDER, loads=[brake]).simulate(1, start_speed=2)
+    # 2 m/s against 10 m/s²; then it can neither go on nor back
+    assert "at rest since t = 0.2 s" in motion.message
+    assert motion["d"][-1] == pytest.approx(3.2, abs=1e-9)
+
+
+SYSTEMS: dict[str, tuple[dict[str, str], float, float, float]] = {
+    "mm": ({"length": "mm", "mass": "kg", "force": "N"}, 1000.0, 1.0, 1.0),
+    "m": ({"length": "m", "mass": "kg", "force": "N"}, 1.0, 1.0, 1.0),
+    "in": ({"length": "in", "mass": "lb", "force": "lbf"}, 1 / 0.0254, 1 / 0.45359237,
+           1 / 4.4482216152605),
+}  # fmt: skip
+
+
+def _in_units(system: str) -> lw.Motion:
+    """One press in a system of units: a spring, a damper, a motor and a load."""
+    units, length, mass, force = SYSTEMS[system]
+    places = {"A": (0, 0), "B": (0.4, 0), "C": (1.5, 0.6), "D": (1.2, 0)}
+    machine = lw.linkage(
+        **units,
+        points={name: (x * length, y * length) for name, (x, y) in places.items()},
+        links={"ground": ["A", "D"], "crank": ["A", "B"], "coupler": ["B", "C"],
+               "rocker": ["C", "D"]},
+        masses={"crank": lw.Mass(mass=mass, center=(0.2 * length, 0),
+                                 inertia=0.1 * mass * length**2),
+                "coupler": lw.Mass(mass=2 * mass, shape="rod")},
+        springs=[lw.Spring(name="s", between=("A", "C"), stiffness=40 * force / length,
+                           free=1.2 * length, damping=0.5 * force / length)],
+        loads=[lw.Load(link="rocker", torque=f"{-3 * force * length!r}*(rocker.velocity > 0)")],
+        gravity=lw.Gravity(),
+        inputs=lw.Input(link="crank", inertia=0.2 * mass * length**2,
+                        motor=lw.Motor(stall=9 * force * length, free_speed="90 rpm")),
+    )  # fmt: skip
+    return machine.simulate(0.7, step=0.1, start_speed="2 rad/s")
+
+
+def test_units_change_nothing() -> None:
+    metric = _in_units("m")
+    for system in ("mm", "in"):
+        other, (_, length, _, force) = _in_units(system), SYSTEMS[system]
+        asked = other.asked
+        # rounding of converted numbers, grown over two turns
+        assert other["crank"][asked] == pytest.approx(metric["crank"][metric.asked], abs=1e-8)
+        effort = other["crank.effort"][asked] / (force * length)
+        assert effort == pytest.approx(metric["crank.effort"][metric.asked], abs=1e-8)
+
+
+def test_efforts_are_those_of_the_motor_less_its_flywheel() -> None:
+    motion = _in_units("m")
+    speed = motion["crank.velocity"]
+    torque = 9 * (1 - speed / (90 * math.tau / 60)) - 0.2 * motion["crank.acceleration"]
+    smooth = np.array([word == "" for word in motion.limit])
+    assert motion["crank.effort"][smooth] == pytest.approx(torque[smooth], abs=1e-9)
+
+
+def test_a_further_force_acts_as_a_load_would() -> None:
+    pushed = lw.linkage(**SLIDER, loads=[lw.Load(point="B", link="block", force=(6, 0))])
+    free = lw.linkage(**SLIDER)
+    motion = simulate(free.model, until=1, step=0.5, forcing=[lambda state: np.full(
+        state.moving.rows, 6.0)])  # fmt: skip
+    assert motion["d"] == pytest.approx(pushed.simulate(1, step=0.5)["d"], abs=1e-13)
+
+
+def test_a_motion_ends_at_a_change_point_unless_it_goes_straight() -> None:
+    stopped = windows(2).simulate(until=5, start_speed="-1 rad/s")
+    assert "the motion ends at t = " in stopped.message
+    assert not stopped.found.all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "message"),
+    [
+        ({"masses": {}}, {}, "nothing in .* has mass"),
+        ({}, {"until": -1}, "until must be a positive time"),
+        ({}, {"step": 0}, "step must be a positive part of until"),
+        ({}, {"start_speed": "3 mm/s"}, "start speed: must be a number and a unit"),
+        ({}, {"change_points": "turn"}, "goes straight on or stops"),
+        ({"stops": [lw.Stop(of="bar", stop=100)]}, {}, "bar begins at 180, beyond its stop at 100"),
+        ({"stops": [lw.Stop(of="bra", stop=200)]}, {}, 'there is no "bra"'),
+        ({"inputs": lw.Input(link="bar", law="180 + t", stop=1)}, {}, "a law drives"),
+    ],
+)
+def test_wrong_input_is_refused(
+    changes: dict[str, Any], options: dict[str, Any], message: str
+) -> None:
+    machine = lw.linkage(**{**PENDULUM, **changes})
+    with pytest.raises(lw.LinkworkError, match=message):
+        machine.simulate(**{"until": 1, **options})
+
+
+def test_wrong_keys_are_told_with_their_place() -> None:
+    text = """format = 1
+[points]
+O = [0, 0]
+A = [1, 0]
+[links]
+ground = ["O"]
+bar = ["O", "A"]
+[[stops]]
+of = "bar"
+restitution = 2
+from = 1
+[input]
+link = "bar"
+inertia = -1
+motor = { stall = 2, free_speed = "9 mm/s" }
+"""
+    with pytest.raises(lw.MechanismFileError) as caught:
+        lw.loads(text)
+    told = {problem.line: problem.message for problem in caught.value.problems}
+    assert "must be from 0 to 1, got 2" in told[10]
+    assert "must not be negative, got -1" in told[14]
+    assert "rpm, rad/s, deg/s" in told[15]

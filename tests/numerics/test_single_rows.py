@@ -1,0 +1,156 @@
+"""A few rows in plain numbers: the same results as with arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.status import Status
+from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.elimination import inverse_and_sign, solve_linear
+from linkwork.numerics.newton import NewtonOptions
+from linkwork.numerics.proof.position_proof import expansions, prove, reach
+from linkwork.numerics.rows import SolvedRows
+
+#: Dyads, coupled loops, sliding lengths, gears and belts.
+MECHANISMS = [
+    "four-bar", "crank-shaper", "whitworth", "rapier-drive", "double-butterfly", "geared-five-bar",
+    "belt-drive", "oldham-coupling", "jansen-leg",
+]  # fmt: skip
+
+
+class _Arrays(BlockSolver):
+    def goes_singly(self, count: int) -> bool:
+        return False
+
+    def is_proved_singly(self, count: int) -> bool:
+        return False
+
+
+class _Numbers(BlockSolver):
+    def goes_singly(self, count: int) -> bool:
+        return True
+
+    def is_proved_singly(self, count: int) -> bool:
+        return True
+
+
+def _both(name: str) -> tuple[BlockSolver, BlockSolver, Array]:
+    """Solvers and rows that are near the guess, far from it, and nowhere."""
+    model = lw.example(name).model
+    one = model.compiled.solver
+    arrays, numbers = (
+        kind(one.blocks, one.unknowns, one.variables, one.variable_scale)
+        for kind in (_Arrays, _Numbers)
+    )
+    rng = np.random.default_rng(4)
+    start = np.repeat(model.equations.start[None, :], 24, axis=0)
+    start += np.linspace(0.0, 2.0, 24)[:, None] * rng.normal(size=start.shape) * one.variable_scale
+    start[-2], start[-1] = np.nan, np.inf
+    return arrays, numbers, start
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_rows_are_solved_as_with_arrays(name: str) -> None:
+    arrays, numbers, start = _both(name)
+    for options in (NewtonOptions(), NewtonOptions(max_steps=3, largest_turn=0.2)):
+        a, b = arrays.solve(start, options), numbers.solve(start, options)
+        good = a.status == Status.CONVERGED.code
+        for column in ("status", "failed_block", "iterations"):
+            np.testing.assert_array_equal(getattr(a, column), getattr(b, column))
+        # solutions to rounding; the last correction squares the error before it
+        scale = 1e-8 * (np.abs(a.v[good]) + arrays.variable_scale)
+        assert (np.abs(a.v[good] - b.v[good]) <= scale).all()
+        np.testing.assert_allclose(a.first_step[good], b.first_step[good], rtol=1e-8)
+        assert good.any() or options.max_steps == 3
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_rates_are_those_of_arrays(name: str) -> None:
+    arrays, numbers, start = _both(name)
+    v = np.concatenate([arrays.solve(start[:12]).v, start[-2:]])
+    rate = np.linspace(1.0, 2.0, arrays.variables - arrays.unknowns)
+    with np.errstate(all="ignore"):  # there are rows that are nowhere
+        # one by one: columns are balanced for all rows of a batch or for none
+        a = SolvedRows.concatenate([arrays.rates(row[None, :], rate) for row in v])
+        b = numbers.rates(v, rate)
+    np.testing.assert_array_equal(a.orientation, b.orientation)
+    # each rate loses as many digits as the condition has
+    within = 1e-13 * np.maximum(np.where(np.isfinite(a.condition), a.condition, 1.0), 1.0) ** 2
+    for column in ("first", "second", "condition", "nearness"):
+        x, y = (getattr(rows, column).reshape(len(v), -1) for rows in (a, b))
+        known = np.isfinite(x)
+        np.testing.assert_array_equal(known, np.isfinite(y))
+        size = np.where(known, np.abs(x), 0.0).max(axis=1, keepdims=True)
+        off = np.where(known, np.abs(np.where(known, x, 0.0) - np.where(known, y, 0.0)), 0.0)
+        assert (off <= within[:, None] * size).all(), column
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_proofs_are_those_of_arrays(name: str) -> None:
+    arrays, numbers, start = _both(name)
+    solved = arrays.solve(start)
+    v = solved.v[solved.status == Status.CONVERGED.code]
+    radius = np.geomspace(1e-15, 3.0, len(v))[:, None] * np.ones(v.shape[1] - arrays.unknowns)
+    held = 0
+    for way in (prove, reach):
+        a, b = (
+            # with residuals that are rounded once: others are noise, to which weights are fitted
+            way(solver, v, radius, expansions(solver, v, exact=True))
+            for solver in (arrays, numbers)
+        )
+        np.testing.assert_array_equal(a.holds, b.holds)
+        held += int(a.holds.sum())
+        for column, x in vars(a).items():
+            x, y = x[a.holds], vars(b)[column][a.holds]
+            assert np.allclose(x, y, rtol=1e-9, atol=1e-15), column
+    assert held > 4
+
+
+def test_inputs_may_move_at_rates_of_their_own() -> None:
+    arrays, numbers, start = _both("geared-five-bar")
+    v = arrays.solve(start[:5]).v
+    inputs = v.shape[1] - arrays.unknowns
+    rate = np.linspace(1.0, 2.0, 5 * inputs).reshape(5, inputs)
+    a, b = (solver.rates(v, rate, input_bend=-3.0 * rate) for solver in (arrays, numbers))
+    np.testing.assert_allclose(b.first, a.first, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(b.second, a.second, rtol=1e-9, atol=1e-9)
+    assert (b.second[:, arrays.unknowns :] == -3.0 * rate).all()
+
+
+def test_no_rows_are_no_rows() -> None:
+    solver = lw.example("four-bar").model.compiled.solver
+    nothing = solver.solve(np.empty((0, 3)))
+    assert nothing.v.shape == solver.rates(nothing.v, np.ones(1)).first.shape == (0, 3)
+
+
+def test_a_position_with_a_singular_block_has_no_rates() -> None:
+    solver = lw.example("four-bar").model.compiled.solver
+    rows = _Numbers(solver.blocks, solver.unknowns, solver.variables, solver.variable_scale)
+    stretched = rows.rates(np.array([[0.0, 0.0, 0.5]]), np.ones(1))  # coupler and rocker in line
+    assert stretched.orientation[0, 0] == 0
+    assert np.isnan(stretched.first[0, :2]).all()
+    assert stretched.condition[0] == stretched.nearness[0] == np.inf
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 6])
+def test_small_systems_are_solved_as_by_lapack(n: int) -> None:
+    rng = np.random.default_rng(n)
+    for _ in range(50):
+        a, b = rng.normal(size=(n, n + 1)), rng.normal(size=n)
+        square = a[:, :n]
+        loss = 1e-14 * np.linalg.cond(square)
+        found = solve_linear(a.tolist(), b.tolist())
+        inverse, sign = inverse_and_sign(a.tolist())
+        assert found is not None
+        np.testing.assert_allclose(found, np.linalg.solve(square, b), rtol=loss, atol=loss)
+        np.testing.assert_allclose(
+            inverse, np.linalg.inv(square), rtol=loss, atol=loss * np.abs(inverse).max()
+        )
+        assert sign == np.sign(np.linalg.det(square))
+    nothing = np.zeros((n, n)).tolist()
+    assert solve_linear(nothing, [1.0] * n) is None
+    assert inverse_and_sign(nothing)[1] == 0
+    assert np.isnan(inverse_and_sign(nothing)[0]).all()
