@@ -182,7 +182,8 @@ class Halving:
         whole = parts < 2
         if whole.all():
             return queue
-        lanes, inside = queue.take(np.flatnonzero(~whole)), 2 * parts[~whole] - 1
+        lanes = queue.take(np.flatnonzero(~whole))
+        inside = (2 * parts[~whole] - 1).astype(np.intp)  # as indices are in every browser too
         wanted = int(inside.sum())
         if wanted > allowance.left:
             return queue
