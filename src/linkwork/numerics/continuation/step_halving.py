@@ -183,7 +183,7 @@ class Halving:
         if whole.all():
             return queue
         lanes = queue.take(np.flatnonzero(~whole))
-        inside = (2 * parts[~whole] - 1).astype(np.intp)  # as indices are in every browser too
+        inside = (2 * parts[~whole] - 1).astype(np.intp)  # indices have 32 bits in a browser
         wanted = int(inside.sum())
         if wanted > allowance.left:
             return queue
