@@ -194,6 +194,7 @@ class Tape(Consensus):
 
     # Derivatives
 
+    @np.errstate(all="ignore")  # a derivative that does not exist is no number
     def forward(self, results: Sequence[object]) -> list[AnyArray]:
         """The derivatives of results by all inputs, (P, …) each."""
         count = len(self.inputs)
@@ -215,6 +216,7 @@ class Tape(Consensus):
         nothing = np.zeros((count, 1))
         return [rates[x.node] if isinstance(x, TapedNumber) else nothing for x in results]
 
+    @np.errstate(all="ignore")
     def backward(self, result: object) -> Array:
         """The derivatives of one real result by all inputs, (P, …): the adjoint."""
         if not isinstance(result, TapedNumber):

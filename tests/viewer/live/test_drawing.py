@@ -238,13 +238,13 @@ def test_every_tool_of_parts_is_in_sight_and_a_half_done_pick_can_be_dropped(
     blank = sheet.bench.text
     page.get_by_role("button", name="Parts").click()
     tools = page.locator(".lw-part-tools button")
-    assert tools.count() == 11
-    for k in range(11):
+    assert tools.count() == 12
+    for k in range(12):
         box = tools.nth(k).bounding_box()
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= size[0]
         assert box["y"] + box["height"] <= size[1]
-    keys = {tools.nth(k).get_attribute("aria-keyshortcuts") for k in range(11)}
+    keys = {tools.nth(k).get_attribute("aria-keyshortcuts") for k in range(12)}
     tools.nth(3).focus()
     page.keyboard.press("Enter")
     told = page.locator(".lw-part-prompt")
@@ -257,7 +257,7 @@ def test_every_tool_of_parts_is_in_sight_and_a_half_done_pick_can_be_dropped(
         "all => all.map(one => one.getAttribute('aria-keyshortcuts'))"
     )
     assert keys.isdisjoint(bar)
-    assert len(keys) == 11
+    assert len(keys) == 12
 
 
 @pytest.mark.parametrize("scale", [1e-3, pytest.param(1e3, marks=pytest.mark.extended)])
