@@ -54,14 +54,16 @@ class Residuals:
 
     def take(self, which: BoolArray) -> Residuals:
         """Those of some lanes."""
-        return Residuals(*(None if own is None else own[which] for own in self._parts))
+        parts: list[Any] = [None if own is None else own[which] for own in self._parts]
+        return Residuals(*parts)
 
     def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
         """Those of another place in some lanes."""
-        pairs = zip(self._parts, other._parts, strict=True)
-        return Residuals(
-            *(None if old is None or new is None else _either(which, new, old) for old, new in pairs)
-        )
+        parts: list[Any] = [
+            None if old is None or new is None else _either(which, new, old)
+            for old, new in zip(self._parts, other._parts, strict=True)
+        ]
+        return Residuals(*parts)
 
     @property
     def _parts(self) -> tuple[Any, ...]:
@@ -158,7 +160,7 @@ class LaneFit:
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
         """Lanes of several parts in one."""
-        columns = {
+        columns: dict[str, Any] = {
             name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
         }
         return cls(interrupted=any(part.interrupted for part in parts), **columns)
@@ -228,7 +230,8 @@ def minimise(
     except KeyboardInterrupt:
         interrupted = True
     _keep(kept, lanes, work)
-    found = LaneFit(**dict(zip(_ARRAYS, kept, strict=True)))
+    columns: dict[str, Any] = dict(zip(_ARRAYS, kept, strict=True))
+    found = LaneFit(**columns)
     return replace(found, interrupted=interrupted or fit.interrupted)
 
 
@@ -297,7 +300,9 @@ def _newton_step(
     own = np.einsum("dnm,dnm->dn", now.by_t, now.by_t)
     slope = np.einsum("dnm,dnm->dn", now.by_t, now.rows)
     mixed = np.einsum("dnm,dnmp->dnp", now.by_t, now.by_x)
-    curve = own * (1.0 + work.damping[:, None]) + EPSILON * (own.max(axis=1, keepdims=True) + 1e-300)
+    curve = own * (1.0 + work.damping[:, None]) + EPSILON * (
+        own.max(axis=1, keepdims=True) + 1e-300
+    )
     together = None if sequenced is None else _together(sequenced, work.t, slope / curve)
     summed, slopes, mixtures = curve, slope, mixed
     if together is not None:

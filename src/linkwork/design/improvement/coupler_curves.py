@@ -52,7 +52,9 @@ class CouplerCurves(ABC):
         """The loop for dimensions (D, P) at crank angles (D, N)."""
 
     @abstractmethod
-    def with_derivatives(self, x: Array, t: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    def with_derivatives(
+        self, x: Array, t: Array
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """P (D, N), its derivatives by the dimensions (D, N, P) and by the angle (D, N)."""
 
     @abstractmethod
@@ -169,7 +171,9 @@ class SliderCrankCurves(CouplerCurves):
         """The loop for dimensions (D, P) at crank angles (D, N)."""
         moving, e = self._closed(x, np.exp(1j * t))
         z = (x[:, 6] + 1j * x[:, 7])[:, None]
-        return LoopPoints(moving_a=moving, moving_b=moving + x[:, 3, None] * e, guided=moving + z * e)
+        return LoopPoints(
+            moving_a=moving, moving_b=moving + x[:, 3, None] * e, guided=moving + z * e
+        )
 
     def _closed(self, x: Array, u: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A, and the direction of the rod."""

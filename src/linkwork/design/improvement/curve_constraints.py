@@ -20,7 +20,7 @@ from linkwork.foundation.arrays import Array, IndexArray
 __all__ = ["CurveConstraints"]
 
 _MARGIN = 1e-6  # sizes of the goal: by which constraints hold in the end
-_DEAD = np.radians(1.0)  # the least transmission angle at points, to keep off dead points
+_DEAD = np.radians(1.0)  # the least transmission angle of all: dead points are kept off
 
 
 class CurveConstraints:
@@ -30,12 +30,14 @@ class CurveConstraints:
         self.kind, self.goal = kind, goal
         self._curves = kind(np.ones(1))
         self._point_shift = np.zeros((lanes, len(goal.points)))
-        self._shift = np.zeros((lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1]))
+        self._shift = np.zeros(
+            (lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1])
+        )
 
     def residuals(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """How far constraints are broken, (D, K), and by the parameters, (D, K, P)."""
         h, by_x = self._constraints(x)
-        h = h + self._shift[lanes]
+        h = h + self._shift[lanes]  # eq. (155)
         broken = h > 0.0
         return np.where(broken, h, 0.0), np.where(broken[:, :, None], by_x, 0.0)
 
@@ -84,8 +86,7 @@ class CurveConstraints:
         own = x[:, :count]
         if goal.must_turn:
             add(*self._curves.limits(own))
-            if goal.transmission > 0.0:
-                add(*self._transmission(own))
+            add(*self._transmission(own))
         lengths, by_x = self._lengths(own)
         if goal.shortest > 0.0:
             add(goal.shortest - lengths, -by_x)
@@ -118,7 +119,7 @@ class CurveConstraints:
         """|b² + c² - (g ± a)²| - 2 b c cos μ, divided by b + c, or a ± h - c cos μ, for a whole
         turn of the crank.
         """
-        cosine = np.cos(self.goal.transmission)
+        cosine = np.cos(max(self.goal.transmission, _DEAD))
         if self.kind is not FourBarCurves:
             found, by_x = self._curves.limits(x)
             by_x[:, :, 3] *= cosine

@@ -29,7 +29,7 @@ _DRAWS = 6  # for each start that is kept
 _STAGES = ((1.0, 12), (0.4, 30), (0.12, 120), *((0.04, 200),) * 4)
 _FEWEST = 12  # lanes of a stage
 _PART = 128  # lanes of one thread
-_SAME = 0.01  # relative difference of dimensions
+_SAME_DIMENSIONS = 0.01  # relative difference of dimensions
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -143,9 +143,7 @@ class _Problem:
         columns = np.concatenate([columns, by_t[:, :, :, None]], axis=3)
         return Residuals(missed, columns, None, shared, shared_by_x)
 
-    def minimised(
-        self, fit: LaneFit, numbers: IndexArray, steps: int, threads: int
-    ) -> LaneFit:
+    def minimised(self, fit: LaneFit, numbers: IndexArray, steps: int, threads: int) -> LaneFit:
         """Lanes after some steps."""
         # parts of one size, so that results do not depend on the number of threads
         parts = [np.arange(k, min(k + _PART, len(fit))) for k in range(0, len(fit), _PART)]
@@ -178,7 +176,8 @@ class _Problem:
         for k in order:
             same = [
                 self.curves.side[numbers[j]] == self.curves.side[numbers[k]]
-                and np.abs(fit.x[j] - fit.x[k]).max() <= _SAME * (scale + np.abs(fit.x[k]).max())
+                and np.abs(fit.x[j] - fit.x[k]).max()
+                <= _SAME_DIMENSIONS * (scale + np.abs(fit.x[k]).max())
                 for j in chosen
             ]
             if not any(same):

@@ -96,8 +96,7 @@ def best_starts(
     for begin in range(0, count, _PART):
         some = x[begin : begin + _PART]
         for side in (1.0, -1.0):
-            for way in goal.ways:
-                parts.append(_compared(kind, some, side, way, goal, free))
+            parts += [_compared(kind, some, side, way, goal, free) for way in goal.ways]
     every = CurveStarts.joined(parts)
     return every.take(np.argsort(every.missed, kind="stable")[:keep])
 
@@ -148,9 +147,7 @@ def _compared(
         x = curves.take(fine).moved(x, shift[fine], factor[fine])
         t = t + np.angle(factor[fine])[:, None]
     signs = np.ones(len(x))
-    return CurveStarts(
-        x=x, t=way * t, side=side * signs, way=way * signs, missed=missed[fine]
-    )
+    return CurveStarts(x=x, t=way * t, side=side * signs, way=way * signs, missed=missed[fine])
 
 
 def _correspondences(goal: CurveGoal, way: float) -> Iterator[IndexArray]:
@@ -166,9 +163,7 @@ def _correspondences(goal: CurveGoal, way: float) -> Iterator[IndexArray]:
         yield first + np.rint(goal.arc_shares * (share * _SAMPLES)).astype(int)
 
 
-def _by_arc_length(
-    q: ComplexArray, angles: Array, way: float
-) -> tuple[ComplexArray, Array]:
+def _by_arc_length(q: ComplexArray, angles: Array, way: float) -> tuple[ComplexArray, Array]:
     """Curves and their crank angles at equal steps of arc length."""
     closed = np.concatenate([q, q[:, :1]], axis=1)
     turns = np.concatenate([angles, angles[:, :1] + way * FULL_TURN], axis=1)
@@ -191,8 +186,8 @@ def _fitted(
     chosen = q[:, index]
     if not free:
         missed = np.sum(np.abs(chosen - z) ** 2, axis=2)
-        one = np.ones(missed.shape, dtype=complex)
-        return np.where(np.isfinite(missed), missed, np.inf), one, 0.0 * one
+        one: ComplexArray = np.ones(missed.shape, dtype=complex)
+        return np.asarray(np.where(np.isfinite(missed), missed, np.inf)), one, 0.0 * one
     middle = chosen.mean(axis=2)
     apart = chosen - middle[:, :, None]
     aim = z - z.mean()
@@ -202,5 +197,6 @@ def _fitted(
     with np.errstate(all="ignore"):
         factor = (apart.conj() @ aim) / norm
         missed = np.sum(np.abs(aim) ** 2) - np.abs(factor) ** 2 * norm
-    missed = np.where(np.isfinite(missed), np.maximum(missed, 0.0), np.inf)
-    return missed, factor, z.mean() - factor * middle
+    left: Array = np.where(np.isfinite(missed), np.maximum(missed, 0.0), np.inf)
+    shift: ComplexArray = z.mean() - factor * middle
+    return left, factor, shift

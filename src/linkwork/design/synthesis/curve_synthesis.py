@@ -1,4 +1,4 @@
-"""Path generation by least squares: mechanisms whose coupler point follows points or a curve best."""
+"""Path generation by least squares: mechanisms whose coupler point follows a curve best."""
 
 from __future__ import annotations
 
@@ -118,8 +118,14 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
     given: Mapping[str, tuple[float, float]] = {}
     if task.improvement is not None:
         given = task.improvement.bounds
-        for key, entry in (("vary", task.improvement.vary), ("goals", task.improvement.goals),
-                           ("front", task.improvement.front), ("point", task.improvement.point)):  # fmt: skip
+        settings = task.improvement
+        others = {
+            "vary": settings.vary,
+            "goals": settings.goals,
+            "front": settings.front,
+            "point": settings.point,
+        }
+        for key, entry in others.items():
             if entry:
                 told = 'belongs to task = "improve": leave it out'
                 raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
@@ -150,7 +156,9 @@ def _candidates(goal: CurveGoal, fitted: FittedCurves) -> Candidates:
     a0 = x[:, 0] + 1j * x[:, 1]
     if fitted.kind is FourBarCurves:
         b0, direction = x[:, 2] + 1j * x[:, 3], np.zeros(len(x), dtype=complex)
-        sine = np.abs(np.sin(np.angle((loop.moving_b - loop.moving_a) / (loop.moving_b - b0[:, None]))))
+        sine = np.abs(
+            np.sin(np.angle((loop.moving_b - loop.moving_a) / (loop.moving_b - b0[:, None])))
+        )
     else:
         direction = np.exp(1j * x[:, 5])
         b0 = a0 + 1j * direction * x[:, 4]

@@ -33,9 +33,9 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
-    "path": lambda task, wishes, progress: (
-        solve_curve if task.is_approximate else solve_path
-    )(task, wishes, progress),
+    "path": lambda task, wishes, progress: (solve_curve if task.is_approximate else solve_path)(
+        task, wishes, progress
+    ),
     "mixed": solve_path,
     "function": lambda task, wishes, progress: solve_function(task),
 }

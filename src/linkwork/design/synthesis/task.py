@@ -234,8 +234,8 @@ class Task:
             )
         if self.kind in ("path", "mixed"):
             for k, position in enumerate(self.positions):
-                timed = () if self.is_approximate else ("input",)
-                for name in (*timed, "tolerance", "angle_tolerance"):
+                refused = () if self.is_approximate else ("input",)
+                for name in (*refused, "tolerance", "angle_tolerance"):
                     if getattr(position, name):
                         yield ("positions", k, name), "has no effect on points: leave it out"
         if self.kind == "function" and fixed:

@@ -102,9 +102,7 @@ def _plain(given: Any) -> Any:
             return given
 
 
-def _task(
-    content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None
-) -> Task:
+def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     curve = read_curve(content["curve"], folder) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
@@ -166,13 +164,15 @@ def _function(table: dict[str, Any]) -> FunctionGoal:
 
 def _improvement(table: dict[str, Any]) -> Improvement:
     own = {key: entry for key, entry in table.items() if key != "goal"}
-    own["goals"] = tuple(
-        Goal(**{k: tuple(v) if isinstance(v, list) else v for k, v in goal.items()})
-        for goal in table.get("goals", [])
-    )
+    own["goals"] = tuple(map(_goal, table.get("goals", [])))
     own["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
     own["vary"] = tuple(table.get("vary", ()))
     return Improvement(**own)
+
+
+def _goal(table: dict[str, Any]) -> Goal:
+    own: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}
+    return Goal(**own)
 
 
 def _wanted(table: dict[str, Any]) -> Wanted:

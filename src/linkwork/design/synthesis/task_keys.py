@@ -104,7 +104,7 @@ _CURVE = Key(
             Key(
                 "closed",
                 Text(("closed", "open", "partial")),
-                "Whether the points go around the whole curve; default: by the distance of its ends",
+                "Whether it is a whole curve; default: by the distance of its ends",
             ),
         )
     ),
