@@ -12,6 +12,7 @@ from linkwork.foundation.elementwise import (
     choose,
     cis,
     degrees,
+    detached,
     everywhere,
     is_steady,
     largest,
@@ -73,8 +74,19 @@ class Distance:
     def shown(self, z: Mapping[str, complex]) -> str:
         return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
 
+    def gradients(self, z: Mapping[str, complex]) -> dict[str, complex]:
+        """The derivatives of the error by every point's x and, times i, by its y."""
+        span = z[self.b] - z[self.a]
+        size = abs(span)
+        slope = span / (size * self.length) if size else 0j
+        return {self.a: -slope, self.b: slope}
+
     def narrow(self, rest: Rest) -> Distance:
         return replace(self, length=rest.narrow(self.length))
+
+    def detached(self) -> Distance:
+        length = detached(self.length)
+        return self if length is self.length else replace(self, length=length)
 
 
 @dataclass(frozen=True)
@@ -114,8 +126,21 @@ class VertexAngle:
         rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
         return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
 
+    def gradients(self, z: Mapping[str, complex]) -> dict[str, complex]:
+        """The derivatives of the error by every point's x and, times i, by its y."""
+        first, second = z[self.a] - z[self.vertex], z[self.b] - z[self.vertex]
+        if not (first and second):
+            return {point: complex(math.nan) for point in self.points}
+        # d arg r = Im(dr / r)
+        to_a, to_b = -1j / first.conjugate(), 1j / second.conjugate()
+        return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
+
     def narrow(self, rest: Rest) -> VertexAngle:
         return replace(self, angle=rest.narrow(self.angle))
+
+    def detached(self) -> VertexAngle:
+        angle = detached(self.angle)
+        return self if angle is self.angle else replace(self, angle=angle)
 
 
 Given = Distance | VertexAngle
@@ -308,7 +333,8 @@ def _together(
     """Solve all dimensions together from the sketch, completed by measured distances."""
     rows: list[Given] = list(given)
     measured: list[Distance] = []
-    placed = {p: sketch[p] for p in points}
+    # the sketch selects a shape; only what is measured in it enters its dimensions
+    start = {p: detached(sketch[p]) for p in points}
     for i in range(len(points)):
         for j in range(i + 1, len(points)):
             if len(rows) >= 2 * len(points) - 3:
@@ -316,10 +342,15 @@ def _together(
             length = abs(sketch[points[j]] - sketch[points[i]])
             candidate = Distance(points[i], points[j], length)
             # a measured length is added only if it is independent of the others
-            if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
+            if length and full_rank(_slopes(start, _detached([*rows, candidate])), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
-    placed = _gauss_newton(placed, rows, _MOST_STEPS)
+    held = _detached(rows)
+    placed = _gauss_newton(start, held, _MOST_STEPS)
+    if any(own is not row for own, row in zip(held, rows, strict=True)):
+        # one exact step from the solution has its derivatives (implicit function theorem)
+        errors = [row.error(placed) for row in rows]
+        placed = _moved(placed, least_norm(_slopes(placed, held), errors))
     wrong = [row for row in given if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
@@ -338,22 +369,28 @@ def _gauss_newton(
 
     Designs that have not converged after ``first`` steps continue separately.
     """
-    count = len(z)
     for k in range(steps):
         errors = [row.error(z) for row in rows]
         done = largest(abs(error) for error in errors) <= 1e-14
-        steady = all(map(is_steady, errors))
-        if everywhere(done) and steady:
+        if everywhere(done):
             break
         # in a family most designs need few steps: the others continue separately
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
-        step = least_norm(_slopes(z, rows), errors)
-        z = {
-            p: choose(done if steady else False, place, place - vector(step[k], step[k + count]))
-            for k, (p, place) in enumerate(z.items())
-        }
+        moved = _moved(z, least_norm(_slopes(z, rows), errors))
+        z = {p: choose(done, place, moved[p]) for p, place in z.items()}
     return z
+
+
+def _moved(z: Mapping[str, complex], step: Sequence[float]) -> dict[str, complex]:
+    """Points less a step of their coordinates, x then y."""
+    count = len(z)
+    return {p: place - vector(step[k], step[k + count]) for k, (p, place) in enumerate(z.items())}
+
+
+def _detached(rows: Sequence[Given]) -> list[Given]:
+    """Dimensions without the derivatives of their numbers."""
+    return [row.detached() for row in rows]
 
 
 def _gone_on(
@@ -370,16 +407,12 @@ def _gone_on(
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
     """Derivatives of the rows' errors with respect to all coordinates, x then y: rows of 2n."""
-    first = next(iter(z.values()))
-    # central differences: truncation ~h² and rounding ~eps/h are then both about 1e-9 or less
-    h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)
-    columns = []
-    for shift in (h, 1j * h):
-        for point in z:
-            plus = {**z, point: z[point] + shift}
-            minus = {**z, point: z[point] - shift}
-            columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
-    return [list(row) for row in zip(*columns, strict=True)]
+    found = []
+    for row in rows:
+        by = row.gradients(z)
+        at = [by.get(point, 0j) for point in z]
+        found.append([g.real for g in at] + [g.imag for g in at])
+    return found
 
 
 def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:
