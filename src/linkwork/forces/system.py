@@ -94,9 +94,8 @@ class _Solution:
         none = np.zeros(self.geometry.rows, dtype=bool)
         unknown = none if undetermined is None else undetermined & self.regular
         value = np.where(self.regular & ~unknown, value, np.nan)
-        size = np.nanmax(np.abs(value), initial=0.0)
         # rounding of a contact without force is no lift-off
-        lifted = value < -1e-9 * size if pushes else none
+        lifted = value < -1e-9 * np.nanmax(np.abs(value), initial=0.0) if pushes else none
         self.values[name] = ForceValue(
             kind=kind,
             about=about,
