@@ -281,7 +281,8 @@ def place(
         if not (state.place_next(0) or state.place_next(1)):
             state.place_next(2)
     given: list[Given] = [*distances, *vertices]
-    measured = state.measured
+    # what places a point before the last dimension is used need not be measured after all
+    measured = state.measured if len(given) < 2 * len(points) - 3 else []
     z = state.z
     if not all(g.agrees(z, _AGREE) for g in given):
         # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
