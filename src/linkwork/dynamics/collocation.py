@@ -68,6 +68,17 @@ class Step:
         place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
         return place, self.speed + gained, bend
 
+    @property
+    def nodes(self) -> Array:
+        """The times of its points, (n,)."""
+        return self.t + self.h * _C
+
+    def integral(self, values: Array, t: Array) -> Array:
+        """The integral of a function with values at the points (n,), up to times (B,)."""
+        x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
+        found: Array = legendre.legvander(x, _POINTS) @ (self.h * (_SPEED @ values))
+        return found
+
 
 def try_step(
     acceleration: Callable[[Array, Array, Array], Array], t: float, s: float, speed: float, h: float

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.dynamics.collocation import Step
-from linkwork.dynamics.reduced import ReducedLeg
+from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.mechanism.stop import Stop
 from linkwork.results.quantities.asked import Asked
@@ -39,11 +39,15 @@ class Bound:
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Margin ``number`` changes its sign between two times, as near as rounding allows."""
+    """Margin ``number`` changes its sign between two times, as near as rounding allows.
+
+    ``falls``: whether it is one that counts only where it becomes negative.
+    """
 
     number: int
     before: float
     after: float
+    falls: bool
 
 
 Margins = Callable[[Array, Array, Array], Array]
@@ -65,11 +69,14 @@ def first_event(step: Step, end: float, margins: Margins, falling: BoolArray) ->
     low, high = values[k, both], values[k + 1, both]
     # the first one of those between two places, by the straight line
     number = int(both[np.argmin(low / (low - high))])
-    return _located(step, margins, number, times[k : k + 2], values[k : k + 2, number])
+    before, after = _located(step, margins, number, times[k : k + 2], values[k : k + 2, number])
+    return Event(number=number, before=before, after=after, falls=bool(falling[number]))
 
 
-def _located(step: Step, margins: Margins, number: int, times: Array, values: Array) -> Event:
-    """The sign change between two times, to rounding."""
+def _located(
+    step: Step, margins: Margins, number: int, times: Array, values: Array
+) -> tuple[float, float]:
+    """Just before and just after the sign change between two times."""
     (low, high), (below, above) = times.tolist(), values.tolist()
     for _ in range(_ROUNDS):
         width = high - low
@@ -85,4 +92,4 @@ def _located(step: Step, margins: Margins, number: int, times: Array, values: Ar
         k = int(np.flatnonzero((all_values[1:] > 0.0) != (all_values[:-1] > 0.0))[0])
         low, high = all_times[k : k + 2].tolist()
         below, above = all_values[k : k + 2].tolist()
-    return Event(number=number, before=low, after=high)
+    return low, high
