@@ -48,6 +48,10 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
         if len(fine):
             unit = motion.quantity("kinetic_energy").unit
             yield "energy", f"{fine[0]:.10g} at first, {fine[-1]:.10g} at last {unit}"
+            if motion.friction_work is not None:
+                lost = motion.friction_work[np.isfinite(energy)][-1]
+                given = fine[-1] - fine[0] + lost
+                yield "", f"friction has taken {lost:.10g}, loads and motor have given {given:.10g}"
 
 
 def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list[str]:
@@ -94,4 +98,5 @@ def motion_data(motion: Motion, table: Table) -> dict[str, Any]:
             if word
         ],
         "columns": {name: column.tolist() for name, column in table.columns.items()},
+        "friction_work": None if motion.friction_work is None else motion.friction_work.tolist(),
     }

@@ -68,8 +68,8 @@ class _Answers:
     """What unit loads do to the unknowns from which K sizes follow: (B, K, 2) each.
 
     ``still`` by weights and loads of position, ``bent`` by speed², ``motor`` by a unit of its
-    torque, ``loads`` by units of all other loads, (B, K, 2, L), ``change`` by units of what follows,
-    (B, K, 2, K); ``motions`` (B, K) by the leader; ``varying`` the factors of sizes, (B, V).
+    torque, ``loads`` by units of all other loads, (B, K, 2, L), ``change`` by units of what
+    follows, (B, K, 2, K); ``motions`` (B, K) by the leader; ``varying`` the factors of sizes.
     """
 
     still: Array
@@ -137,8 +137,8 @@ class JointFriction:
         rubbing = Rubbing(direction=direction, ways=ways)
         if not self.has_edges:
             return rubbing
-        one = np.array([s])
-        u, _ = self._solve(one, np.array([speed]), known[None, :], rubbing)
+        answers = self._answers(np.array([s]))
+        u, _ = self._solve(answers, np.array([speed]), known[None, :], rubbing)
         sides = tuple(
             size.side(np.nan_to_num(u[0, j, : len(size.unknowns)]))
             for j, size in enumerate(self.sizes)
@@ -147,9 +147,9 @@ class JointFriction:
 
     def force(self, s: Array, speed: Array, known: Array, rubbing: Rubbing) -> Array:
         """The generalised force of friction along the leader, (B,); NaN without equilibrium."""
-        motions = self._answers(s).motions
-        _, sizes = self._solve(s, speed, known, rubbing)
-        found: Array = (sizes * rubbing.signs * motions)[:, self.rubs].sum(axis=1)
+        answers = self._answers(s)
+        _, sizes = self._solve(answers, speed, known, rubbing)
+        found: Array = (sizes * rubbing.signs * answers.motions)[:, self.rubs].sum(axis=1)
         return found
 
     def margins(self, s: Array, speed: Array, known: Array, rubbing: Rubbing) -> Array:
@@ -159,7 +159,7 @@ class JointFriction:
         turning = np.where(ways != 0.0, ways * answers.motions, 1.0)[:, self.rubs]
         if rubbing.sides is None:
             return turning
-        u, _ = self._solve(s, speed, known, rubbing)
+        u, _ = self._solve(answers, speed, known, rubbing)
         inside = [
             size.inside(u[:, j, : len(size.unknowns)], side)
             for j, (size, side) in enumerate(zip(self.sizes, rubbing.sides, strict=True))
@@ -167,10 +167,9 @@ class JointFriction:
         return np.column_stack([turning, *inside])
 
     def _solve(
-        self, s: Array, speed: Array, known: Array, rubbing: Rubbing
+        self, answers: _Answers, speed: Array, known: Array, rubbing: Rubbing
     ) -> tuple[Array, Array]:
         """The unknowns of all sizes, (B, K, 2), and the sizes, (B, K)."""
-        answers = self._answers(s)
         # eq. (94)
         start = answers.still + answers.bent * (speed**2)[:, None, None]
         start = start + answers.motor * known[:, 0, None, None]
@@ -190,9 +189,7 @@ class JointFriction:
         for size in self.sizes:
             if isinstance(size, Sided) and _varies(size):
                 plus, minus = varying[:, taken], varying[:, taken + 1]
-                size = Sided(
-                    unknowns=size.unknowns, plus=plus, minus=minus, constant=size.constant
-                )
+                size = Sided(unknowns=size.unknowns, plus=plus, minus=minus, constant=size.constant)
                 taken += 2
             found.append(size)
         return found

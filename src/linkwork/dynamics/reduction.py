@@ -1,4 +1,4 @@
-"""What a simulation of a mechanism with one input takes from its description: loads, motor, masses."""
+"""The loads, the motor and the flywheel of a simulated mechanism with one input."""
 
 from __future__ import annotations
 
@@ -37,7 +37,6 @@ class Displaced(Geometry):
     def input_rates(self) -> Array:
         """That of the leader with respect to itself."""
         return np.ones(1)
-
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,8 @@ import numpy as np
 from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.events import Bound
 from linkwork.dynamics.reduction import Forcing, Reduction
-from linkwork.dynamics.travel import Sample, Travel
+from linkwork.dynamics.sample import Sample
+from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told, finite_number

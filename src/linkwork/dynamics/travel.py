@@ -10,18 +10,18 @@ import numpy as np
 
 from linkwork.dynamics.collocation import Step, try_step
 from linkwork.dynamics.curve import PositionCurve
-from linkwork.dynamics.events import Bound, Event, first_event
+from linkwork.dynamics.events import Bound, Event, first_event, margins_on, shorter_step
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.dynamics.reduction import Reduction
+from linkwork.dynamics.sample import Sample
 from linkwork.dynamics.stiction import release, starting_directions
 from linkwork.expression.tree import Node
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 
-__all__ = ["Sample", "Travel"]
+__all__ = ["Travel"]
 
-_LOOKS = 33  # places at which a step is looked at
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
@@ -30,23 +30,6 @@ _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
 _MOST_TRIES = 3  # to find the signs of friction at the beginning of a step
 _AT_REST = 1e-5  # of the fastest speed so far
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sample:
-    """A state at a time: the leg, laps gained, place, speed and acceleration of the leader.
-
-    ``event``: what happens there, "" for one that was asked for; ``lost``: the work of friction.
-    """
-
-    t: float
-    leg: int
-    lap: int
-    s: float
-    speed: float
-    acceleration: float
-    event: str = ""
-    lost: float = 0.0
 
 
 @dataclass(eq=False)
@@ -126,7 +109,7 @@ class Travel:
             step, following = try_step(
                 self._acceleration, self.t, self.s, self.speed, min(h, short)
             )
-            shorter = None if step is None else self._shorter(step)
+            shorter = None if step is None else shorter_step(step, *self.leg.reach)
             if shorter is not None:
                 step, following = None, shorter
             if step is not None and self._misjudges(step):
@@ -157,38 +140,9 @@ class Travel:
             times.append(math.sqrt((high - low) / pull))
         return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
 
-    def _shorter(self, step: Step) -> float | None:
-        """The length that leads just beyond the end of the leg, of a step that goes on further."""
-        low, high = self.leg.reach
-        times = np.linspace(step.t, step.t + step.h, _LOOKS)
-        s = step.at(times)[0]
-        outside = np.flatnonzero((s < low) | (s > high))
-        if not len(outside):
-            return None
-        # between the last place that is known and the first one that is not
-        k = int(outside[0])
-        within = float(times[k - 1] - step.t) if k > 1 else 0.0
-        return max(within, 0.5 * float(times[k] - step.t))
-
-    # Events: margins of the leg's two ends, of the stops, of friction, of the comparisons
-
     def _event(self, step: Step) -> Event | None:
-        edges, gain, leg = self.leg.table.edges, self.gain, self.leg
-        comparisons, rubbing = len(self.reduction.comparisons), self.rubbing
-
-        def margins(s: Array, speed: Array, t: Array) -> Array:
-            found = [s - edges[0], edges[-1] - s]
-            found += [bound.margin(leg, s, speed, t, gain) for bound in self.bounds]
-            if rubbing is not None:
-                found += [rubbing.direction * speed]
-                found += [*leg.friction_margins(s, speed, t, gain, rubbing).T]
-            if comparisons:
-                found += [*leg.margins(s, speed, t, gain).T]
-            return np.stack(found, axis=1)
-
-        count = margins(*step.at(np.array([step.t]))[:2], np.array([step.t])).shape[1]
-        falling = np.arange(count) < count - comparisons
-        return first_event(step, step.t + step.h, margins, falling)
+        margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
+        return first_event(step, step.t + step.h, margins, len(self.reduction.comparisons))
 
     def _end(self, event: Event) -> float:
         """Stops are met just before, all others just after."""

@@ -143,7 +143,8 @@ def joint_forces(bodies: FreeBodies, acts: Iterable[Act], direction: Array) -> J
 def _way(motion: Array, bodies: FreeBodies) -> Array:
     """The sign of a relative motion when the leading input grows; 0 at rest, (B,)."""
     geometry = bodies.geometry
-    rate = geometry.by_leading(np.broadcast_to(motion, (len(motion), geometry.rows)))
+    each = np.broadcast_to(motion, (len(motion), geometry.rows))
+    rate = (geometry.input_ways.T * each.T).sum(axis=-1)
     limit = _AT_REST * geometry.fastest * max(1.0, geometry.length)
     found: Array = np.where(np.abs(rate) > limit, np.sign(rate), 0.0)
     return found

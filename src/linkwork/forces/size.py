@@ -165,8 +165,7 @@ class LargerOf:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Linear:
-    """A sum of unknowns times ``factors``, and a constant: another size on one side of its edges.
-    """
+    """A sum of unknowns times ``factors`` and a constant: another size on one side of its edges."""
 
     unknowns: tuple[int, ...]
     factors: tuple[Array | float, ...]
