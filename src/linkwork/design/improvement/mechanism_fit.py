@@ -164,7 +164,7 @@ class _Problem:
 
     def _asked(self, goal: Goal) -> Any:
         asked = self.model.quantities.find_of_motion(goal.of)
-        if asked.quantity.slopes is None or asked.needs or asked.quantity.of_point:
+        if asked.needs > 0 or asked.quantity.of_point:
             raise InputError(
                 f'"{goal.of}" cannot be a goal: its derivatives need rates; ask for min, max, '
                 "mean or stroke, or for values of a quantity at inputs"
