@@ -508,6 +508,7 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = truss("Ds[", np.random.default_rng(5))
     mechanism.configurations()
+    monkeypatch.setattr(isolated_roots, "_MEMBERS", {})
     for care in ("BOLD", "CAREFUL"):
         monkeypatch.setattr(isolated_roots, care, PathOptions(attempts=3))
     found = mechanism.configurations()

@@ -4,10 +4,14 @@ Almost every member of a linear family has the same number of isolated solutions
 path from a random complex member to any other one leads to all isolated solutions of the latter
 (Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
 member is solved once from products of linear forms, until closed paths lead to no new solution.
+
+Members that have as many solutions are kept: a member near one of them starts from its solutions,
+so that its own depend on what was solved before, by rounding.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
@@ -54,6 +58,9 @@ _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which
 _ATTEMPTS = 5
 _FEW = 8  # paths that seldom meet, so that following them twice costs less than care
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
+_STEPS_TO_REGULAR = 6  # of Newton's method, at most
+_NEAR_MEMBER = 0.1  # of the largest coefficient: members further away do not help
+_MOST_MEMBERS = 64  # of a family, kept
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
 
@@ -159,6 +166,8 @@ class Solved(Generic[S]):
 
 
 _KNOWN: dict[RootFamily[Any], Solved[Any]] = {}
+#: Closures and solutions of members of every family that have as many as a random one.
+_MEMBERS: dict[RootFamily[Any], deque[tuple[ComplexArray, ComplexArray]]] = {}
 
 
 def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
@@ -166,9 +175,13 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
 
     Paths that were lost, or that met, are followed again with more care and along other systems.
     Where fewer solutions are found than random systems of the family have, a second set of paths
-    has to confirm it.
+    has to confirm it. No member has more isolated solutions than a random one: where Newton's
+    method from the solutions of a member near by leads to as many, paths are not needed.
     """
     generic = random_member(family)
+    near = _from_member(system, family, len(generic.x))
+    if near is not None:
+        return _roots(system, near, generic)
     rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
@@ -182,7 +195,42 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
             if ends.regular.all() or (agreed and not ends.failed.any()):
                 break
     assert best is not None
+    if best.regular.all():
+        _keep_member(system, family, best.x)
     return _roots(system, best, generic)
+
+
+def _from_member(system: S, family: RootFamily[S], expected: int) -> _Ends | None:
+    """All solutions, from those of the nearest member kept; ``None`` if they are not all."""
+    members = _MEMBERS.get(family)
+    if not members or not expected:
+        return None
+    goal = _closures_of(system)
+    away = [float(np.abs(closures - goal).max()) for closures, _ in members]
+    nearest = int(np.argmin(away))
+    if not away[nearest] <= _NEAR_MEMBER * float(np.abs(goal).max()):
+        return None
+    x = members[nearest][1]
+    if away[nearest]:
+        with np.errstate(all="ignore"):
+            x, steps = polish_roots(system, x, _STEPS_TO_REGULAR)
+        # slow convergence marks a multiple solution
+        if (steps <= 0).any() or len(_distinct(x)) < expected:
+            return None
+        _keep_member(system, family, x)
+    if len(x) != expected:
+        return None
+    nothing = np.zeros(expected, dtype=bool)
+    return _Ends(x=x, regular=~nothing, infinite=nothing, singular=nothing, failed=nothing)
+
+
+def _keep_member(system: S, family: RootFamily[S], x: ComplexArray) -> None:
+    kept = _MEMBERS.setdefault(family, deque(maxlen=_MOST_MEMBERS))
+    kept.append((_closures_of(system), x))
+
+
+def _closures_of(system: ClosureSystem) -> ComplexArray:
+    return np.stack([system.left, system.right])
 
 
 def _quality(ends: _Ends) -> tuple[int, int]:
@@ -310,7 +358,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
             better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
         # slow convergence marks a multiple solution, a long way another one
-        regular[finite] = (steps > 0) & (steps <= 6) & moved
+        regular[finite] = (steps > 0) & (steps <= _STEPS_TO_REGULAR) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     for k in np.flatnonzero(finite & ~regular):
         infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))

@@ -56,13 +56,15 @@ class Roots:
     curves: ComplexArray
 
 
-def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
+def polish_roots(
+    system: PolynomialSystem, x: ComplexArray, most: int = _POLISH
+) -> tuple[ComplexArray, CountArray]:
     """Newton's method from x (B, n) until nothing changes; the steps taken, -1 if it failed."""
     x = x.copy()
     steps = np.full(len(x), -1, dtype=np.int64)
     live = np.arange(len(x))
     last = np.full(len(x), np.inf)
-    for k in range(_POLISH):
+    for k in range(most):
         f, j = system.residual_and_jacobian(x[live])
         change = solve_linear(j, f[:, :, None])[:, :, 0]
         x[live] -= change
