@@ -204,12 +204,9 @@ def _with_proofs(arc: Arc, walks: Walks) -> Arc:
         up=walks.with_proof(arc.up),
         down=None if arc.down is None else walks.with_proof(arc.down),
     )
-    first, *others = arc.branches or [None]
-    if first is None:
-        return proved
     # the first branch needs no way to it
-    others = [replace(branch, proved=proved.certified) for branch in others]
-    return replace(proved, branches=(first, *others))
+    others = [replace(branch, proved=proved.certified) for branch in arc.branches[1:]]
+    return replace(proved, branches=(*arc.branches[:1], *others))
 
 
 def _unit(direction: Array) -> Array:

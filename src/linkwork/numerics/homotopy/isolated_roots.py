@@ -11,7 +11,6 @@ so that its own depend on what was solved before, by rounding.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
@@ -29,11 +28,16 @@ from linkwork.marching.solution_path import (
 )
 from linkwork.numerics.homotopy.path_tracking import Homotopy, Paths, track
 from linkwork.numerics.homotopy.polynomial_system import (
+    SAME_ROOT,
+    STEPS_TO_REGULAR,
+    ClosureSystem,
     PolynomialSystem,
     Roots,
+    distinct_solutions,
     nearest_solution,
     polish_roots,
 )
+from linkwork.numerics.homotopy.solved_members import keep_member, solutions_from_member
 from linkwork.numerics.homotopy.start_sets import StartSet, read_sets, write_set
 from linkwork.numerics.homotopy.topology import Renaming, Topology
 
@@ -51,28 +55,14 @@ __all__ = [
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
-_SAME_ROOT = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
 _ATTEMPTS = 5
 _FEW = 8  # paths that seldom meet, so that following them twice costs less than care
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
-_STEPS_TO_REGULAR = 6  # of Newton's method, at most
-_NEAR_MEMBER = 0.1  # of the largest coefficient: members further away do not help
-_MOST_MEMBERS = 64  # of a family, kept
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
-
-
-class ClosureSystem(PolynomialSystem, Protocol):
-    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
-
-    @property
-    def left(self) -> ComplexArray: ...
-
-    @property
-    def right(self) -> ComplexArray: ...
 
 
 S = TypeVar("S", bound=ClosureSystem)
@@ -166,8 +156,6 @@ class Solved(Generic[S]):
 
 
 _KNOWN: dict[RootFamily[Any], Solved[Any]] = {}
-#: Closures and solutions of members of every family that have as many as a random one.
-_MEMBERS: dict[RootFamily[Any], deque[tuple[ComplexArray, ComplexArray]]] = {}
 
 
 def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
@@ -179,9 +167,9 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
     method from the solutions of a member near by leads to as many, paths are not needed.
     """
     generic = random_member(family)
-    near = _from_member(system, family, len(generic.x))
+    near = solutions_from_member(system, family, len(generic.x))
     if near is not None:
-        return _roots(system, near, generic)
+        return _roots(system, _all_regular(near), generic)
     rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
@@ -196,41 +184,8 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
                 break
     assert best is not None
     if best.regular.all():
-        _keep_member(system, family, best.x)
+        keep_member(system, family, best.x)
     return _roots(system, best, generic)
-
-
-def _from_member(system: S, family: RootFamily[S], expected: int) -> _Ends | None:
-    """All solutions, from those of the nearest member kept; ``None`` if they are not all."""
-    members = _MEMBERS.get(family)
-    if not members or not expected:
-        return None
-    goal = _closures_of(system)
-    away = [float(np.abs(closures - goal).max()) for closures, _ in members]
-    nearest = int(np.argmin(away))
-    if not away[nearest] <= _NEAR_MEMBER * float(np.abs(goal).max()):
-        return None
-    x = members[nearest][1]
-    if away[nearest]:
-        with np.errstate(all="ignore"):
-            x, steps = polish_roots(system, x, _STEPS_TO_REGULAR)
-        # slow convergence marks a multiple solution
-        if (steps <= 0).any() or len(_distinct(x)) < expected:
-            return None
-        _keep_member(system, family, x)
-    if len(x) != expected:
-        return None
-    nothing = np.zeros(expected, dtype=bool)
-    return _Ends(x=x, regular=~nothing, infinite=nothing, singular=nothing, failed=nothing)
-
-
-def _keep_member(system: S, family: RootFamily[S], x: ComplexArray) -> None:
-    kept = _MEMBERS.setdefault(family, deque(maxlen=_MOST_MEMBERS))
-    kept.append((_closures_of(system), x))
-
-
-def _closures_of(system: ClosureSystem) -> ComplexArray:
-    return np.stack([system.left, system.right])
 
 
 def _quality(ends: _Ends) -> tuple[int, int]:
@@ -240,7 +195,7 @@ def _quality(ends: _Ends) -> tuple[int, int]:
 def _agree(a: _Ends, b: _Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
-    return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
+    return len(x) == len(y) == len(distinct_solutions(np.concatenate([x, y])))
 
 
 def random_member(family: RootFamily[S]) -> Solved[S]:
@@ -266,7 +221,7 @@ def _read_member(family: RootFamily[S]) -> Solved[S] | None:
         if len(x):
             with np.errstate(all="ignore"):  # of a file that is damaged
                 x, steps = polish_roots(system, family.rename(x, renaming))
-        if (steps >= 0).all() and len(_distinct(x)) == len(x):
+        if (steps >= 0).all() and len(distinct_solutions(x)) == len(x):
             return Solved(system=system, x=x, sure=kept.sure)
     return None
 
@@ -284,7 +239,7 @@ def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
         start = family.from_products(system, rng)
         ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
         found = ends.x[ends.regular]
-        x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
+        x = distinct_solutions(np.concatenate([x, found])) if attempt else distinct_solutions(found)
         clean += not (ends.failed | ends.singular | _meeting(ends)).any()
         if (clean and len(x)) or clean == _LOOPS:
             break
@@ -300,9 +255,9 @@ def _close_paths(family: RootFamily[S], known: Solved[S], rng: np.random.Generat
         # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
-        back = Solved(system=away, x=_distinct(there.x[there.regular]))
+        back = Solved(system=away, x=distinct_solutions(there.x[there.regular]))
         ends = _follow_paths(family, back, known.system, rng, CAREFUL)
-        x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
+        x = distinct_solutions(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
         tries += 1
@@ -358,7 +313,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
             better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
         # slow convergence marks a multiple solution, a long way another one
-        regular[finite] = (steps > 0) & (steps <= _STEPS_TO_REGULAR) & moved
+        regular[finite] = (steps > 0) & (steps <= STEPS_TO_REGULAR) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     for k in np.flatnonzero(finite & ~regular):
         infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
@@ -397,24 +352,19 @@ def _near_another(x: ComplexArray) -> BoolArray:
         return np.zeros(len(x), dtype=bool)
     size = 1.0 + np.abs(x).max(axis=1)
     gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
-    close = gap < _SAME_ROOT * np.minimum(size[:, None], size[None, :])
+    close = gap < SAME_ROOT * np.minimum(size[:, None], size[None, :])
     np.fill_diagonal(close, False)
     near: BoolArray = close.any(axis=1)
     return near
 
 
-def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
-    """The rows without repetitions, first ones kept."""
-    kept: list[int] = []
-    for k in range(len(x)):
-        size = 1.0 + np.abs(x[k]).max()
-        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
-            kept.append(k)
-    return x[kept]
+def _all_regular(x: ComplexArray) -> _Ends:
+    nothing = np.zeros(len(x), dtype=bool)
+    return _Ends(x=x, regular=~nothing, infinite=nothing, singular=nothing, failed=nothing)
 
 
 def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
-    multiple = _distinct(ends.x[ends.singular], 1e-2)
+    multiple = distinct_solutions(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
         x=ends.x[ends.regular],
