@@ -14,7 +14,7 @@ from linkwork import Completeness
 from linkwork.marching.solution_path import PathOptions
 from linkwork.motion.assembly import assembling
 from linkwork.motion.assembly.assembling import positions_at
-from linkwork.numerics.homotopy import bilinear_family, isolated_roots, solved_members
+from linkwork.numerics.homotopy import bilinear_family, isolated_roots
 from tests.campaigns.configurations import judge_truss
 from tests.laws.mechanisms import NAMES, mechanism_of
 from tests.oracles.four_bar import FourBar
@@ -508,7 +508,6 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = truss("Ds[", np.random.default_rng(5))
     mechanism.configurations()
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
     for care in ("BOLD", "CAREFUL"):
         monkeypatch.setattr(isolated_roots, care, PathOptions(attempts=3))
     found = mechanism.configurations()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwork.marching.solution_path import PathOptions
-from linkwork.numerics.homotopy import isolated_roots as roots_module, solved_members
+from linkwork.numerics.homotopy import isolated_roots as roots_module
 from linkwork.numerics.homotopy.bilinear import BilinearSystem, prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
 from linkwork.numerics.homotopy.bilinear_homotopy import (
@@ -147,49 +147,11 @@ def test_results_do_not_depend_on_what_was_solved_before(monkeypatch: pytest.Mon
     assert np.array_equal(roots_of(system).x, first)
     monkeypatch.setattr(roots_module, "_KNOWN", {})
     assert np.array_equal(roots_of(system).x, first)
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
-    assert np.array_equal(roots_of(system).x, first)
-
-
-def test_a_member_near_a_solved_one_has_the_solutions_that_paths_lead_to(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """The rounding of the solutions may be another one, not their number."""
-    system, _ = random_triad(7)
-    nearby = BilinearSystem(left=1.001 * system.left, right=1.001 * system.right, rows=system.rows)
-    nearby.left[:, 0], nearby.right[:, 0] = system.left[:, 0], system.right[:, 0]
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
-    paths, followed = [], roots_module._follow_paths
-
-    def counted(*arguments: Any, **options: Any) -> Any:
-        paths.append(options)
-        return followed(*arguments, **options)
-
-    monkeypatch.setattr(roots_module, "_follow_paths", counted)
-    expected = roots_of(nearby).x
-    solved_members._MEMBERS.clear()
-    roots_of(system)
-    found = roots_of(nearby).x
-    assert (len(paths), len(found)) == (2, 6)
-    gap = np.abs(found[:, None] - expected[None]).max(axis=2)
-    assert gap.min(axis=1).max() < 1e-12 * np.abs(expected).max()
-
-
-def test_a_member_with_a_double_solution_takes_paths(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Legs of a platform that meet in one point: too few regular solutions start from others."""
-    legs = np.array([1.0, 1.0, 1.0])
-    base = np.array([0, 15.91, 3 + 10j])
-    c = np.array([[legs[0], -legs[1], 0, base[1]], [legs[0], 0, -legs[2], base[2]]])
-    system = angles_only(c, base[0] - base[1:])
-    other = angles_only(c * (1.0 + 1e-3j), base[0] - base[1:] + 0.01)
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
-    roots_of(other)
-    assert roots_of(system).continuum
 
 
 def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
+    roots_of(system)
     for care in ("BOLD", "CAREFUL"):
         monkeypatch.setattr(roots_module, care, PathOptions(attempts=3))
     roots = roots_of(system)
@@ -198,7 +160,6 @@ def test_lost_paths_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     system, _ = random_triad(8)
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
     followed, calls = roots_module._follow_paths, []
 
     def careless(*arguments: Any, **options: Any) -> Any:
@@ -208,7 +169,7 @@ def test_solutions_missing_at_first_are_looked_for_again(monkeypatch: pytest.Mon
             ends.regular[2], ends.infinite[2] = False, True
         return ends
 
-    roots_module.random_member(structure_of(system))
+    roots_of(system)
     monkeypatch.setattr(roots_module, "_follow_paths", careless)
     roots = roots_of(system)
     assert (len(roots.x), roots.at_infinity, len(calls)) == (6, 0, 2)
@@ -220,7 +181,6 @@ def test_a_path_that_jumped_is_not_counted_twice(monkeypatch: pytest.MonkeyPatch
     known = roots_module.random_member(structure_of(system))
     twice = np.concatenate([known.x[:5], known.x[:1]])
     spoiled = roots_module.Solved(system=known.system, x=twice)
-    monkeypatch.setattr(solved_members, "_MEMBERS", {})
     monkeypatch.setitem(roots_module._KNOWN, structure_of(system), spoiled)
     roots = roots_of(system)
     assert (len(roots.x), roots.failed) == (4, 2)

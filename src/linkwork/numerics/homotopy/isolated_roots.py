@@ -4,9 +4,6 @@ Almost every member of a linear family has the same number of isolated solutions
 path from a random complex member to any other one leads to all isolated solutions of the latter
 (Morgan & Sommese 1989, Appl. Math. Comput. 29, 123; Sommese & Wampler 2005, ch. 7). The random
 member is solved once from products of linear forms, until closed paths lead to no new solution.
-
-Members that have as many solutions are kept: a member near one of them starts from its solutions,
-so that its own depend on what was solved before, by rounding.
 """
 
 from __future__ import annotations
@@ -28,16 +25,11 @@ from linkwork.marching.solution_path import (
 )
 from linkwork.numerics.homotopy.path_tracking import Homotopy, Paths, track
 from linkwork.numerics.homotopy.polynomial_system import (
-    SAME_ROOT,
-    STEPS_TO_REGULAR,
-    ClosureSystem,
     PolynomialSystem,
     Roots,
-    distinct_solutions,
     nearest_solution,
     polish_roots,
 )
-from linkwork.numerics.homotopy.solved_members import keep_member, solutions_from_member
 from linkwork.numerics.homotopy.start_sets import StartSet, read_sets, write_set
 from linkwork.numerics.homotopy.topology import Renaming, Topology
 
@@ -55,6 +47,7 @@ __all__ = [
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
+_SAME_ROOT = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
@@ -63,6 +56,16 @@ _FEW = 8  # paths that seldom meet, so that following them twice costs less than
 _LOOPS = 2  # closed paths without a new solution after which a set counts as complete
 _STEPS_TO_MULTIPLE = 30  # of Gauss-Newton; each halves the distance to a double solution
 _TRIES = 30  # closed paths at most
+
+
+class ClosureSystem(PolynomialSystem, Protocol):
+    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
+
+    @property
+    def left(self) -> ComplexArray: ...
+
+    @property
+    def right(self) -> ComplexArray: ...
 
 
 S = TypeVar("S", bound=ClosureSystem)
@@ -163,13 +166,9 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
 
     Paths that were lost, or that met, are followed again with more care and along other systems.
     Where fewer solutions are found than random systems of the family have, a second set of paths
-    has to confirm it. No member has more isolated solutions than a random one: where Newton's
-    method from the solutions of a member near by leads to as many, paths are not needed.
+    has to confirm it.
     """
     generic = random_member(family)
-    near = solutions_from_member(system, family, len(generic.x))
-    if near is not None:
-        return _roots(system, _all_regular(near), generic)
     rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
@@ -183,8 +182,6 @@ def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
             if ends.regular.all() or (agreed and not ends.failed.any()):
                 break
     assert best is not None
-    if best.regular.all():
-        keep_member(system, family, best.x)
     return _roots(system, best, generic)
 
 
@@ -195,7 +192,7 @@ def _quality(ends: _Ends) -> tuple[int, int]:
 def _agree(a: _Ends, b: _Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
-    return len(x) == len(y) == len(distinct_solutions(np.concatenate([x, y])))
+    return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
 
 
 def random_member(family: RootFamily[S]) -> Solved[S]:
@@ -221,7 +218,7 @@ def _read_member(family: RootFamily[S]) -> Solved[S] | None:
         if len(x):
             with np.errstate(all="ignore"):  # of a file that is damaged
                 x, steps = polish_roots(system, family.rename(x, renaming))
-        if (steps >= 0).all() and len(distinct_solutions(x)) == len(x):
+        if (steps >= 0).all() and len(_distinct(x)) == len(x):
             return Solved(system=system, x=x, sure=kept.sure)
     return None
 
@@ -239,7 +236,7 @@ def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
         start = family.from_products(system, rng)
         ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
         found = ends.x[ends.regular]
-        x = distinct_solutions(np.concatenate([x, found])) if attempt else distinct_solutions(found)
+        x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
         clean += not (ends.failed | ends.singular | _meeting(ends)).any()
         if (clean and len(x)) or clean == _LOOPS:
             break
@@ -255,9 +252,9 @@ def _close_paths(family: RootFamily[S], known: Solved[S], rng: np.random.Generat
         # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
-        back = Solved(system=away, x=distinct_solutions(there.x[there.regular]))
+        back = Solved(system=away, x=_distinct(there.x[there.regular]))
         ends = _follow_paths(family, back, known.system, rng, CAREFUL)
-        x = distinct_solutions(np.concatenate([known.x, ends.x[ends.regular]]))
+        x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
         tries += 1
@@ -313,7 +310,7 @@ def _classify_ends(system: PolynomialSystem, homotopy: _ToSystem, paths: Paths) 
             better, steps = polish_roots(system, x[finite])
         moved = np.abs(better - x[finite]).max(axis=1) < 1e-3 * (1 + np.abs(better).max(axis=1))
         # slow convergence marks a multiple solution, a long way another one
-        regular[finite] = (steps > 0) & (steps <= STEPS_TO_REGULAR) & moved
+        regular[finite] = (steps > 0) & (steps <= 6) & moved
         x[np.flatnonzero(finite)[regular[finite]]] = better[regular[finite]]
     for k in np.flatnonzero(finite & ~regular):
         infinite[k] = _multiple_at_infinity(homotopy, paths.w[k], float(scale[k]))
@@ -352,19 +349,24 @@ def _near_another(x: ComplexArray) -> BoolArray:
         return np.zeros(len(x), dtype=bool)
     size = 1.0 + np.abs(x).max(axis=1)
     gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
-    close = gap < SAME_ROOT * np.minimum(size[:, None], size[None, :])
+    close = gap < _SAME_ROOT * np.minimum(size[:, None], size[None, :])
     np.fill_diagonal(close, False)
     near: BoolArray = close.any(axis=1)
     return near
 
 
-def _all_regular(x: ComplexArray) -> _Ends:
-    nothing = np.zeros(len(x), dtype=bool)
-    return _Ends(x=x, regular=~nothing, infinite=nothing, singular=nothing, failed=nothing)
+def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
+    """The rows without repetitions, first ones kept."""
+    kept: list[int] = []
+    for k in range(len(x)):
+        size = 1.0 + np.abs(x[k]).max()
+        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
+            kept.append(k)
+    return x[kept]
 
 
 def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
-    multiple = distinct_solutions(ends.x[ends.singular], 1e-2)
+    multiple = _distinct(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
         x=ends.x[ends.regular],

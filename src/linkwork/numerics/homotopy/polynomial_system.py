@@ -10,20 +10,8 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, CountArray
 
-__all__ = [
-    "SAME_ROOT",
-    "STEPS_TO_REGULAR",
-    "ClosureSystem",
-    "PolynomialSystem",
-    "Roots",
-    "distinct_solutions",
-    "nearest_solution",
-    "polish_roots",
-    "solve_linear",
-]
+__all__ = ["PolynomialSystem", "Roots", "nearest_solution", "polish_roots", "solve_linear"]
 
-SAME_ROOT = 1e-6  # two solutions are the same one
-STEPS_TO_REGULAR = 6  # of Newton's method, at most: more mark a multiple solution
 _POLISH = 12  # steps of Newton's method at most
 
 
@@ -32,16 +20,6 @@ class PolynomialSystem(Protocol):
 
     def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
-
-
-class ClosureSystem(PolynomialSystem, Protocol):
-    """Polynomials that follow from closures, ``left`` (L, K) of U and ``right`` of V."""
-
-    @property
-    def left(self) -> ComplexArray: ...
-
-    @property
-    def right(self) -> ComplexArray: ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,15 +56,13 @@ class Roots:
     curves: ComplexArray
 
 
-def polish_roots(
-    system: PolynomialSystem, x: ComplexArray, most: int = _POLISH
-) -> tuple[ComplexArray, CountArray]:
+def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArray, CountArray]:
     """Newton's method from x (B, n) until nothing changes; the steps taken, -1 if it failed."""
     x = x.copy()
     steps = np.full(len(x), -1, dtype=np.int64)
     live = np.arange(len(x))
     last = np.full(len(x), np.inf)
-    for k in range(most):
+    for k in range(_POLISH):
         f, j = system.residual_and_jacobian(x[live])
         change = solve_linear(j, f[:, :, None])[:, :, 0]
         x[live] -= change
@@ -100,16 +76,6 @@ def polish_roots(
         if not len(live):
             break
     return x, steps
-
-
-def distinct_solutions(x: ComplexArray, same: float = SAME_ROOT) -> ComplexArray:
-    """The rows of (B, n) without repetitions, first ones kept."""
-    kept: list[int] = []
-    for k in range(len(x)):
-        size = 1.0 + np.abs(x[k]).max()
-        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
-            kept.append(k)
-    return x[kept]
 
 
 def solve_linear(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
