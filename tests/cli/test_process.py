@@ -167,9 +167,9 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
     start: Start, folder: Path, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
-    # 400 turns of a motion that does not repeat itself
+    # 1,000 turns of a motion that does not repeat itself
     (folder / "never.toml").write_text(NEVER, encoding="utf-8")
-    slow = ["sweep", "never.toml", "--from", "0", "--to", "144000", "--step", "300"]
+    slow = ["sweep", "never.toml", "--from", "0", "--to", "360000", "--step", "300"]
     shown = _in_terminal(slow, terminal)
     assert b"sweeping  [" in shown
     assert b"sweeping  [" not in shown.split(b"\x1b[?25h")[-1]  # the bar is gone at the end

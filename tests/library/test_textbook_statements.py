@@ -67,6 +67,9 @@ TEXTBOOK = {
         "its loop ground, K1, K2, K3: crank-rocker (GCRR): Grashof", 2,
     ),
     "balanced-lamp": (1, 1, "open two-link chain", "", 1),
+    "door-closer": (1, 1, "open two-link chain", "", 1),
+    "pendulum": (1, 1, "open two-link chain", "", 1),
+    "compressor": (1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns", 2),
     "beam-engine": (
         1, 1, "eight-link chain, 1 multiple pin",
         "its loop ground, crank, connecting_rod, beam: crank-rocker (GCRR): Grashof", 2,
