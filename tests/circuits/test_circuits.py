@@ -15,6 +15,7 @@ import linkwork as lw
 from linkwork.motion import circuit_list
 from linkwork.motion.circuit import walks
 from linkwork.motion.circuit.seeding import Seeding
+from linkwork.numerics.continuation import curve_proof
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 
@@ -248,7 +249,7 @@ def test_curves_of_bold_steps_without_a_proof_are_followed_again(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = lw.example(name).circuits().to_dict()
-    proofs, bold = walks.prove_curves, []
+    proofs, bold = curve_proof.prove_curves, []
 
     def refused(*arguments: Any, **options: Any) -> Any:
         found = proofs(*arguments, **options)
