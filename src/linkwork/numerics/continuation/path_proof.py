@@ -143,20 +143,15 @@ def prove_paths(
     """
     prover, allowance = Prover(solver, path, False), Allowance(most)
     prover = prover if halvings is None else replace(prover, halvings=halvings)
-    ends = np.cumsum([len(points.t) for points in paths]).tolist()
     found: list[ProvenPath] = []
-    while len(found) < len(paths):
-        first, begin = len(found), ends[len(found)] - len(paths[len(found)].t)
-        last = max(first + 1, int(np.searchsorted(ends, begin + _PIECE, side="right")))
-        strands = [
-            Strand(
-                begin=ends[k] - len(paths[k].t) - begin,
-                end=ends[k] - begin,
-                anchor=ends[k] - len(paths[k].t) - begin + anchors[k],
-            )
-            for k in range(first, last)
-        ]
-        whole = _piece(prover, SolvedRows.concatenate(paths[first:last]), strands, allowance)
+    for some in _groups([len(points.t) for points in paths]):
+        strands, begin = [], 0
+        for k in some:
+            end = begin + len(paths[k].t)
+            strands.append(Strand(begin=begin, end=end, anchor=begin + anchors[k]))
+            begin = end
+        points = SolvedRows.concatenate([paths[k] for k in some])
+        whole = _piece(prover, points, strands, allowance)
         for strand in strands:
             steps = slice(strand.begin, strand.end - 1)
             found.append(
@@ -167,6 +162,19 @@ def prove_paths(
                     given_up=whole.given_up[steps],
                 )
             )
+    return found
+
+
+def _groups(sizes: Sequence[int]) -> list[list[int]]:
+    """Consecutive numbers in groups whose sizes fit the cache."""
+    found: list[list[int]] = []
+    room = 0
+    for k, size in enumerate(sizes):
+        if size > room:
+            found.append([])
+            room = _PIECE
+        found[-1].append(k)
+        room -= size
     return found
 
 
