@@ -119,7 +119,7 @@ def simulate(
     if as_json:
         print_json(motion_data(motion, table))
     elif csv != "-":
-        page = simulation_lines(motion, names)
+        page = simulation_lines(motion, _inputs(mechanism), names)
         print_lines([*page, *(["", *written] if written else [])])
     if not motion.found.all():
         context.exit(1)
@@ -140,6 +140,10 @@ def _start_speed(given: tuple[str, ...]) -> Number | dict[str, Number]:
     return found
 
 
+def _inputs(mechanism: Mechanism) -> list[str]:
+    return [each.column for each in mechanism.description.inputs]
+
+
 def _list_equilibria(
     mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
 ) -> None:
@@ -151,7 +155,7 @@ def _list_equilibria(
 
 
 def _plotted(mechanism: Mechanism, motion: Motion, names: tuple[str, ...], path: str) -> str:
-    shown = names or tuple(each.column + ".velocity" for each in mechanism.description.inputs)
+    shown = names or tuple(f"{name}.velocity" for name in _inputs(mechanism))
     with progress("drawing"):
         picture.write(motion_plot(motion, shown), path)
     return f"Wrote {path}: {', '.join(shown)} over time."

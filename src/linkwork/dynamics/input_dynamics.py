@@ -160,8 +160,11 @@ class InputDynamics:
             code[:] = Certification.NO_BOUND.code
         elif certify and count:
             proof = prove(self.solver, v, np.zeros((count, len(self.size))))
-            # the motion between rows is followed by small steps, without proof
-            proved = Certification.MOTION_NOT_PROVED.code
+            # the motion between rows is followed by small steps, without proof; an open chain has
+            # one position only
+            closed = self.solver.unknowns > 0
+            proof_of = Certification.MOTION_NOT_PROVED if closed else Certification.CERTIFIED
+            proved = proof_of.code
             code = np.where(proof.holds, proved, Certification.POSITION_NOT_PROVED.code)
             radius = np.where(proof.holds, proof.radius, np.nan)
             unique = np.where(proof.holds, proof.least_uniqueness_radius, np.nan)

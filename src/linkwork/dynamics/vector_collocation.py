@@ -23,6 +23,7 @@ _MOST_ROUNDS = 12
 _SETTLED = 1e-14  # of the accelerations: a change that is rounding
 _UNSETTLED = 1e-10  # a larger change after all rounds: the iteration has failed
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
+_NOISE = 16.0  # roundings of a place in an acceleration
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
 
 #: Accelerations (B, p) at places (B, p), speeds (B, p) and times (B,).
@@ -68,15 +69,16 @@ def try_vector_step(
     a = np.repeat(acceleration(q[None], speed[None], np.array([t])), POINTS, axis=0)
     if not np.isfinite(a).all():
         return None, _SMALLEST * h
-    inverse = None
+    inverse, noise = None, 0.0
     for round_ in range(_MOST_ROUNDS):
         w = speed + h * (AT_SPEED @ a)
         place = q + h * C[:, None] * speed + h**2 * (AT_PLACE @ a)
         if inverse is None or round_ == _MOST_ROUNDS // 2:
-            found, jacobian = _linearise(acceleration, place, w, times, h)
+            found, jacobian, steepest = _linearise(acceleration, place, w, times, h)
             if not np.isfinite(jacobian).all():
                 return None, _SMALLEST * h
             inverse = np.linalg.inv(jacobian)
+            noise = _NOISE * EPSILON * (1.0 + np.abs(place).max()) * steepest
         else:
             found = acceleration(place, w, times)
         if not np.isfinite(found).all():
@@ -84,10 +86,10 @@ def try_vector_step(
         change = (inverse @ (found - a).ravel()).reshape(a.shape)
         a = a + change
         size = np.abs(a).max() + np.abs(speed).max() / abs(h)
-        if np.abs(change).max() <= _SETTLED * POINTS * size:
+        if np.abs(change).max() <= max(_SETTLED * POINTS * size, noise):
             break
     else:
-        if np.abs(change).max() > _UNSETTLED * size:
+        if np.abs(change).max() > max(_UNSETTLED * size, noise):
             return None, 0.5 * h
     tail, largest = float(np.abs((FIT @ a)[-2:]).max()), float(np.abs(a).max())
     scale = max(float(np.abs(speed).max()), abs(h) * largest)
@@ -95,22 +97,24 @@ def try_vector_step(
     factor = _LARGEST
     if error > 0.0:
         factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS))
-    # positions are solved to rounding, which a shorter step does not reduce
-    noise = largest > 0.0 and tail < math.sqrt(EPSILON) * 1e-3 * largest
-    if error > 30.0 * _TOLERANCE and not noise:
+    # accelerations follow places to rounding, which a shorter step does not reduce
+    if error > 30.0 * _TOLERANCE and tail > noise:
         return None, max(_SMALLEST, min(factor, 0.7)) * h
+    factor = max(factor, 1.0) if tail <= noise else factor
     step = VectorStep(t=t, h=h, q=q, speed=speed, accelerations=a)
     return step, max(factor, _SMALLEST) * h
 
 
 def _linearise(
     acceleration: Acceleration, place: Array, w: Array, times: Array, h: float
-) -> tuple[Array, Array]:
-    """Accelerations at all points, and the Jacobian of the collocation equations, (np, np)."""
+) -> tuple[Array, Array, float]:
+    """Accelerations at all points, the Jacobian of the collocation equations, (np, np), and the
+    largest derivative by a place.
+    """
     count, p = place.shape
     eps = math.sqrt(EPSILON)
-    # of the way of the step, so that units of time change nothing
-    ds = eps * (max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps) or 1.0)
+    # places are radians and longest links
+    ds = eps * max(float(np.abs(h * w).max()), 1.0)
     dw = eps * max(float(np.abs(w).max()), abs(ds / h))
     one = np.eye(p)
     places = [place] + [place + ds * each for each in one] + [place] * p
@@ -126,4 +130,4 @@ def _linearise(
         - np.einsum("iab,ij->iajb", by_place, h**2 * AT_PLACE)
         - np.einsum("iab,ij->iajb", by_speed, h * AT_SPEED)
     )
-    return many[0], jacobian.reshape(count * p, count * p)
+    return many[0], jacobian.reshape(count * p, count * p), float(np.abs(by_place).max())

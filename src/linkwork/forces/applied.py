@@ -30,8 +30,8 @@ __all__ = ["AppliedLoads", "Body", "time_of"]
 class Body:
     """A mass in motion: its weight and inertia as a force and a torque, (B,) each.
 
-    ``centre`` in the link's frame, ``place`` at rest on ground; ``mass`` and ``inertia`` in units of
-    force; the rates are those of its weight's work and of its kinetic energy.
+    ``centre`` in the link's frame, ``place`` at rest on ground; ``mass`` and ``inertia`` in the
+    unit of force; the rates are those of its weight's work and of its kinetic energy.
     """
 
     link: str
