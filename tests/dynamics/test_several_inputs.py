@@ -45,7 +45,7 @@ def _arm(size: float, unit: str, **more: Any) -> lw.Mechanism:
             "long": lw.Mass(mass=0.5, center=(0.2 * size, 0.05 * size), inertia=0.01 * size**2),
         },
         "gravity": lw.Gravity(),
-        "loads": [lw.Load(point="P", force=("4*(t < 0.05)", 1))],
+        "loads": [lw.Load(point="P", force=("4*(t < 0.06)", 1))],
         "inputs": (
             lw.Input(link="left", inertia=0.1 * size**2),
             lw.Input(link="right", motor=lw.Motor(stall=0.5 * size, free_speed="60 rpm")),
@@ -68,7 +68,7 @@ def _double_pendulum(_: float, y: Any) -> list[float]:
 def test_a_double_pendulum_is_that_of_lagrange() -> None:
     """By SciPy from the textbook's equations; the energy is constant."""
     motion = lw.example("double-pendulum").simulate(
-        until=2, step=0.5, start_speed={"upper": "2 rad/s"}
+        until=2, step=1, start_speed={"upper": "2 rad/s"}
     )
     start = [-math.pi / 4, 0.0, 2.0, 0.0]
     oracle = solve_ivp(
@@ -104,12 +104,13 @@ def test_a_closed_loop_keeps_its_balance_and_its_units() -> None:
     for name in ("left", "right", "left.velocity"):
         assert millimetres[name] == pytest.approx(metres[name], rel=1e-11)
     assert "switch" in metres.limit
-    assert metres["t"][list(metres.limit).index("switch")] == pytest.approx(0.05, abs=1e-15)
+    assert metres["t"][list(metres.limit).index("switch")] == pytest.approx(0.06, abs=1e-15)
     # the free inputs: of one a flywheel resists, the other has its motor alone
+    asked = metres.asked
     flywheel = -0.1 * metres["left.acceleration"]
-    assert metres["left.effort"] == pytest.approx(flywheel, abs=1e-10)
+    assert metres["left.effort"][asked] == pytest.approx(flywheel[asked], abs=1e-10)
     torque = 0.5 * (1 - metres["right.velocity"] / (2 * math.pi))
-    assert metres["right.effort"] == pytest.approx(torque, abs=1e-10)
+    assert metres["right.effort"][asked] == pytest.approx(torque[asked], abs=1e-10)
     assert metres["disagreement"].max() < 1e-11
 
 
@@ -128,7 +129,7 @@ def test_a_stop_ends_the_motion_where_it_is_hit() -> None:
 def test_a_stretched_arm_ends_the_motion() -> None:
     """The inputs do not lead beyond the place at which both rods are in line."""
     speeds = {"left": "3 rad/s", "right": "-3 rad/s"}
-    motion = _arm(1.0, "m", gravity=None).simulate(until=2, step=0.1, start_speed=speeds)
+    motion = _arm(1.0, "m", gravity=None).simulate(until=1, step=0.1, start_speed=speeds)
     assert "the motion ends at t = " in motion.message
     assert "left = " in motion.message
     assert "dead point" in motion.message
@@ -144,7 +145,7 @@ def test_a_stretched_arm_ends_the_motion() -> None:
         ),
         ({}, {"change_points": "straight"}, "stops at change points"),
         ({}, {"start_speed": 1}, "name the start speed of each"),
-        ({}, {"start_speed": {"bra": 1}}, "bra"),
+        ({}, {"start_speed": {"bra": 1}}, 'no input "bra"'),
         ({"masses": {"cart": lw.Mass(mass=3)}}, {}, "without moving a mass"),
         ({"masses": {}}, {}, "has mass"),
         ({"stops": [lw.Stop(of="d", start=5.5)]}, {"at": {"d": 5, "bar": -90}}, "beyond its stop"),

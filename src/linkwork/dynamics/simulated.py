@@ -62,7 +62,9 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
     speeds = np.zeros(len(names))
     for name, value in wanted.items():
         if name not in known:
-            raise InputError(f"start speed: {choices('inputs', names, name)}")
+            raise InputError(
+                f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
+            )
         k = known[name]
         kind = description.inputs[k].drives[0]
         try:

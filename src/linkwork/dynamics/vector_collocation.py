@@ -24,7 +24,7 @@ _SETTLED = 1e-14  # of the accelerations: a change that is rounding
 _UNSETTLED = 1e-10  # a larger change after all rounds: the iteration has failed
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
 _NOISE = 16.0  # roundings of a place in an acceleration
-_LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
+_LARGEST, _SMALLEST, _SAFETY, _GROWTH = 3.0, 0.2, 0.8, 1.5
 
 #: Accelerations (B, p) at places (B, p), speeds (B, p) and times (B,).
 Acceleration = Callable[[Array, Array, Array], Array]
@@ -100,7 +100,7 @@ def try_vector_step(
     # accelerations follow places to rounding, which a shorter step does not reduce
     if error > 30.0 * _TOLERANCE and tail > noise:
         return None, max(_SMALLEST, min(factor, 0.7)) * h
-    factor = max(factor, 1.0) if tail <= noise else factor
+    factor = max(factor, _GROWTH) if tail <= noise else factor
     step = VectorStep(t=t, h=h, q=q, speed=speed, accelerations=a)
     return step, max(factor, _SMALLEST) * h
 
