@@ -48,8 +48,9 @@ class InputDynamics:
         given = [each.inertia for each in own.inputs]
         self._inertia = np.array([0.0 if x is None else own.numbers(x) * unit for x in given])
         self._motors = [
-            each.motor
-            and each.motor.curve("link" if kind == "angle" else "slider", own.numbers, own.length)
+            None
+            if each.motor is None
+            else each.motor.curve("link" if kind == "angle" else "slider", own.numbers, own.length)
             for each, kind in zip(own.inputs, kinds, strict=True)
         ]
 
@@ -137,7 +138,8 @@ class InputDynamics:
             total = total + body.mass * np.einsum("jb,kb->bjk", moved.conj(), moved).real
             own = np.asarray(body.inertia) * np.ones(geometry.rows)
             total = total + np.einsum("b,jb,kb->bjk", own, turned, turned)
-        return total * np.outer(self.size, self.size)
+        scaled: Array = total * np.outer(self.size, self.size)
+        return scaled
 
     def _motor_torques(self, speed: Array) -> Array:
         scale = self.reduction.model.input_scale
@@ -150,9 +152,8 @@ class InputDynamics:
     def rows(self, q: Array, speed: Array, bend: Array, t: Array, certify: bool) -> SolvedRows:
         """Positions with their rates in time, the time behind the variables; found ones only."""
         v, found = self.positions(q)
-        status = np.full(len(v), CONVERGED, dtype=np.int8)
         count = int(np.argmin(found)) if not found.all() else len(v)
-        v, q, speed, bend, t, status = (x[:count] for x in (v, q, speed, bend, t, status))
+        v, q, speed, bend, t = (x[:count] for x in (v, q, speed, bend, t))
         rates = self.solver.rates(v, speed * self.size, None, bend * self.size)
         code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
         radius = unique = np.full(count, np.nan)
@@ -174,7 +175,7 @@ class InputDynamics:
             v=np.column_stack([v, t]),
             first=np.column_stack([rates.first, one]),
             second=np.column_stack([rates.second, 0.0 * one]),
-            status=status,
+            status=np.full(count, CONVERGED, dtype=np.int8),
             iterations=np.zeros(count, dtype=np.int64),
             residual=self.solver.residual(v),
             condition=rates.condition.copy(),
