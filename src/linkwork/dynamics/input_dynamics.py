@@ -126,7 +126,8 @@ class InputDynamics:
         v, zero = self._at[None], np.zeros((1, len(self._at)))
         applied = AppliedLoads(self.reduction.geometry(v, zero, zero, np.zeros(1)), 1.0)
         applied.weigh(self.reduction.description)
-        return self._masses(applied)[0]
+        found: Array = self._masses(applied)[0]
+        return found
 
     def _masses(self, applied: AppliedLoads) -> Array:
         """The matrices of masses, (B, p, p)."""
