@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -55,6 +56,17 @@ class Event:
 Margins = Callable[[Array, Array, Array], Array]
 
 
+class Between(Protocol):
+    """A step of one number or several, with the states between its ends."""
+
+    @property
+    def t(self) -> float:
+        """Its beginning."""
+
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
+        """States and accelerations at times (B,)."""
+
+
 def margins_on(
     leg: ReducedLeg, bounds: Sequence[Bound], rubbing: Rubbing | None, gain: Array
 ) -> Margins:
@@ -89,7 +101,7 @@ def shorter_step(step: Step, low: float, high: float) -> float | None:
     return max(within, 0.5 * float(times[k] - step.t))
 
 
-def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> Event | None:
+def first_event(step: Between, end: float, margins: Margins, comparisons: int) -> Event | None:
     """The first sign change of margins (B, K) on a step up to the time ``end``.
 
     All but the last ``comparisons`` margins count only where they become negative.
@@ -113,7 +125,7 @@ def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> E
 
 
 def _located(
-    step: Step, margins: Margins, number: int, times: Array, values: Array
+    step: Between, margins: Margins, number: int, times: Array, values: Array
 ) -> tuple[float, float]:
     """Just before and just after the sign change between two times."""
     (low, high), (below, above) = times.tolist(), values.tolist()

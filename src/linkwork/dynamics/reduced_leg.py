@@ -178,10 +178,4 @@ class ReducedLeg:
         """Left minus right side of all comparisons, (B, comparisons)."""
         moving = self.state(s, speed, t, gain).moving
         applied = AppliedLoads(moving, 1.0, switches=self.reduction.switches)
-        return np.stack(
-            [
-                applied.formula(each.left) - applied.formula(each.right)
-                for each in self.reduction.comparisons
-            ],
-            axis=1,
-        )
+        return np.stack(self.reduction.margins(applied), axis=1)

@@ -138,6 +138,20 @@ class Reduction:
         kind = "link" if self.model.equations.inputs[0].kind == "angle" else "slider"
         return self.motor.curve(kind, own.numbers, own.length)
 
+    def margins(self, applied: AppliedLoads) -> list[Array]:
+        """Left minus right side of all comparisons, (B,) each."""
+        formula = applied.formula
+        return [formula(each.left) - formula(each.right) for each in self.comparisons]
+
+    def switch(self, margins: Sequence[float]) -> None:
+        """Let every comparison have the value that belongs to its margin."""
+        values: dict[Node, float] = {}
+        for each, margin in zip(self.comparisons, margins, strict=True):
+            over = margin >= 0.0 if each.operator == ">=" else margin > 0.0
+            under = margin <= 0.0 if each.operator == "<=" else margin < 0.0
+            values[each] = float(over if each.operator.startswith(">") else under)
+        self.switches = FrozenDict(values)
+
     def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
         """Rows (B, N) with derivatives by time, or by a leader."""
         return Geometry(self.named, self._rows(v, first, second, t))

@@ -16,7 +16,6 @@ from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.dynamics.reduction import Reduction
 from linkwork.dynamics.sample import Sample
 from linkwork.dynamics.stiction import release, starting_directions
-from linkwork.expression.tree import Node
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 
@@ -205,13 +204,7 @@ class Travel:
             return
         s, speed, t = (np.array([x]) for x in (self.s, self.speed, self.t))
         self.reduction.switches = FrozenDict()
-        margins = self.leg.margins(s, speed, t, self.gain)[0]
-        values: dict[Node, float] = {}
-        for each, margin in zip(self.reduction.comparisons, margins, strict=True):
-            over = margin >= 0.0 if each.operator == ">=" else margin > 0.0
-            under = margin <= 0.0 if each.operator == "<=" else margin < 0.0
-            values[each] = float(over if each.operator.startswith(">") else under)
-        self.reduction.switches = FrozenDict(values)
+        self.reduction.switch(self.leg.margins(s, speed, t, self.gain)[0].tolist())
 
     def _check_chatter(self) -> None:
         self.recent = [t for t in self.recent if t > self.t - _CHATTER * self.until] + [self.t]
