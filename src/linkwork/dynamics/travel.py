@@ -219,9 +219,12 @@ class Travel:
             return
         self.ended = "a comparison in a load switches without end there"
         fastest = max(abs(sample.speed) for sample in self.samples)
-        if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
+        # a motion that only began had no speed: what the loads give in that time
+        slow = max(_AT_REST * fastest, abs(self._now()) * _CHATTER * self.until)
+        if "t" not in self.reduction.names and abs(self.speed) < slow:
             # pushed back as soon as it moves either way: it stays
-            self.ended, self.held = "", self.recent[0]
+            since = self.recent[0]
+            self.ended, self.held = "", since if since > _SHORTEST * self.until else 0.0
             self.holder = "a load that switches there"
             chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
             self.samples = [k for k in self.samples if k not in chatter]
