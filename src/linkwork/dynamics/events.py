@@ -82,7 +82,9 @@ def margins_on(
             found += [rubbing.direction * speed]
             found += [*leg.friction_margins(s, speed, t, gain, rubbing).T]
         if leg.reduction.comparisons:
-            found += [*leg.margins(s, speed, t, gain).T]
+            # a margin is positive exactly where "<" is true, or ">=" is not: 0 is on its right side
+            signs = [-1.0 if k.operator in ("<", ">=") else 1.0 for k in leg.reduction.comparisons]
+            found += [*(leg.margins(s, speed, t, gain) * signs).T]
         return np.stack(found, axis=1)
 
     return margins
@@ -107,7 +109,10 @@ def first_event(step: Between, end: float, margins: Margins, comparisons: int) -
     All but the last ``comparisons`` margins count only where they become negative.
     """
     times = np.linspace(step.t, end, _LOOKS + 1)
-    values = margins(*step.at(times)[:2], times)
+    s, speed, _ = step.at(times)
+    # the polynomials meet their beginning only to rounding, which must hide no switch at rest
+    s[0], speed[0] = step.s, step.speed
+    values = margins(s, speed, times)
     falling = np.arange(values.shape[1]) < values.shape[1] - comparisons
     changes = (values[1:] > 0.0) != (values[:-1] > 0.0)
     changes &= ~falling | (values[:-1] > 0.0)
@@ -131,7 +136,8 @@ def _located(
     (low, high), (below, above) = times.tolist(), values.tolist()
     for _ in range(_ROUNDS):
         width = high - low
-        if width <= 4.0 * np.spacing(max(abs(low), abs(high))):
+        # at t = 0 the step gives the scale
+        if width <= 4.0 * np.spacing(max(abs(low), abs(high), step.h)):
             break
         guess = low + width * below / (below - above)
         # around the place on the straight line, and in the middle if that is of no use

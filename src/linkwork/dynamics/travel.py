@@ -212,9 +212,10 @@ class Travel:
             return
         self.ended = "a comparison in a load switches without end there"
         fastest = max(abs(sample.speed) for sample in self.samples)
-        if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
-            # pushed back as soon as it moves either way: it stays
-            self.ended, self.held = "", self.recent[0]
+        slow = max(_AT_REST * fastest, abs(self._now()) * _CHATTER * self.until)
+        if "t" not in self.reduction.names and abs(self.speed) < slow:
+            # pushed back either way, also at a speed that the loads give in that time: it stays
+            self.ended, self.held = "", self.recent[0] * (self.recent[0] > _SHORTEST * self.until)
             self.holder = "a load that switches there"
             chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
             self.samples = [k for k in self.samples if k not in chatter]
