@@ -38,6 +38,7 @@ TEXTBOOK = {
     "stephenson-far-crank": (1, 1, "Stephenson chain", "Stephenson III", 3),
     "jansen-leg": (1, 1, "eight-link chain, 3 multiple pins", "", 2),
     "peaucellier": (1, 1, "eight-link chain, 4 multiple pins", "", 2),
+    "double-pendulum": (2, 2, "open three-link chain", "", None),
     "double-butterfly": (1, 1, "eight-link chain no. 5 of 16 (4 ternary links)", "", 3),
     "five-bar-robot": (2, 2, "five-bar chain", "", 2),
     "three-rpr": (3, 3, "eight-link chain with 3 degrees of freedom, 3 prismatic joints", "", 3),

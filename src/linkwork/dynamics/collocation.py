@@ -63,6 +63,11 @@ class Step:
     speed: float
     accelerations: Array
 
+    @property
+    def start(self) -> tuple[float, float]:
+        """The state at its beginning."""
+        return self.s, self.speed
+
     @cached_property
     def _coefficients(self) -> Array:
         """Of the place beyond that at constant speed, the gained speed, the acceleration."""

@@ -63,6 +63,14 @@ class Between(Protocol):
     def t(self) -> float:
         """Its beginning."""
 
+    @property
+    def h(self) -> float:
+        """Its length."""
+
+    @property
+    def start(self) -> tuple[float, float] | tuple[Array, Array]:
+        """The state at its beginning."""
+
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """States and accelerations at times (B,)."""
 
@@ -82,9 +90,7 @@ def margins_on(
             found += [rubbing.direction * speed]
             found += [*leg.friction_margins(s, speed, t, gain, rubbing).T]
         if leg.reduction.comparisons:
-            # a margin is positive exactly where "<" is true, or ">=" is not: 0 is on its right side
-            signs = [-1.0 if k.operator in ("<", ">=") else 1.0 for k in leg.reduction.comparisons]
-            found += [*(leg.margins(s, speed, t, gain) * signs).T]
+            found += [*leg.margins(s, speed, t, gain).T]
         return np.stack(found, axis=1)
 
     return margins
@@ -111,7 +117,7 @@ def first_event(step: Between, end: float, margins: Margins, comparisons: int) -
     times = np.linspace(step.t, end, _LOOKS + 1)
     s, speed, _ = step.at(times)
     # the polynomials meet their beginning only to rounding, which must hide no switch at rest
-    s[0], speed[0] = step.s, step.speed
+    s[0], speed[0] = step.start
     values = margins(s, speed, times)
     falling = np.arange(values.shape[1]) < values.shape[1] - comparisons
     changes = (values[1:] > 0.0) != (values[:-1] > 0.0)

@@ -40,6 +40,11 @@ class VectorStep:
     speed: Array
     accelerations: Array
 
+    @property
+    def start(self) -> tuple[Array, Array]:
+        """The state at its beginning."""
+        return self.q, self.speed
+
     @cached_property
     def _coefficients(self) -> Array:
         """Of the place beyond that at constant speed, the gained speed, the acceleration."""
@@ -72,7 +77,7 @@ def try_vector_step(
     inverse, noise = None, 0.0
     for round_ in range(_MOST_ROUNDS):
         w = speed + h * (AT_SPEED @ a)
-        place = q + h * C[:, None] * speed + h**2 * (AT_PLACE @ a)
+        place = q + h * C[:, None] * speed + h**2 * (AT_PLACE @ a)  # eq. (97)
         if inverse is None or round_ == _MOST_ROUNDS // 2:
             found, jacobian, steepest = _linearise(acceleration, place, w, times, h)
             if not np.isfinite(jacobian).all():
