@@ -147,8 +147,13 @@ WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = 
 }
 
 
-def run(name: str, count: int | None = None) -> Report:
-    """Run a campaign on all cores; ``count`` replaces its usual size."""
+def run(
+    name: str, count: int | None = None, progress: Callable[[int, int], None] | None = None
+) -> Report:
+    """Run a campaign on all cores; ``count`` replaces its usual size.
+
+    ``progress`` is called with the number of finished parts and of all parts.
+    """
     begin = perf_counter()
     if name in WHOLE:
         whole, usual = WHOLE[name]
@@ -159,7 +164,9 @@ def run(name: str, count: int | None = None) -> Report:
     parts = range(-(-(count or usual) // part))
     counts, false = Counter(), []
     with ProcessPoolExecutor() as pool:
-        for part_counts, part_false in pool.map(work, parts):
+        for done, (part_counts, part_false) in enumerate(pool.map(work, parts), start=1):
             counts += part_counts
             false += part_false
+            if progress is not None:
+                progress(done, len(parts))
     return Report(counts, tuple(false), perf_counter() - begin)

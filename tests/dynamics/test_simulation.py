@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from typing import Any
 
@@ -10,8 +9,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from benchmarks.motions.machines import SQUEEZER_ANGLE, WINDOW_PLACES, squeezer, windows
 from linkwork.dynamics.simulation import simulate
-from linkwork.mechanism.loops import Loops
 
 PENDULUM: dict[str, Any] = {
     "length": "m",
@@ -46,83 +45,15 @@ def test_a_pendulum_is_that_of_the_benchmark() -> None:
     assert np.abs(motion["bar.effort"]).max() < 1e-12
 
 
-def windows(count: int) -> lw.Mechanism:
-    """IFToMM A02: rods of 1 m and 1 kg."""
-    points: dict[str, Any] = {}
-    links: dict[str, Any] = {"ground": [f"A{k}" for k in range(count + 1)]}
-    for k in range(count + 1):
-        points[f"A{k}"], points[f"B{k}"] = (k, 0), (k, 1)
-        links[f"r{k}"] = [f"A{k}", f"B{k}"]
-    for k in range(count):
-        links[f"h{k}"] = [f"B{k}", f"B{k + 1}"]
-    masses = {link: lw.Mass(mass=1, shape="rod") for link in links if link != "ground"}
-    return lw.linkage(
-        length="m", points=points, links=links, masses=masses, gravity=lw.Gravity(),
-        inputs=lw.Input(link="r0"),
-    )  # fmt: skip
-
-
-BENCHMARK = {
-    2: {1: (-0.195020301949435152, -0.980799205662173821),
-        5: (-0.811310461005107567, -0.584615545348975333),
-        10: (0.328458111540815498, 0.944518538178600921)},
-    40: {1: (-0.115356880632109982, -0.993324111300450176),
-         5: (-0.540190050675526618, -0.841543052464442834),
-         10: (0.180512226686728532, 0.983572740582311549)},
-}  # fmt: skip
-
-
 @pytest.mark.parametrize("count", [2, pytest.param(40, marks=pytest.mark.extended)])
 def test_four_bars_in_a_row_pass_the_flat_position_twice_a_turn(count: int) -> None:
     motion = windows(count).simulate(
         until=10, step=1, start_speed="-1 rad/s", change_points="straight"
     )
     assert motion.found.all()
-    for t, (x, y) in BENCHMARK[count].items():
+    for t, (x, y) in WINDOW_PLACES[count].items():
         assert motion["B0.x"][t] == pytest.approx(x, abs=1e-10)
         assert motion["B0.y"][t] == pytest.approx(y, abs=1e-10)
-
-
-def squeezer() -> lw.Mechanism:
-    """Andrews' squeezer with the masses and the spring of the Test Set for IVP Solvers."""
-    base = lw.example("andrews-squeezer")
-    own = base.description
-    assert isinstance(own, Loops)
-    place = base.solve()
-    u, zf, zt, e, rr = 0.04, 0.02, 0.04, 0.02, 0.007
-    beta, theta, gamma, phi, delta, omega, eps = (
-        cmath.exp(1j * place[name]) for name in ("β", "Θ", "γ", "Φ", "δ", "Ω", "ε")
-    )
-    points = {name: complex(*xy) for name, xy in place.points.items()}
-    a, b = points["A"], points["B"]
-    centres = [
-        0.00092 * beta,
-        rr * beta - 0.0115 * beta * theta,
-        b + (0.01043 - 0.01874j) * gamma,
-        a + zt * delta - 1j * (e - 0.01421) * phi * delta,
-        a + (0.02308 + 0.00916j) * delta,
-        a - 1j * u * eps + (zf - 0.01421) * omega * eps,
-        a - (0.00449 + 0.01228j) * eps,
-    ]
-    mass = [0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498]
-    inertia = [2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5]
-    masses = {}
-    for k, centre in enumerate(centres):
-        first, second = (points[p] for p in own.links[f"K{k + 1}"][:2])
-        z = (centre - first) / ((second - first) / abs(second - first))
-        masses[f"K{k + 1}"] = lw.Mass(mass=mass[k], center=(z.real, z.imag), inertia=inertia[k])
-    stretch = "hypot(D.x - 0.014, D.y - 0.072)"
-    pull = f"-4530*({stretch} - 0.07785)/{stretch}"
-    return base.changed(
-        points={**own.points, "D": "B + (0.02 - i*0.018)*e^(i*γ)"},
-        links={**own.links, "K3": ("B", "F", "D")},
-        masses=masses,
-        loads=(
-            lw.Load(point="D", link="K3", force=(f"{pull}*(D.x - 0.014)", f"{pull}*(D.y - 0.072)")),
-            lw.Load(link="K1", torque=0.033),
-        ),
-        inputs=lw.Input(variable="β"),
-    )
 
 
 def test_the_squeezer_is_that_of_the_test_set() -> None:
@@ -139,7 +70,7 @@ def test_the_squeezer_is_that_of_the_test_set() -> None:
         assert motion[name][-1] == pytest.approx(value, abs=1e-8)
     # two other methods agree on these
     converged = {
-        "β": 15.81077119515, "Θ": -15.7563710584, "γ": 0.0408222401196, "Φ": -0.534730116342,
+        "β": SQUEEZER_ANGLE, "Θ": -15.7563710584, "γ": 0.0408222401196, "Φ": -0.534730116342,
         "δ": 0.52440996588, "Ω": 0.534730116342, "ε": 1.04808074104194,
     }  # fmt: skip
     for name, value in converged.items():
