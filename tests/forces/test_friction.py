@@ -18,7 +18,7 @@ from linkwork.textfile.renaming import rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.writer import write_text
 from tests.described import described_as
-from tests.forces.random_loads import loaded
+from tests.forces.random_loads import loaded, rubbed
 
 CRANK, ROD, LOAD = 200.0, 800.0, 100.0
 
@@ -238,22 +238,6 @@ RUBBING = (
     "slider-crank", "whitworth", "geared-five-bar", "rack-and-pinion", "elliptical-gears",
     "cam-swinging-follower", "curved-slot", "stephenson-valve-gear", "toggle-press", "scotch-yoke",
 )  # fmt: skip
-
-
-def rubbed(mechanism: lw.Mechanism, mu: float) -> lw.Mechanism:
-    """A copy with friction in every joint that can have it."""
-    given = described_as(Linkage, mechanism)
-    size = mechanism.model.equations.length_scale
-    friction: dict[str, lw.Friction] = {}
-    for point in given.points:
-        if len(list(given.bodies_at(point))) > 1:
-            friction[point] = lw.Friction(mu=mu, radius=0.02 * size)
-    for part in given.parts:
-        sizes = part.friction_sizes
-        if part.names and sizes is not None:
-            kept = {"radius": 0.01 * size} if "radius" in sizes else {}
-            friction[part.label] = lw.Friction(mu=mu, **kept)
-    return mechanism.changed(friction=friction)
 
 
 @pytest.mark.parametrize("name", RUBBING)
