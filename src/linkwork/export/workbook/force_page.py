@@ -26,11 +26,14 @@ _SPAN = "((x1-x0)^2+(y1-y0)^2)"
 
 @dataclass
 class ForceColumns:
-    """The keys of what acts: (point, link, x, y) of forces, (link, key) of torques."""
+    """The keys of what acts: (point, link, x, y) of forces, (link, key) of torques; the names of
+    efforts by key.
+    """
 
     forces: list[tuple[str, str | None, str, str]] = field(default_factory=list)
     torques: list[tuple[str, str]] = field(default_factory=list)
     masses: list[str] = field(default_factory=list)
+    efforts: dict[str, str] = field(default_factory=dict)
     of: dict[str, int] = field(default_factory=dict)
 
 
@@ -330,4 +333,5 @@ class _Page:
         kind = Kind.FORCE if lead.kind == "length" else Kind.MOMENT
         shown = f"{lead.name}.effort"
         self.groups.append(("Virtual work", self.end, self.end))
+        self.columns.efforts["effort"] = shown
         self._add("effort", shown, self.book.model.units.of(kind), text, names)
