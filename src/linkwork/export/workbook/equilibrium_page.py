@@ -20,6 +20,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.results.quantity import Kind
 
 __all__ = ["EQUILIBRIUM", "write_equilibrium"]
 
@@ -48,12 +49,15 @@ class _Page:
         found = np.flatnonzero(self.book.iterations.found)
         self.shown = int(found[len(found) // 6])
         self.bodies = [link for link in self.linkage.links if link != GROUND]
+        units = self.book.model.units
+        self.length, force = units.of(Kind.LENGTH), units.of(Kind.FORCE)
+        self.sums = tuple(zip(_ROWS, (force, force, units.of(Kind.MOMENT)), strict=True))
 
     def write(self) -> None:
         """Write points, lines, loads, the linear equations, and the free bodies."""
         book, sheet = self.book, self.sheet
         book.title(sheet, "equilibrium in one row")
-        for column, width in enumerate((26, 14, 14, 14, *[11] * 60)):
+        for column, width in enumerate((26, 14, 14, 14, *[13] * 60)):
             sheet.set_column(column, column, width)
         sheet.write(1, 0, "The row is chosen on the sheet Drawing.", book.style["note"])
         sheet.write(2, 0, "row shown", book.style["head_left"])
@@ -90,15 +94,22 @@ class _Page:
     def _value(self, key: str) -> float:
         return float(self.book.over_rows(self.book.values[key])[self.shown])
 
-    def _heads(self, *titles: str) -> None:
+    def _heads(self, first: str, *titles: tuple[str, str]) -> None:
+        """A line of headings, and one of their units if there are any."""
+        style = self.book.style
         self.row += 1
-        for column, title in enumerate(titles):
-            style = self.book.style["head" if column else "head_left"]
-            self.sheet.write(self.row, column, title, style)
+        self.sheet.write(self.row, 0, first, style["head_left"])
+        for column, (title, _) in enumerate(titles, start=1):
+            self.sheet.write(self.row, column, title, style["head"])
         self.row += 1
+        if any(unit for _, unit in titles):
+            self.sheet.write(self.row, 0, "", style["unit"])
+            for column, (_, unit) in enumerate(titles, start=1):
+                self.sheet.write(self.row, column, unit, style["unit"])
+            self.row += 1
 
     def _points(self) -> None:
-        self._heads("point", "x", "y")
+        self._heads("point", *zip("xy", [self.length] * 2, strict=True))
         self.at: dict[str, tuple[Entry, Entry]] = {}
         for point in self.book.closure.points:
             self.sheet.write(self.row, 0, point)
@@ -117,7 +128,7 @@ class _Page:
         }
         lines |= {own.name: own.between for own in self.linkage.of(Cylinder)}
         if lines:
-            self._heads("line", "along x", "along y")
+            self._heads("line", ("along x", ""), ("along y", ""))
         self.along: dict[str, tuple[Entry, Entry]] = {}
         for name, (start, end) in lines.items():
             ends = self._coordinates({"a": start, "b": end})
@@ -127,7 +138,10 @@ class _Page:
         self.way: dict[str, tuple[Entry, Entry]] = {}
         for k, contact in enumerate(contacts(self.linkage)):
             if not k:
-                self._heads("contact", "x", "y", "along x", "along y")
+                self._heads(
+                    "contact", ("x", self.length), ("y", self.length), ("along x", ""),
+                    ("along y", ""),
+                )  # fmt: skip
             names = self._coordinates(contact.points)
             self.at[contact.name] = self._vector(contact.name, 1, contact.place, names)
             self.way[contact.name] = self._vector(contact.name, 3, contact.way, names)
@@ -157,7 +171,7 @@ class _Page:
 
     def _loads(self) -> Iterator[tuple[str, Act]]:
         """Masses, forces and torques in the row, with what they are called."""
-        self._heads("load", "force x", "force y", "moment", "at x", "at y")
+        self._heads("load", *self.sums, ("at x", self.length), ("at y", self.length))
         carriers = self.linkage.carriers()
         for link in self.columns.masses:
             keys = [f"{link} force x", f"{link} force y", f"{link} torque"]
@@ -210,8 +224,10 @@ class _Page:
         """The matrix, the loads, and the solution."""
         unknowns, followers = reactions.unknowns, reactions.followers
         size = len(unknowns)
-        heads = [*(own.name for own in unknowns), "b", *(own.name for own in followers)]
-        self._heads("W r + b = 0", *heads, *["b with these"] * bool(followers))
+        heads = [*((own.name, "") for own in unknowns), ("loads" if followers else "b", "")]
+        if followers:  # these follow from the unknowns under the loads alone
+            heads += [*((own.name, "") for own in followers), ("b", "")]
+        self._heads("W r + b = 0", *heads)
         top = self.row
         acts = [
             *(own.acts for own in unknowns),
@@ -258,7 +274,8 @@ class _Page:
                 ]
                 self._write(row - 1, side, Entry("+".join(terms), value))
         solution = _solution(matrix, total)
-        self._heads("reaction", "value", "unit")
+        self._heads("reaction", ("value", ""))
+        self.sheet.write(self.row - 1, 2, "unit", self.book.style["head_indented"])
         assert self.row == first
         self.solved: dict[str, Entry] = {}
         for k, unknown in enumerate(unknowns):
@@ -273,9 +290,11 @@ class _Page:
             self._result(
                 reading.name, reading.unit, computed(reading.text, {**names, **reading.names})
             )
+        units = {own.name: own.unit for own in unknowns}
         for key, name in self.columns.efforts.items():
             self.sheet.write(self.row, 0, f"{name} by virtual work")
             self._pick(FORCES, self.columns.of[key], self._value(key), (self.row, 1))
+            self.sheet.write(self.row, 2, units[name], self.book.style["unit_right"])
             self.row += 1
 
     def _result(self, name: str, unit: str, entry: Entry) -> None:
@@ -295,18 +314,19 @@ class _Page:
         return f"-SUMPRODUCT(MMULT(MINVERSE({area}),{right}),{{{unit}}})"
 
     def _write(self, row: int, column: int, entry: Entry) -> None:
-        style = self.book.style["number"]
+        style = self.book.style
         if entry.text in ("0", "1"):
-            self.sheet.write_number(row, column, entry.value, style)
+            self.sheet.write_number(row, column, entry.value, style["count"])
         else:
-            self.sheet.write_formula(row, column, f"={entry.text}", style, cached(entry.value))
+            known = cached(entry.value)
+            self.sheet.write_formula(row, column, f"={entry.text}", style["number"], known)
 
     def _free_bodies(self, reactions: Reactions, loads: list[tuple[str, Act]]) -> None:
         """All forces on every link, and their sums, which are zero."""
         style = self.book.style
         acting: Sequence[Unknown | Follower] = [*reactions.unknowns, *reactions.followers]
         for link in self.bodies:
-            self._heads(f"free body {link}", *_ROWS)
+            self._heads(f"free body {link}", *self.sums)
             begin, sums = self.row, np.zeros(3)
             for own in acting:
                 if all(act.link != link for act in own.acts):

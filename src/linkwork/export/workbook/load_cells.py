@@ -11,6 +11,7 @@ from linkwork.equations.compiling import coordinate_name
 from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import Book
+from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.export.workbook.reaction_cells import HAVE_CELLS
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Node, names_in
@@ -35,8 +36,6 @@ def force_problem(book: Book) -> str | None:
     linkage = book.model.description
     if not isinstance(linkage, Linkage) or not linkage.loaded or not linkage.inputs:
         return ""
-    if len(linkage.inputs) > 1:
-        return "forces of several inputs have no cells"
     others = [part for part in linkage.parts if not isinstance(part, HAVE_CELLS)]
     if others:
         return f"the forces of {others[0].label} ({others[0].title.lower()}) have no cells"
@@ -172,6 +171,7 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
             cells.number(key, f"{part.name}_pretension", pull, force, about)
     for k, load in enumerate(linkage.loads, start=1):
         _write_load(cells, k, load)
+    print_on_one_page(sheet, tall=0)
     return cells
 
 
