@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
 import sys
+import threading
 from importlib import import_module
 
 __all__ = ["main"]
 
 _INTERRUPTED = 128 + 2  # the shell's exit code after SIGINT
+_LATER = 0.02  # seconds: the deletion has ended
 
 
 def main() -> None:
     """Entry point of the installed program."""
+    sys.unraisablehook = _interrupt_again
     try:
         # imports take most of a short run, and are interrupted like the rest
         import_module("linkwork.cli.main").main()
@@ -21,6 +25,14 @@ def main() -> None:
         sys.exit(_INTERRUPTED)
     finally:
         _finish()
+
+
+def _interrupt_again(lost: sys.UnraisableHookArgs) -> None:
+    """Repeat an interrupt that came while an object was deleted: CPython drops it there."""
+    if lost.exc_type is KeyboardInterrupt:
+        threading.Timer(_LATER, _thread.interrupt_main).start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _finish() -> None:

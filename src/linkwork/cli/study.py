@@ -20,6 +20,7 @@ from linkwork.batch.study import (
     summary_of,
     verify_store,
 )
+from linkwork.batch.study.chunk_manifest import chunks_with_entry
 from linkwork.batch.study.plan_file import read_plan_bytes
 from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
@@ -101,7 +102,7 @@ def study(
                 progress=tell,
             )
         except KeyboardInterrupt:
-            print_lines(["", *_how_to_go_on(output)], err=True)
+            print_lines(["", *_how_to_go_on(asked, output)], err=True)
             raise
     _print(found, output, as_json)
 
@@ -128,13 +129,13 @@ def _print_verification(found: Verification, store: str, as_json: bool) -> None:
         print_lines(verification_lines(found, store))
 
 
-def _how_to_go_on(store: str) -> list[str]:
+def _how_to_go_on(asked: Study, store: str) -> list[str]:
     """How many designs of an interrupted study are stored, and how to resume it."""
     if not Path(store).exists():
         return []
-    found = summary_of(store)
+    stored = asked.count_in(chunks_with_entry(Path(store)))
     return wrapped(
-        f"{found.computed} of {found.designs} designs are stored in {store}. "
+        f"{stored} of {asked.plan.count} designs are stored in {store}. "
         "To resume, repeat the same command."
     )
 
