@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Set as AbstractSet
+from collections.abc import Mapping, Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -101,8 +100,10 @@ class Study:
 
     def count_in(self, chunks: AbstractSet[int]) -> int:
         """The number of designs in some chunks."""
-        lacking = self.chunks * self.chunk_size - self.plan.count if self.chunks - 1 in chunks else 0
-        return len(chunks) * self.chunk_size - lacking
+        count = len(chunks) * self.chunk_size
+        if self.chunks - 1 in chunks:  # the last one may be smaller
+            count -= self.chunks * self.chunk_size - self.plan.count
+        return count
 
     def varied(self, k: int) -> dict[str, Array]:
         """The varied numbers of a chunk, in file units, (designs,) each."""
