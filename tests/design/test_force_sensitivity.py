@@ -130,7 +130,7 @@ def test_forces_without_known_derivatives_are_refused_with_their_reason() -> Non
     machine = lw.loads(MACHINE)
     with pytest.raises(InputError, match=r'of "disagreement" are not known: it measures rounding'):
         machine.sensitivity("disagreement", at=50)
-    law = [lw.LawSegment(law="3-4-5", over=1.0, by=90.0)]
+    law = (lw.LawSegment(law="3-4-5", over=1.0, by=90.0),)
     timed = machine.changed(inputs=[lw.Input(link="crank", law=law)])
     with pytest.raises(InputError, match="time drives the rows; give the input a speed"):
         timed.sensitivity("crank.effort", at=0.5)

@@ -74,7 +74,11 @@ def evaluate(
         case Number():
             return arb(node.value)
         case Name():
-            constants = {"pi": arb.pi, "e": lambda: arb(1).exp(), "i": lambda: _I}
+            constants: dict[str, Callable[[], Ball]] = {
+                "pi": arb.pi,
+                "e": lambda: arb(1).exp(),
+                "i": lambda: _I,
+            }
             return constants[node.name]() if node.name in constants else named(node.name)
         case Negative():
             return -evaluate(node.operand, named, radians, turning)
@@ -323,11 +327,13 @@ class _StatedLinkage(StatedEquations):
         given: list[Callable[[Mapping[str, Ball]], Ball]] = []
         for key, number in self.linkage.lengths.items():
             if own.issuperset(key.split()):
-                given.append(_distance(*key.split(), self.numbers.of("lengths", key, number)))
+                a, b = key.split()
+                given.append(_distance(a, b, self.numbers.of("lengths", key, number)))
         for key, number in self.linkage.angles.items():
             if own.issuperset(key.split()):
                 turn = self.numbers.of("angles", key, number) * self.numbers.radians
-                given.append(_vertex(*key.split(), turn))
+                a, v, b = key.split()
+                given.append(_vertex(a, v, b, turn))
         for seen in self.linkage.shapes.measured:
             if seen.link == link:
                 a, b = seen.points
@@ -435,13 +441,13 @@ class _StatedLinkage(StatedEquations):
             )
             yield self._turns(part, turn(x, second) - turn(x, first) - kept)
         elif isinstance(part, Gear | Belt):
-            sizes = part.radii if part.radii is not None else part.teeth
+            sizes: Any = part.radii if part.radii is not None else part.teeth
             p, q = map(number, sizes)
             p = -p if part.together else p
             yield self._mesh(part, [(part.wheels[1], q), (part.wheels[0], p), (part.arm, -p - q)],
                              x, q)  # fmt: skip
         elif isinstance(part, Rack):
-            guide = guide_named(self.linkage, part.slider)
+            guide: Any = guide_named(self.linkage, part.slider)
             radius = number(part.radius) * self._side(guide.line, part.center)
             now = turn(x, guide.on) - turn(x, part.pinion)
             then = self.sketched(guide.on) - self.sketched(part.pinion)
@@ -497,7 +503,7 @@ class _StatedLinkage(StatedEquations):
     def _sketched_wheel(self, name: str) -> Ball:
         if name in self.linkage.links:
             return self.sketched(name)
-        part = next(p for p in self.linkage.parts if getattr(p, "name", "") == name)
+        part: Any = next(p for p in self.linkage.parts if getattr(p, "name", "") == name)
         return _angle(self.sketch[part.center] - self.sketch[part.circle])
 
     def _along(self, line: tuple[str, str], point: str) -> Ball:
@@ -509,7 +515,7 @@ class _StatedLinkage(StatedEquations):
         a, b, p = (self.sketch[q] for q in (*line, point))
         return 1 if ((p - a) * (b - a).conjugate()).imag > 0 else -1
 
-    def _rolling(self, part: Rolling, x: Mapping[str, Ball]) -> Iterator[Ball]:
+    def _rolling(self, part: Any, x: Mapping[str, Ball]) -> Iterator[Ball]:
         centre = self.point(x, part.center)
         radius = self.numbers(part.radius)
         if part.line is not None:
@@ -529,7 +535,7 @@ class _StatedLinkage(StatedEquations):
         turns = [(part.wheel, radius), (part.on, p), (part.name, -p - radius)]
         yield self._mesh(part, turns, x, radius)
 
-    def _cam(self, part: Cam, x: Mapping[str, Ball]) -> Ball:
+    def _cam(self, part: Any, x: Mapping[str, Ball]) -> Ball:
         number, radians = self.numbers, self.numbers.radians
         frame = follower_frame(self.linkage, part)
         turned = self.turn(x, part.cam) - self.turn(x, frame) - number(part.start) * radians
@@ -537,7 +543,7 @@ class _StatedLinkage(StatedEquations):
         local = self.local[frame]
         flat = part.contact == "flat"
         if part.slider is not None:
-            guide = guide_named(self.linkage, part.slider)
+            guide: Any = guide_named(self.linkage, part.slider)
             a, b = (local[p] for p in guide.line)
             centre = (local[part.center] - a) * ((b - a) / abs(b - a)).conjugate()
             offset = arb(0)

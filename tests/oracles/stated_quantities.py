@@ -137,15 +137,14 @@ class _Design:
             dyad = next(d for d in self.names.dyads if d.guide is not None and d.guide.name == part)
 
             def of(k: int) -> Ball:
-                point = lambda p: self.equations.point(self.states[k], p)  # noqa: E731  # short
-                force = point(dyad.pin) - point(dyad.arms[0])
-                start, end = (point(p) for p in guides[part].line)
-                return _between(force, end - start)
+                names = (dyad.pin, dyad.arms[0], *guides[part].line)
+                pin, arm, start, end = (self.equations.point(self.states[k], p) for p in names)
+                return _between(pin - arm, end - start)
 
             return self._differences(of)
         return self._pressed(followers[part], guides)
 
-    def _pressed(self, follower: Follower, guides: Mapping[str, Any]) -> _Jet:
+    def _pressed(self, follower: Any, guides: Mapping[str, Any]) -> _Jet:
         """The pressure angle of a cam on its follower."""
         cams = self.names.skeleton.of(CamOutline)
         cam = next(one for one in cams if one.name == follower.name)
@@ -212,25 +211,29 @@ class StatedRow:
 
     def values(self, wanted: Sequence[str]) -> list[float]:
         """The quantities themselves; NaN where they are not stated."""
-        design = self._design({})
-        return [_float(lambda n=name: self._of(design, n)) for name in wanted]
-
-    def _of(self, design: _Design, name: str) -> Ball:
-        return design.value(self.model.quantities.find(name))
+        return [_float(value) for value in self._all(wanted, {})]
 
     def slopes(self, wanted: Sequence[str], number: VariedNumber) -> list[float]:
         """Their derivatives by a number; NaN where they are not stated."""
         at = arb(float(number.of(self.model.description)))
-        up, down = (self._design({number: at + side * _STEP}) for side in (1, -1))
+        up, down = (self._all(wanted, {number: at + side * _STEP}) for side in (1, -1))
         return [
-            _float(lambda n=name: (self._of(up, n) - self._of(down, n)) / (2 * _STEP))
-            for name in wanted
+            _float(None if a is None or b is None else (a - b) / (2 * _STEP))
+            for a, b in zip(up, down, strict=True)
         ]
 
+    def _all(self, wanted: Sequence[str], changed: Mapping[VariedNumber, Ball]) -> list[Ball]:
+        """The quantities of a design, ``None`` for those that are not stated."""
+        design, found = self._design(changed), []
+        for name in wanted:
+            try:
+                found.append(design.value(self.model.quantities.find(name)))
+            except (NotStated, ZeroDivisionError):
+                found.append(None)
+        return found
 
-def _float(of: Callable[[], Ball]) -> float:
-    try:
-        value = of()
-    except (NotStated, ZeroDivisionError):
+
+def _float(value: Ball | None) -> float:
+    if value is None:
         return float("nan")
     return float(value.mid() if isinstance(value, arb) else value.real.mid())

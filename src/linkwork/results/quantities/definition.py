@@ -188,7 +188,7 @@ def cubic_weights(s: Array | float) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
     return (r**2 * (1.0 + 2.0 * s), s**2 * (1.0 + 2.0 * r)), (r**2 * s, -(s**2) * r)
 
 
-def cubic_weight_slopes(s: float) -> tuple[tuple[float, float], tuple[float, float]]:
+def cubic_weight_slopes(s: Array | float) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
     """The derivatives of :func:`cubic_weights` by s."""
     r = 1.0 - s
     return (-6.0 * r * s, 6.0 * r * s), (r * (r - 2.0 * s), s * (s - 2.0 * r))

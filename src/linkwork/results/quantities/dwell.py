@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,8 @@ __all__ = ["DWELL"]
 
 _PARTS = 8  # of the distance between rows
 _HALVINGS = 52
+
+_Weights = tuple[tuple[Any, Any], tuple[Any, Any]]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,9 +103,9 @@ class _Curve:
         piece, eighth = np.divmod(place.number, _PARTS)
         return piece % self.steps, (eighth + place.part) / _PARTS
 
-    def _weighted(self, place: _Place, weights: Callable[[Array], object]) -> Array:
+    def _weighted(self, place: _Place, weights: Callable[[Array], _Weights]) -> Array:
         piece, s = self.piece(place)
-        (p, q), (r, t) = weights(s)  # type: ignore[misc]  # pairs of arrays
+        (p, q), (r, t) = weights(s)
         a, b, c, d = (x[np.arange(len(x)), piece] for x in self._cubics)
         found: Array = p * a + q * b + r * c + t * d
         return found
@@ -131,6 +134,10 @@ class _Curve:
             ahead = before(_Place(number=number, part=middle))
             low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
         return _Place(number=number, part=high)
+
+    def crossing(self, number: IndexArray, level: Array, way: Array) -> _Place:
+        """Where the quantity passes a level upwards, or with way -1 downwards."""
+        return self.halved(number, lambda place: way * (self.value(place) - level) < 0.0)
 
     def extreme(self, number: IndexArray, side: float, inner: BoolArray) -> _Place:
         """The extreme next to the largest eighth, or it itself at an end of the range."""
@@ -276,30 +283,27 @@ def _ends(curve: _Curve, band: float) -> tuple[_End, _End]:
         place = curve.extreme(number, side, inner)
         extremes[side] = place, np.where(inner, curve.value(place), f[rows, number])
     found = []
-    for place, way in ((start, -1), (last, 1)):
-        beside = place + way
+    for last_within, way in ((start, -1), (last, 1)):
+        beside = last_within + way
         known = (beside >= 0) & (beside < f.shape[1])
-        beside = np.where(known, beside, place)
-        here, there = f[rows, place], f[rows, beside]
-        side = np.where(there > here, 1.0, -1.0)
+        beside = np.where(known, beside, last_within)
+        here, there = f[rows, last_within], f[rows, beside]
+        rises: BoolArray = there > here
         (top, high), (bottom, low) = extremes[1.0], extremes[-1.0]
-        level = np.clip(np.where(side > 0.0, low + band, high - band),
-                        np.fmin(here, there), np.fmax(here, there))  # fmt: skip
-        low_number = np.minimum(place, beside)
-        # from the smaller number on the values are still, or not yet, within the band
-        aim = side * way
-        at = curve.halved(
-            low_number, lambda q, aim=aim, level=level: aim * (curve.value(q) - level) < 0.0
+        level: Array = np.clip(
+            np.where(rises, low + band, high - band), np.fmin(here, there), np.fmax(here, there)
         )
-        moves = known & np.isfinite(there) & (here != there) & (level != there)
+        # from the smaller number on the values are still, or not yet, within the band
+        at = curve.crossing(np.minimum(last_within, beside), level, np.where(rises, way, -way))
+        moves: BoolArray = known & np.isfinite(there) & (here != there) & (level != there)
         # a neighbour just at the level, or none at all, is the end itself
-        stays = _Place(number=np.where(known & (level == there) & (here != there), beside, place))
-        at = at.or_else(moves, stays)
-        found.append(_End(at=at, extreme=bottom.or_else(side > 0.0, top), moves=moves))
+        touches = known & (level == there) & (here != there)
+        at = at.or_else(moves, _Place(number=np.where(touches, beside, last_within)))
+        found.append(_End(at=at, extreme=bottom.or_else(rises, top), moves=moves))
         # a range that rises or falls all along is measured from this end
-        passed = np.where(moves, level, here)
-        extremes[1.0] = top.or_else(high >= passed, at), np.fmax(high, passed)
-        extremes[-1.0] = bottom.or_else(low <= passed, at), np.fmin(low, passed)
+        passed: Array = np.where(moves, level, here)
+        extremes[1.0] = top.or_else(np.asarray(high >= passed), at), np.fmax(high, passed)
+        extremes[-1.0] = bottom.or_else(np.asarray(low <= passed), at), np.fmin(low, passed)
     return found[0], found[1]
 
 
