@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -61,7 +62,7 @@ class AppliedLoads:
     stored_rates: list[Array] = field(default_factory=list)
     switches: Mapping[Node, float] = FrozenDict()
 
-    @property
+    @cached_property
     def moves(self) -> bool:
         """Whether the leading input has a speed."""
         return bool(np.any(np.not_equal(self.rate, 0.0)))

@@ -39,6 +39,7 @@ class Geometry:
         self.links = description.carried
         self._places: dict[str, Jet] = {}
         self._angles: dict[str, Jet] = {}
+        self._directions: dict[str, Jet] = {}
 
     @cached_property
     def rows(self) -> int:
@@ -98,6 +99,11 @@ class Geometry:
 
     def direction(self, link: str) -> Jet:
         """The unit vector of a link's x axis: from its first point towards its second."""
+        if link not in self._directions:
+            self._directions[link] = self._direction(link)
+        return self._directions[link]
+
+    def _direction(self, link: str) -> Jet:
         if link == GROUND:
             one = np.ones(self.rows, dtype=complex)
             return Jet(one, 0.0 * one, 0.0 * one)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -61,17 +62,26 @@ class JointForces:
 
     def read(self, reading: Reading) -> tuple[Array, BoolArray]:
         """A reading and where it is not determined, (B,) each."""
+        value: Array = np.zeros(len(self.unknowns)) + reading.constant
+        for k, factor in reading.terms:
+            value += factor * self._given[:, k]
+        if reading.follow is not None:
+            value += self.amounts[:, reading.follow]
+        if self.balance.stress is None and not self.doubtful.any():
+            return value, np.zeros(len(value), dtype=bool)
         factors = np.zeros_like(self.unknowns)
         for k, factor in reading.terms:
             factors[:, k] += factor
-        value: Array = (factors * np.nan_to_num(self.unknowns)).sum(axis=1) + reading.constant
         doubt = self.balance.undetermined(factors)
-        if reading.follow is not None:
-            value = value + self.amounts[:, reading.follow]
         for k, answer in enumerate(self.answers):
             change = np.abs((factors * answer).sum(axis=1))
             doubt |= self.doubtful[:, k] & ((change > _STRESSED) | (reading.follow == k))
         return value, doubt
+
+    @cached_property
+    def _given(self) -> Array:
+        """The unknowns; 0 where they do not exist, for readings that need none of them."""
+        return np.nan_to_num(self.unknowns)
 
     def acts(self) -> Iterable[Act]:
         """What follows from the unknowns."""

@@ -29,6 +29,7 @@ from linkwork.results.quantity import Kind
 from linkwork.results.reactions import ForceStatus
 
 __all__ = [
+    "NO_WORK",
     "ForceRows",
     "ForceValue",
     "free_bodies",
@@ -39,7 +40,8 @@ __all__ = [
 ]
 
 _UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
-_NO_WORK = 1e-12  # of the largest term
+#: Of the largest term of a sum of work: less is none.
+NO_WORK = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,9 +96,8 @@ class _Solution:
         none = np.zeros(self.geometry.rows, dtype=bool)
         unknown = none if undetermined is None else undetermined & self.regular
         value = np.where(self.regular & ~unknown, value, np.nan)
-        size = np.nanmax(np.abs(value), initial=0.0)
         # rounding of a contact without force is no lift-off
-        lifted = value < -1e-9 * size if pushes else none
+        lifted = value < -1e-9 * np.nanmax(np.abs(value), initial=0.0) if pushes else none
         self.values[name] = ForceValue(
             kind=kind,
             about=about,
@@ -292,7 +293,7 @@ def _add_losses(found: _Solution, ideal: Array, largest: Array, rubbing: Frictio
     useful = geometry.by_leading(ideal) * way
     lost = geometry.by_leading(rubbing.efforts) * way
     # nothing moves against the loads at their dead point: rounding would be taken for a sign
-    useful = np.where(np.abs(useful) > _NO_WORK * largest.max(axis=0), useful, 0.0)
+    useful = np.where(np.abs(useful) > NO_WORK * largest.max(axis=0), useful, 0.0)
     spent = useful + lost
     # the input drives the loads, or they drive it: a negative value means that friction holds them
     efficiency = np.where(useful >= 0.0, useful / spent, spent / useful)

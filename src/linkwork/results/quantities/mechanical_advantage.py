@@ -1,8 +1,8 @@
 """Mechanical advantage: the force or moment at a part for one at the input, without friction.
 
 Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part does not
-move while the input does, as in a stretched toggle press, it is infinite; at dead points of the
-input, where no derivative with respect to the input exists, it is NaN.
+move while the input does, as in a stretched toggle press, it is infinite and has no derivatives; at
+dead points of the input, where no derivative with respect to the input exists, it is NaN.
 
 References
 ----------
@@ -12,6 +12,7 @@ R. L. Norton, Design of Machinery, 6th ed., McGraw-Hill 2020, section 6.5.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQ
 from linkwork.results.quantity import Kind
 
 __all__ = ["MECHANICAL_ADVANTAGE"]
+
+_AT_REST = 1e-12  # of the input's motion: slower motion is rounding, of links that do not turn
 
 
 def _parts(names: MechanismNames) -> Mapping[str, Kind]:
@@ -38,9 +41,16 @@ def _parts(names: MechanismNames) -> Mapping[str, Kind]:
 
 
 def _advantage(names: MechanismNames, solved: Solved, part: str) -> Jet:
-    moved = solved.own(part)
-    value = np.where(moved.d1 == 0.0, np.inf, 1.0 / moved.d1)  # eq. (61)
-    rate = np.where(moved.d1 == 0.0, np.nan, -moved.d2 / moved.d1**2)
+    moved, lead = solved.own(part), names.inputs[names.lead]
+    size: Any = 1.0
+    # a length by an angle, or the other way round, compares with the length's own size
+    if names.unknowns[part] is not lead:
+        by_angle = lead is Kind.ANGLE
+        length = np.nanmax(np.abs(moved.v if by_angle else solved.own(names.lead).v), initial=0.0)
+        size = length if by_angle or length == 0.0 else 1.0 / length
+    rests = np.abs(moved.d1) <= _AT_REST * size
+    value = np.where(rests, np.inf, 1.0 / moved.d1)  # eq. (61)
+    rate = np.where(rests, np.nan, -moved.d2 / moved.d1**2)
     return Jet(value, rate, UNKNOWN)
 
 
