@@ -76,7 +76,7 @@ def test_a_growing_force_starts_a_block_when_it_exceeds_friction() -> None:
 
 
 def test_a_torsion_pendulum_loses_the_same_angle_every_half_swing() -> None:
-    """A disc of 3 kg on a pin: the load on the pin is its weight, the moment of friction μ r m g."""
+    """A disc of 3 kg on a pin, which its weight loads: the moment of friction is μ r m g."""
     stiffness, inertia, moment = 2.0, 0.05, 0.6 * 0.01 * 3 * G
     begin = 1.0
     disc = lw.linkage(
@@ -208,7 +208,7 @@ def test_at_rest_an_engine_starts_where_the_effort_of_statics_is_exceeded() -> N
     # the block moves against the direction of its slide there
     effort = float(pushed(0).forces(at=moves - 0.5)["d.effort"])
     for factor, held in ((0.999, True), (1.001, False)):
-        motion = pushed(factor * effort).simulate(1e-3, step=1e-3, at=moves - 0.5)
+        motion = pushed(factor * effort).simulate(1e-5, step=1e-5, at=moves - 0.5)
         assert ("at rest since t = 0 s, held by friction" in motion.message) is held
         assert (motion["d"][-1] < motion["d"][0]) is not held
     motion = pushed(1000 * effort).simulate(1e-3, step=1e-3, at=locked)

@@ -24,7 +24,7 @@ from linkwork.forces.joint_forces import doubtful_followers
 from linkwork.forces.part.index import join_parts
 from linkwork.forces.pins import join_pins
 from linkwork.forces.size import Sided, Size
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.linkage import Linkage
 from linkwork.numerics.rows import SolvedRows
@@ -322,7 +322,7 @@ class _Bodies:
         return [np.broadcast_to(side, self.geometry.rows) for side in sides]
 
     @property
-    def groups(self) -> Array:
+    def groups(self) -> IndexArray:
         """What compares with each other: the answers of a load."""
         count, loads = len(self.sizes), len(self.loads)
         own = np.repeat(np.arange(loads), 2 * count)

@@ -113,8 +113,9 @@ class ReducedLeg:
     def hold(self, s: float, speed: float, t: float, gain: Array, direction: float) -> Rubbing:
         """The signs of friction for a motion from a state."""
         assert self.friction is not None
-        here = (np.array([x]) for x in (s, speed, t))
-        return self.friction.hold(s, speed, self._varying(*here, gain)[1][0], direction)
+        place, pace, time = (np.array([x]) for x in (s, speed, t))
+        known = self._varying(place, pace, time, gain)[1][0]
+        return self.friction.hold(s, speed, known, direction)
 
     def friction_margins(
         self, s: Array, speed: Array, t: Array, gain: Array, rubbing: Rubbing

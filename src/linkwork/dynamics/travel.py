@@ -101,13 +101,13 @@ class Travel:
 
     def run(self) -> None:
         """Step until all times are reached or the motion ends."""
-        h = self._first_step()
+        h, rougher = self._first_step(), math.inf
         while self.t < self.until and not self.ended:
             if self._rests() or self._sticks():
                 continue
             short = self.until - self.t
-            step, following = try_step(
-                self._acceleration, self.t, self.s, self.speed, min(h, short)
+            step, following, rough = try_step(
+                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher
             )
             shorter = None if step is None else shorter_step(step, *self.leg.reach)
             if shorter is not None:
@@ -115,16 +115,18 @@ class Travel:
             if step is not None and self._misjudges(step):
                 continue
             if step is None:
-                h = following
+                h, rougher = following, rough
                 if h < _SHORTEST * self.until:
                     self.ended = self._unbounded()
                 continue
+            rougher = rough if following <= step.h else math.inf
             event = self._event(step)
             end = step.t + step.h if event is None else self._end(event)
             self._take(step, end)
             h = following if event is None and step.h < short else max(following, h)
             if event is not None:
                 self._meet(event)
+                rougher = math.inf
                 if event.number >= 2:  # the accelerations have jumped
                     h = min(h, self._first_step())
             if self.progress is not None:
@@ -153,8 +155,9 @@ class Travel:
         times = times[(times > step.t) & (times <= end)]
         lost = self._losses(step, np.append(times, end))
         if len(times):
-            for t, *state, more in zip(times, *step.at(times), lost[:-1], strict=True):
-                self._record(float(t), *map(float, state), lost=self.lost + float(more))
+            for t, s, speed, bend, more in zip(times, *step.at(times), lost, strict=False):
+                here = float(t), float(s), float(speed), float(bend)
+                self._record(*here, lost=self.lost + float(more))
             self.taken += len(times)
         self.lost += float(lost[-1])
         self.steps.append((self.number, self.lap, step, end))
@@ -377,8 +380,8 @@ class Travel:
             self.tried = 0
             return False
         self.tried += 1
-        state = (float(x[1]) for x in (s, speed, times))
-        self.rubbing = self.leg.hold(*state, self.gain, self.rubbing.direction)
+        place, pace, time = float(s[1]), float(speed[1]), float(times[1])
+        self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
         return True
 
     tried: int = 0

@@ -172,7 +172,8 @@ class Linear:
     constant: float = 0.0
 
     def value(self, u: Array) -> Array:
-        return self.constant + (u * self.gradient(u)).sum(axis=1)
+        found: Array = self.constant + (u * self.gradient(u)).sum(axis=1)
+        return found
 
     def gradient(self, u: Array) -> Array:
         found = np.empty_like(u)
