@@ -18,6 +18,8 @@ from linkwork.results.table import Table
 
 __all__ = ["equilibria_lines", "motion_data", "simulation_lines"]
 
+_ROUNDING = 1e-11  # of the energy: what the balance leaves open
+
 
 def simulation_lines(motion: Motion, names: Sequence[str] = ()) -> list[str]:
     """How a simulation ended, its events and the ranges of its quantities."""
@@ -51,7 +53,9 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
             if motion.friction_work is not None:
                 lost = motion.friction_work[np.isfinite(energy)][-1]
                 given = fine[-1] - fine[0] + lost
-                yield "", f"friction has taken {lost:.10g}, loads and motor have given {given:.10g}"
+                size = max(np.abs(fine).max(), abs(lost))
+                given = 0.0 if abs(given) < _ROUNDING * size else given
+                yield "", f"friction took {lost:.10g}, loads and motor gave {given:.10g}"
 
 
 def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list[str]:

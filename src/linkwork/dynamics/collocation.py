@@ -138,7 +138,8 @@ def _linearise(
 ) -> tuple[Array, Array]:
     """Accelerations at all points, and the Jacobian of the collocation equations, (n, n)."""
     eps = math.sqrt(EPSILON)
-    ds = eps * max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps, 1e-12)
+    # of the way of the step, so that units change nothing
+    ds = eps * (max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps) or 1.0)
     dw = eps * max(float(np.abs(w).max()), abs(ds / h))
     many = acceleration(
         np.concatenate([place, place + ds, place]),
