@@ -42,7 +42,7 @@ class Act:
     force: ComplexArray
     moment: Array | float = 0.0
 
-    def times(self, factor: float) -> Act:
+    def times(self, factor: Array | float) -> Act:
         """The act multiplied."""
         return Act(self.on, self.place, factor * self.force, factor * self.moment)
 

@@ -79,6 +79,17 @@ class Geometry:
         found: Array = (self.input_rates.T * each.T).sum(axis=-1)
         return found
 
+    @cached_property
+    def input_ways(self) -> Array:
+        """The rate of every input; of a simulated motion at rest its acceleration, (p,) or (p, B).
+
+        Friction acts against the motion, or against that which begins.
+        """
+        if self.model.untimed is None or self.model.description.timed:
+            return self.input_rates
+        still = (self.input_rates == 0.0).all(axis=0)
+        return np.where(still, self.input_bends, self.input_rates)
+
     @property
     def input_bends(self) -> Array:
         """The acceleration of every input where time drives the mechanism, (p, B)."""
