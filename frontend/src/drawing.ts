@@ -40,6 +40,8 @@ export class Drawing {
   private readonly quick = new QuickDrawing();
   /** Whether the canvas shows the mechanism. */
   private hurried = false;
+  /** Draws the canvas once more, in another view. */
+  private again: () => void = () => {};
   /** Arrows of inputs, reversed while the input decreases. */
   private turned: Moved[] = [];
   private backwards = false;
@@ -133,7 +135,9 @@ export class Drawing {
     if (matrix === null) return;
     const grow = SMALLEST / (this.data.text * matrix.a);
     this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
-    if (this.hurried) this.quick.begin(this.element, this.drawn);
+    if (!this.hurried) return;
+    if (!this.quick.fits(this.element)) this.quick.begin(this.element, this.drawn);
+    this.again();
   }
 
   /** Draw another motion; equal shapes are kept and updated. `quick`: on a canvas, if it and the
@@ -178,6 +182,7 @@ export class Drawing {
   private hurry(on: boolean): void {
     if (on === this.hurried) return;
     this.hurried = on;
+    this.again = () => {};
     if (on) this.quick.begin(this.element, this.drawn);
     this.element.classList.toggle("lw-hurried", on);
     if (on) this.element.before(this.quick.element);
@@ -188,7 +193,8 @@ export class Drawing {
   draw(row: number, backwards = false, before: Before | null = null): void {
     if (this.hurried) {
       this.backwards = backwards;
-      this.quick.draw(this.motion, row, this.view, backwards, before);
+      this.again = () => this.quick.draw(this.motion, row, this.view, backwards, before);
+      this.again();
       return;
     }
     for (const move of this.moved) move(row);

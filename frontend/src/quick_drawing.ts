@@ -80,6 +80,11 @@ export class QuickDrawing {
     this.font = "";
   }
 
+  /** Whether the drawing still has the size on the screen that was taken. */
+  fits({ clientWidth, clientHeight }: Element): boolean {
+    return clientWidth === this.sheet[0] && clientHeight === this.sheet[1];
+  }
+
   /** Draw a row in a view (left, bottom, right, top) of the plane; `back`: arrows of inputs are reversed. */
   draw(view: MotionView, row: number, box: readonly number[], back: boolean, before: Before | null): void {
     const at = this.window(box);
