@@ -19,6 +19,7 @@ from benchmarks import (
     page_time,
     process_start,
     small_calls,
+    web_time,
 )
 from benchmarks.single_thread import run_alone
 
@@ -33,6 +34,7 @@ MEASUREMENTS = {
     "page": page_time.measure,
     "live": live_time.measure,
     "small": small_calls.measure,
+    "web": web_time.measure,
 }
 PROGRAMS = {
     "peers": "benchmarks.peers",

@@ -35,17 +35,26 @@ export class Charts {
     for (const name of names) this.put(name);
   }
 
-  show(view: MotionView, past: MotionView | null, steady = false): void {
+  get count(): number {
+    return this.list.length;
+  }
+
+  /** Show another motion, in one chart if it has its `turn`, else in all. */
+  show(view: MotionView, past: MotionView | null, steady = false, turn: number | null = null): void {
     this.view = view;
     this.past = past;
     this.element.hidden = false;
-    for (const chart of this.list) chart.show(view, past, steady);
+    for (const chart of this.having(turn)) chart.show(view, past, steady);
     if (!steady) this.changed();
   }
 
-  draw(row: number): void {
+  draw(row: number, turn: number | null = null): void {
     this.row = row;
-    for (const chart of this.list) chart.draw(row);
+    for (const chart of this.having(turn)) chart.draw(row);
+  }
+
+  private having(turn: number | null): Chart[] {
+    return turn === null ? this.list : this.list.slice(turn, turn + 1);
   }
 
   /** Offer quantities that the program can compute. */

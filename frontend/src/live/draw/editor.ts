@@ -206,7 +206,8 @@ export class Editor {
     this.grid = this.overlay.drawGrid(this.page, this.edited);
     const points = this.points;
     const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
-    this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
+    const marked = [...selected, ...(this.picking?.places ?? [])];
+    this.overlay.select(marked, marked.length ? drawing.pixel : 1); // measured only if needed
     this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
     this.redrawn();
   }

@@ -1,8 +1,8 @@
 """Mechanical advantage: the force or moment at a part for one at the input, without friction.
 
-Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part does not
-move while the input does, as in a stretched toggle press, it is infinite and has no derivatives; at
-dead points of the input, where no derivative with respect to the input exists, it is NaN.
+Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part is at rest to
+rounding while the input moves, as at the dead centre of a press, it is infinite and has no derivatives;
+at dead points of the input, where no derivative with respect to the input exists, it is NaN.
 
 References
 ----------
@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import BoolArray
+from linkwork.foundation.rounding import REST
 from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.results.quantity import Kind
 
 __all__ = ["MECHANICAL_ADVANTAGE"]
-
-_AT_REST = 1e-12  # of the input's motion: slower motion is rounding, of links that do not turn
 
 
 def _parts(names: MechanismNames) -> Mapping[str, Kind]:
@@ -41,17 +41,20 @@ def _parts(names: MechanismNames) -> Mapping[str, Kind]:
 
 
 def _advantage(names: MechanismNames, solved: Solved, part: str) -> Jet:
-    moved, lead = solved.own(part), names.inputs[names.lead]
-    size: Any = 1.0
-    # a length by an angle, or the other way round, compares with the length's own size
-    if names.unknowns[part] is not lead:
-        by_angle = lead is Kind.ANGLE
-        length = np.nanmax(np.abs(moved.v if by_angle else solved.own(names.lead).v), initial=0.0)
-        size = length if by_angle or length == 0.0 else 1.0 / length
-    rests = np.abs(moved.d1) <= _AT_REST * size
+    moved = solved.own(part)
+    rests = _rests(names, solved, part, moved)
     value = np.where(rests, np.inf, 1.0 / moved.d1)  # eq. (61)
     rate = np.where(rests, np.nan, -moved.d2 / moved.d1**2)
     return Jet(value, rate, UNKNOWN)
+
+
+def _rests(names: MechanismNames, solved: Solved, part: str, moved: Jet) -> BoolArray:
+    """Whether the rate of a part is 0 to the accuracy of the input and of its own position."""
+    reach = 1.0 if names.by == "rad" else np.nanmax(np.abs(solved.own(names.lead).v), initial=0.0)
+    size = 1.0 if names.unknowns[part] is Kind.ANGLE else np.abs(moved.v)
+    own = size / reach if reach else 0.0
+    found: BoolArray = np.abs(moved.d1) <= REST * (reach * np.abs(moved.d2) + own)
+    return found
 
 
 MECHANICAL_ADVANTAGE = (
