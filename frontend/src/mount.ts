@@ -292,9 +292,10 @@ class Page implements Mounted {
       this.polygon.show(view);
     }
     this.root.classList.toggle("lw-still", still);
+    this.root.classList.toggle("lw-in-time", view.times !== null);
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
-    this.player.restart(view.order.length, view.data.closed, index);
+    this.player.restart(view.order.length, view.data.closed, index, view.times);
   }
 
   private get numbered(): boolean {

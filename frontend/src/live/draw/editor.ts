@@ -6,6 +6,7 @@ import { declareKeys, press, type Command } from "../../keys";
 import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
+import type { ForceForms } from "../force_forms";
 import { clean } from "../ranges";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
@@ -70,9 +71,10 @@ export class Editor {
 
   constructor(
     private readonly desk: Desk,
+    forms: ForceForms,
     private readonly hooks: EditorHooks,
   ) {
-    this.inspector = new Inspector(desk, () => this.select(null), (chosen) => this.select(chosen));
+    this.inspector = new Inspector(desk, forms, () => this.select(null), (chosen) => this.select(chosen));
     this.keyed = new KeyPointer({
       choose: (chosen) => this.select(chosen),
       hint: hooks.hint,
