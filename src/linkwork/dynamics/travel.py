@@ -232,10 +232,10 @@ class Travel:
     def _is_outside(self) -> bool:
         """Whether the leg ended at another event, to rounding; the motion is then on the next."""
         low, high = self.leg.table.edges[[0, -1]]
-        out = (self.s <= low and self.speed < 0.0) or (self.s >= high and self.speed > 0.0)
+        out = bool((self.s <= low and self.speed < 0) or (self.s >= high and self.speed > 0))
         if out:
             self._leave(0 if self.speed < 0.0 else 1)
-        return bool(out)
+        return out
 
     def _leave(self, side: int) -> None:
         """Onto the next leg, where another variable may lead."""
@@ -329,8 +329,6 @@ class Travel:
         self._switch()
         return True
 
-    # Friction
-
     @property
     def _is_held(self) -> bool:
         """Whether the machine is at rest and no direction is chosen."""
@@ -392,7 +390,7 @@ class Travel:
         self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
         return True
 
-    tried: int = 0
+    tried = 0
 
     def _unbounded(self) -> str:
         """Why no step succeeds."""
