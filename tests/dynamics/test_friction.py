@@ -226,3 +226,10 @@ def test_friction_where_redundant_links_leave_forces_open_is_refused() -> None:
     )
     with pytest.raises(lw.InputError, match="redundant links leave undetermined"):
         loaded.simulate(0.1)
+
+
+def test_events_at_the_same_place_are_all_met() -> None:
+    """The compressor starts where its guide's force changes sides: after a turn both meet."""
+    motion = lw.example("compressor").simulate(0.4, step=0.1)
+    assert motion.found.all()
+    assert motion["crank"][-1] > 90 + 2 * 360

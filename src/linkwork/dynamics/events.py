@@ -103,10 +103,12 @@ def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> E
         return None
     k = int(np.flatnonzero(changes.any(axis=1))[0])
     both = np.flatnonzero(changes[k])
-    low, high = values[k, both], values[k + 1, both]
-    # the first one of those between two places, by the straight line
-    number = int(both[np.argmin(low / (low - high))])
-    before, after = _located(step, margins, number, times[k : k + 2], values[k : k + 2, number])
+    # several may change between the same two places: the first one counts
+    found = [
+        (*_located(step, margins, number, times[k : k + 2], values[k : k + 2, number]), number)
+        for number in map(int, both)
+    ]
+    before, after, number = min(found)
     return Event(number=number, before=before, after=after, falls=bool(falling[number]))
 
 

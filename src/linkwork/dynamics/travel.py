@@ -25,7 +25,7 @@ __all__ = ["Travel"]
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
-_RESTS = 1e-8  # of the whole time: a bounce that lasts no longer is rest
+_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
 _MOST_TRIES = 3  # to find the signs of friction at the beginning of a step
@@ -103,7 +103,7 @@ class Travel:
         """Step until all times are reached or the motion ends."""
         h, rougher = self._first_step(), math.inf
         while self.t < self.until and not self.ended:
-            if self._rests() or self._sticks():
+            if self._rests() or self._sticks() or self._is_outside():
                 continue
             short = self.until - self.t
             step, following, rough = try_step(
@@ -229,6 +229,14 @@ class Travel:
                 self._record(float(t), self.s, 0.0, 0.0)
             self.taken, self.t = len(self.times), self.until
 
+    def _is_outside(self) -> bool:
+        """Whether the leg ended at another event, to rounding; the motion is then on the next."""
+        low, high = self.leg.table.edges[[0, -1]]
+        out = bool((self.s <= low and self.speed < 0) or (self.s >= high and self.speed > 0))
+        if out:
+            self._leave(0 if self.speed < 0.0 else 1)
+        return out
+
     def _leave(self, side: int) -> None:
         """Onto the next leg, where another variable may lead."""
         leg = self.leg.leg
@@ -321,8 +329,6 @@ class Travel:
         self._switch()
         return True
 
-    # Friction
-
     @property
     def _is_held(self) -> bool:
         """Whether the machine is at rest and no direction is chosen."""
@@ -384,7 +390,7 @@ class Travel:
         self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
         return True
 
-    tried: int = 0
+    tried = 0
 
     def _unbounded(self) -> str:
         """Why no step succeeds."""
