@@ -32,7 +32,7 @@ _INSTEAD = (
 
 def parts_shown(draft: Draft) -> Iterator[PartShown]:
     """All parts of a draft, in the order of the tables of a file."""
-    for (table, _), part in draft.keyed_parts():
+    for (table, _), part in draft.keyed_parts:
         usual = {field.name: field.default for field in fields(part)}
         typed = {
             key.name: shown_entry(key, entry)
