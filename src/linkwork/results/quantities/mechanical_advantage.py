@@ -1,8 +1,8 @@
 """Mechanical advantage: the force or moment at a part for one at the input, without friction.
 
 Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part is at rest to
-rounding while the input moves, as at the dead centre of a press, it is infinite and has no derivatives;
-at dead points of the input, where no derivative with respect to the input exists, it is NaN.
+rounding while the input moves, as at the dead centre of a press, it is infinite and has no
+derivatives; at dead points of the input, where no such derivative exists, it is NaN.
 
 References
 ----------
@@ -12,7 +12,6 @@ R. L. Norton, Design of Machinery, 6th ed., McGraw-Hill 2020, section 6.5.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
