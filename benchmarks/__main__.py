@@ -14,10 +14,12 @@ from benchmarks import (
     cycle_time,
     design_time,
     family_time,
+    force_time,
     live_time,
     page_time,
     process_start,
     small_calls,
+    web_time,
 )
 from benchmarks.single_thread import run_alone
 
@@ -28,9 +30,11 @@ MEASUREMENTS = {
     "chain": chain_growth.measure,
     "designs": design_time.measure,
     "families": family_time.measure,
+    "forces": force_time.measure,
     "page": page_time.measure,
     "live": live_time.measure,
     "small": small_calls.measure,
+    "web": web_time.measure,
 }
 PROGRAMS = {
     "peers": "benchmarks.peers",

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.resources import files
@@ -20,14 +21,15 @@ from statistics import median
 from typing import Any
 
 import linkwork as lw
+from benchmarks.processes import processor_time
 from linkwork.viewer.live.messages import encoded
 from linkwork.viewer.live.motion_picture import MotionPicture
 from linkwork.viewer.live.result_events import motion_found
 
 __all__ = ["measure"]
 
-_PICTURE_BAR = 1.0  # s from the command to the first picture, in a browser that runs
-_RATE_BAR = 30.0  # cycles per second while a dimension is dragged
+_PICTURE_BAR = 0.8  # s from the command to the first picture, in a browser that runs
+_RATE_BAR = 60.0  # cycles per second while a dimension is dragged
 _DRAG = 4.0  # s
 _STAGES = ("read", "solve", "draw", "encode")
 _SHOWN = """() => new Promise(done => {
@@ -54,7 +56,7 @@ _DRAGGED = """async ([name, seconds]) => {
 
 
 def measure(repeats: int = 7) -> bool:
-    """Limits: 1 s to the first picture; 30 solved cycles a second."""
+    """Limits on a quiet machine: 0.8 s to the first picture; 60 solved cycles a second."""
     print("the live page of Jansen's leg")
     _stages()
     rates = [_over_socket() for _ in range(3)]
@@ -66,6 +68,7 @@ def measure(repeats: int = 7) -> bool:
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - an extra of tests
 
     printed, shown, dragged = [], [], []
+    spent: Counter[str] = Counter()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         for _ in range(repeats):
@@ -76,7 +79,9 @@ def measure(repeats: int = 7) -> bool:
                 page.goto(address, wait_until="commit")
                 page.evaluate(_SHOWN)
                 shown.append(time.perf_counter() - began)
+                before = processor_time()
                 dragged.append(float(page.evaluate(_DRAGGED, ["O A", _DRAG])))
+                spent += processor_time() - before
             page.close()
         browser.close()
     print(
@@ -87,6 +92,9 @@ def measure(repeats: int = 7) -> bool:
         f"  cycles per second displayed while a length is dragged: median {median(dragged):.0f} "
         f"({min(dragged):.0f} to {max(dragged):.0f})"
     )
+    cycles = _DRAG * sum(dragged)
+    each = ", ".join(f"{kind} {time / cycles:.1f}" for kind, time in spent.most_common(4))
+    print(f"  processor time per displayed cycle [ms]: {each}")
     return median(shown) <= _PICTURE_BAR and median(dragged) >= _RATE_BAR
 
 

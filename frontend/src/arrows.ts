@@ -10,6 +10,8 @@ import { toneClass } from "./theme";
 const HEAD = 2.4; // length of an arrow head, in pins
 const LONGEST = 0.16; // of the usual largest, of the drawing's longer side
 const SHORTEST = 1.5; // pins: a shorter arrow would be hidden by its pin
+const LEAST = 5.5; // pins: a smaller force is drawn so long, dashed
+const NOTHING = 1e-9; // of the usual largest: rounding, not drawn
 const USUAL = 0.98; // of the rows are not faster: rates grow without bound beside dead points
 
 interface Arrow {
@@ -34,6 +36,9 @@ export class Arrows {
   /** The scale of the arrows; "" if not needed. */
   legend = "";
   shown = false;
+  /** A force per unit of drawn length, and the least that is drawn. */
+  private each = 0;
+  private nothing = 0;
   /** The extent of arrows over the whole motion: two corners; empty for loop vectors. */
   reach: (readonly [number, number])[] = [];
 
@@ -119,7 +124,13 @@ export class Arrows {
     const all = [...given, ...found];
     const sizes = all.flatMap(({ at }) => usual(view.order.map((row) => Math.hypot(...at(row)))));
     const unit = given.length ? this.data.force_unit : forceUnit(view);
-    const scale = this.scaled(Math.max(0, ...sizes), "Force", unit);
+    const largest = Math.max(0, ...sizes);
+    const scale = this.scaled(largest, "Force", unit);
+    if (scale) {
+      this.nothing = NOTHING * largest * scale;
+      const least = `${trimmed(shortNumber(Number((LEAST * this.data.pin * this.each).toPrecision(2))))} ${unit}`.trim();
+      this.legend += `\ndashed: below ${least}, not to scale`;
+    }
     for (const { name } of all) this.add("lw-force", name);
     return (row) =>
       all.map(({ point, at }) => {
@@ -136,6 +147,7 @@ export class Arrows {
     const [left, bottom, right, top] = this.data.view as [number, number, number, number];
     const size = Math.max(right - left, top - bottom);
     const each = roundUp(largest / (LONGEST * size)); // the quantity per drawn unit of length
+    this.each = each;
     const length = 10 ** Math.floor(Math.log10(LONGEST * size));
     const [shown, means] = [trimmed(shortNumber(length)), trimmed(shortNumber(each * length))];
     this.legend = `${what} scale: ${`${shown} ${this.data.length_unit}`.trim()} = ${`${means} ${unit}`.trim()}`;
@@ -155,8 +167,15 @@ export class Arrows {
   }
 
   private place(arrow: Arrow, [x0, y0, x1, y1]: number[]): void {
-    const [dx, dy] = [x1! - x0!, y1! - y0!];
-    const length = Math.hypot(dx, dy);
+    let [dx, dy] = [x1! - x0!, y1! - y0!];
+    let length = Math.hypot(dx, dy);
+    const small = this.kind === "forces" && length > this.nothing && length < LEAST * this.data.pin;
+    if (small) {
+      const longer = (LEAST * this.data.pin) / length;
+      [dx, dy, length] = [dx * longer, dy * longer, length * longer];
+      [x1, y1] = [x0! + dx, y0! + dy];
+    }
+    arrow.shaft.setAttribute("stroke-dasharray", small ? `${0.7 * this.data.pin} ${0.5 * this.data.pin}` : "none");
     const long = Number.isFinite(length) && length > (this.kind === "vectors" ? 0.6 : SHORTEST) * this.data.pin;
     arrow.group.style.display = long ? "" : "none";
     if (!long) return;

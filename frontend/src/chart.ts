@@ -95,6 +95,12 @@ export class Chart {
     this.offer();
   }
 
+  /** Plot one quantity only. */
+  only(name: string): void {
+    this.names = [name];
+    this.changed();
+  }
+
   draw(row: number): void {
     this.row = row;
     this.dots.forEach((dot, k) => {

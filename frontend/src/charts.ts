@@ -8,6 +8,8 @@ import { html } from "./svg";
 /** The largest number of charts. */
 const MOST = 6;
 
+const BY_TIME = /\.(velocity|acceleration|jerk|snap)$/;
+
 export class Charts {
   readonly element: HTMLElement;
   private readonly list: Chart[] = [];
@@ -35,23 +37,47 @@ export class Charts {
     for (const name of names) this.put(name);
   }
 
-  show(view: MotionView, past: MotionView | null, steady = false): void {
+  get count(): number {
+    return this.list.length;
+  }
+
+  /** Show another motion, in one chart if it has its `turn`, else in all. */
+  show(view: MotionView, past: MotionView | null, steady = false, turn: number | null = null): void {
     this.view = view;
     this.past = past;
     this.element.hidden = false;
-    for (const chart of this.list) chart.show(view, past, steady);
+    for (const chart of this.having(turn)) chart.show(view, past, steady);
     if (!steady) this.changed();
   }
 
-  draw(row: number): void {
+  draw(row: number, turn: number | null = null): void {
     this.row = row;
-    for (const chart of this.list) chart.draw(row);
+    for (const chart of this.having(turn)) chart.draw(row);
+  }
+
+  private having(turn: number | null): Chart[] {
+    return turn === null ? this.list : this.list.slice(turn, turn + 1);
   }
 
   /** Offer quantities that the program can compute. */
   offer(more: readonly Choice[]): void {
     this.more = more;
     for (const chart of this.list) chart.offerMore(more);
+  }
+
+  /** Plot a quantity in place of the last chart, or in another one, unless it is plotted. */
+  plot(name: string): void {
+    if (this.list.some((chart) => chart.names.includes(name))) return;
+    const last = this.list.at(-1);
+    if (last && this.list.length > 1) last.only(name);
+    else this.put(name);
+    this.changed();
+  }
+
+  /** The displayed motion is another one, for which nothing was asked yet. */
+  askAgain(): void {
+    this.asked = "[]";
+    this.changed();
   }
 
   destroy(): void {
@@ -85,6 +111,8 @@ export class Charts {
     const plotted = this.list.flatMap((chart) => chart.names);
     const given = new Set(view.data.columns.filter((column) => column.group !== "asked").map((column) => column.name));
     const missing = [...new Set(plotted)].filter((name) => {
+      // without a speed there are no rates by time
+      if (!view.data.speed && BY_TIME.test(name)) return false;
       const column = view.series.find((one) => one.name === name);
       return column ? !given.has(name) : quantityOf(view, name) === null;
     });

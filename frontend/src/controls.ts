@@ -21,6 +21,7 @@ export class Transport {
   private readonly bar: HTMLInputElement;
   private readonly marks: HTMLElement;
   private readonly readout: HTMLOutputElement;
+  private times: Float64Array | null = null;
 
   constructor(parent: Element, hooks: TransportHooks) {
     const row = html("div", { class: "lw-transport", role: "group", "aria-label": "Motion" }, parent);
@@ -33,32 +34,48 @@ export class Transport {
     this.readout = html("output", { class: "lw-readout" }, row);
     this.speed(row, hooks);
     this.button.addEventListener("click", () => hooks.play(this.button.dataset.state !== "playing"));
-    this.bar.addEventListener("input", () => hooks.go(Number(this.bar.value)));
+    this.bar.addEventListener("input", () => hooks.go(this.index(Number(this.bar.value))));
     this.playing(false);
   }
 
   show(view: MotionView): void {
     const last = view.order.length - 1;
     this.row.hidden = view.input.name === "";
-    put(this.bar, { max: last });
+    // over the time, the bar is in seconds: rows are closer around events
+    this.times = view.times;
+    const [least, most] = this.times ? [this.times[0]!, this.times[last]!] : [0, last];
+    put(this.bar, { min: least, max: most, step: this.times ? "any" : 1 });
     const marks = view.data.limits.map((limit) => ({ at: view.order.indexOf(limit.row), text: limit.text })).filter(({ at }) => at >= 0);
-    const wanted = JSON.stringify([last, marks]);
+    const wanted = JSON.stringify([least, most, marks]);
     if (wanted === this.marks.dataset.made) return;
     this.marks.dataset.made = wanted;
     this.marks.replaceChildren();
     for (const { at, text } of marks) {
       const mark = html("span", { title: text }, this.marks);
-      mark.style.left = `${(100 * at) / Math.max(1, last)}%`;
+      const place = this.times ? this.times[at]! : at;
+      mark.style.left = `${(100 * (place - least)) / (most - least || 1)}%`;
     }
+  }
+
+  /** The index of the row at a place of the bar. */
+  private index(place: number): number {
+    const { times } = this;
+    if (!times) return place;
+    let best = 0;
+    times.forEach((time, k) => {
+      if (Math.abs(time - place) < Math.abs(times[best]! - place)) best = k;
+    });
+    return best;
   }
 
   draw(view: MotionView, index: number, row: number): void {
     const { input } = view;
-    const text = `${input.shown} = ${measured(input.values[row]!, input.unit)}`;
-    this.bar.value = String(index);
+    const event = this.times ? view.data.limits.find((one) => one.row === row)?.text : undefined;
+    const text = `${input.shown} = ${this.times ? inSeconds(this.times, index) : measured(input.values[row]!, input.unit)}`;
+    this.bar.value = String(this.times ? this.times[index] : index);
     const hidden = this.row.closest(".lw-hides-input") !== null;
     put(this.bar, { "aria-valuetext": hidden ? `${index + 1} of ${view.order.length}` : `${text}, ${index + 1} of ${view.order.length}` });
-    say(this.readout, text);
+    say(this.readout, event ? `${text} · ${event}` : text);
   }
 
   playing(on: boolean): void {
@@ -71,12 +88,19 @@ export class Transport {
 
   private speed(row: Element, hooks: TransportHooks): void {
     const select = html("select", { class: "lw-speed", "aria-label": "Speed" }, row);
-    for (const factor of [0.1, 0.25, 0.5, 1, 2, 4]) {
+    for (const factor of [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10]) {
       const option = html("option", { value: factor }, select, `${factor}×`);
       option.selected = factor === 1;
     }
     select.addEventListener("change", () => hooks.speed(Number(select.value)));
   }
+}
+
+/** A time with as many decimals as tell the rows apart, so that it does not change its width. */
+export function inSeconds(times: Float64Array, index: number): string {
+  const lasts = times[times.length - 1]! - times[0]!;
+  const decimals = Math.min(9, Math.max(2, 3 - Math.floor(Math.log10(lasts || 1))));
+  return `${Math.max(0, times[index]!).toFixed(decimals)} s`;
 }
 
 /** A switch with its name. */

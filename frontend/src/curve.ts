@@ -17,6 +17,7 @@ export function lineOverInput(view: MotionView, x: Values, y: Values, at: (x: nu
   const usual = usualStep(order, x);
   const first = Math.abs(x[order[1] ?? order[0]!]! - x[order[0]!]!);
   const pen = new Pen();
+  const jumps = eventsOf(view);
   let last = -1;
   for (const row of data.closed ? [...order, order[0]!] : order) {
     const value = x[row]!;
@@ -30,6 +31,7 @@ export function lineOverInput(view: MotionView, x: Values, y: Values, at: (x: nu
     }
     if (last < 0 || far > wide || (far > 1.5 * usual && isGap(view, last, row))) pen.lift();
     pen.to(at(value, y[row]!));
+    if (jumps.has(row) || jumps.has(last)) pen.corner();
     last = row;
   }
   return pen.path;
@@ -44,6 +46,7 @@ export function lineThrough(view: MotionView, values: readonly Values[], place: 
   });
   const usual = usualStep(order, view.input.values);
   const pen = new Pen();
+  const jumps = eventsOf(view);
   let last = -1;
   for (const row of data.closed ? [...order, order[0]!] : order) {
     const jump = last >= 0 && order.length > 8 && values.some((one, k) => Math.abs(one[row]! - one[last]!) > wide[k]! && wide[k]! > 0);
@@ -51,9 +54,15 @@ export function lineThrough(view: MotionView, values: readonly Values[], place: 
     const gap = last >= 0 && Math.abs(input[row]! - input[last]!) > 1.5 * usual && isGap(view, last, row);
     if (jump || gap) pen.lift();
     pen.to(place(row));
+    if (jumps.has(row) || jumps.has(last)) pen.corner();
     last = row;
   }
   return pen.path;
+}
+
+/** The rows of a motion in time at which speeds or forces may jump. */
+function eventsOf(view: MotionView): ReadonlySet<number> {
+  return new Set(view.times ? view.data.limits.map(({ row }) => row) : []);
 }
 
 /** Writes a smooth path; places that are not finite interrupt it. */
@@ -69,6 +78,13 @@ class Pen {
   lift(): void {
     if (this.run.length) this.pieces.push(curveThrough(this.run));
     this.run = [];
+  }
+
+  /** The path goes on from its last place in any direction. */
+  corner(): void {
+    const [last] = this.run.slice(-1);
+    this.lift();
+    if (last) this.run = [last];
   }
 
   to(spot: Spot): void {

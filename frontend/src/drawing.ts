@@ -1,7 +1,10 @@
 // The mechanism in SVG, with one group per frame; a new row only moves the groups.
 
+import type { Before } from "./ghost";
 import type { Course, MotionView } from "./motion";
 import type { PageData, Part } from "./page_data";
+import { QuickDrawing, type Drawn } from "./quick_drawing";
+import { isArrow, reversal } from "./reversal";
 import { pathOf, put, strokesOf, svg } from "./svg";
 import { toneClass } from "./theme";
 import { boxOf, viewOf, zoomed, type View } from "./view_box";
@@ -33,6 +36,12 @@ export class Drawing {
   private moved: Moved[] = [];
   private renewed: Renewed[] = [];
   private made = "";
+  private drawn: Drawn[] = [];
+  private readonly quick = new QuickDrawing();
+  /** Whether the canvas shows the mechanism. */
+  private hurried = false;
+  /** Draws the canvas once more, in another view. */
+  private again: () => void = () => {};
   /** Arrows of inputs, reversed while the input decreases. */
   private turned: Moved[] = [];
   private backwards = false;
@@ -54,7 +63,7 @@ export class Drawing {
       parent,
     );
     this.renew(data);
-    this.shapes = svg("g", {}, this.element);
+    this.shapes = svg("g", { class: "lw-shapes" }, this.element);
     this.overlay = svg("g", { class: "lw-overlay" }, this.element);
     this.handles = svg("g", { class: "lw-handles" }, this.element);
   }
@@ -63,13 +72,17 @@ export class Drawing {
   renew(data: PageData): void {
     this.data = data;
     const whole = around(data.view, [...this.more.values()].flat());
-    const { width, height } = this.size;
-    const [left, bottom, right, top] = (this.view = this.chosen ? boxOf(this.chosen, width, height) : whole);
+    const [left, bottom, right, top] = (this.view = this.chosen ? this.chosenBox(this.chosen) : whole);
     const box = `${left} ${-top} ${right - left} ${top - bottom}`;
     if (box === this.element.getAttribute("viewBox")) return;
     this.element.setAttribute("viewBox", box);
     this.fit();
     this.viewed();
+  }
+
+  private chosenBox(chosen: View): [number, number, number, number] {
+    const { width, height } = this.size;
+    return boxOf(chosen, width, height);
   }
 
   /** The size of the drawing on the screen [px]. */
@@ -122,12 +135,18 @@ export class Drawing {
     if (matrix === null) return;
     const grow = SMALLEST / (this.data.text * matrix.a);
     this.element.style.setProperty("--grow", String(Math.min(1.6, Math.max(1, grow))));
+    if (!this.hurried) return;
+    if (!this.quick.fits(this.element)) this.quick.begin(this.element, this.drawn);
+    this.again();
   }
 
-  /** Draw another motion; equal shapes are kept and updated. */
-  show(view: MotionView): void {
+  /** Draw another motion; equal shapes are kept and updated. `quick`: on a canvas, if it and the
+   * design before (`past`) have the same shapes as the last one. */
+  show(view: MotionView, quick = false, past: MotionView | null = null): void {
     this.motion = view;
     const wanted = madeOf(view);
+    this.hurry(quick && wanted === this.made && (past === null || madeOf(past) === wanted));
+    if (this.hurried) return;
     if (wanted === this.made) {
       view.data.parts.forEach((part, k) => this.renewed[k]!(part));
       return;
@@ -138,6 +157,7 @@ export class Drawing {
     this.moved = [];
     this.renewed = [];
     this.turned = [];
+    this.drawn = [];
     let group: SVGGElement | null = null;
     let carried = Number.NaN;
     for (const part of view.data.parts) {
@@ -158,8 +178,25 @@ export class Drawing {
     this.addHandles();
   }
 
+  /** Change between the elements and the canvas. */
+  private hurry(on: boolean): void {
+    if (on === this.hurried) return;
+    this.hurried = on;
+    this.again = () => {};
+    if (on) this.quick.begin(this.element, this.drawn);
+    this.element.classList.toggle("lw-hurried", on);
+    if (on) this.element.before(this.quick.element);
+    else this.quick.element.remove();
+  }
+
   /** Move all groups to a found row. */
-  draw(row: number, backwards = false): void {
+  draw(row: number, backwards = false, before: Before | null = null): void {
+    if (this.hurried) {
+      this.backwards = backwards;
+      this.again = () => this.quick.draw(this.motion, row, this.view, backwards, before);
+      this.again();
+      return;
+    }
     for (const move of this.moved) move(row);
     if (backwards === this.backwards) return;
     this.backwards = backwards;
@@ -200,20 +237,22 @@ export class Drawing {
     const look = this.look(part);
     if (part.kind === "disc") {
       const circle = svg("circle", look, group);
+      this.drawn.push([circle, null]);
       this.measured(part, ({ points: [x, y], radius }) => put(circle, { cx: x!, cy: -y!, r: radius }));
       return;
     }
-    const driving = part.role === "input" && part.head.length > 0;
+    const driving = isArrow(part);
     const within = driving ? svg("g", {}, group) : group;
     const path = svg("path", look, within);
     const head = part.head.length ? svg("path", { ...look, class: `${look.class} filled lw-head` }, within) : null;
+    this.drawn.push([path, head]);
     let round = "";
     const turn = (): void => put(within, { transform: this.backwards ? round : "" });
     this.measured(part, ({ kind, points, head: corners }) => {
       put(path, { d: kind === "strokes" ? strokesOf(points) : pathOf(points, kind === "area") });
       if (head) put(head, { d: pathOf(corners, true) });
       if (!driving) return;
-      round = turnedRound([points[0]!, points[1]!], [corners[0]!, corners[1]!]);
+      round = `matrix(${reversal(points, corners, -1).join(" ")})`;
       turn();
     });
     if (driving) this.turned.push(turn);
@@ -229,6 +268,7 @@ export class Drawing {
     let course: Course;
     const path = svg("path", this.look(part), this.shapes);
     path.classList.add("lw-changing");
+    this.drawn.push([path, null]);
     const closed = part.kind === "area";
     this.measured(part, (own) => (course = this.motion.course(own)));
     this.moved.push((row) => {
@@ -245,6 +285,7 @@ export class Drawing {
     const anchor = (["start", "middle", "end"] as const)[part.align + 1]!;
     const element = svg("text", { ...this.look(part), "text-anchor": anchor }, this.shapes);
     element.textContent = part.text;
+    this.drawn.push([element, null]);
     let [u, v] = [0, 0];
     const place = (row: number): void => {
       const { x, y, angle } = this.motion.pose(part.frame, row);
@@ -290,14 +331,6 @@ function around(view: readonly number[], places: readonly (readonly [number, num
   const xs = places.map(([x]) => x);
   const ys = places.map(([, y]) => y);
   return [Math.min(left, ...xs), Math.min(bottom, ...ys), Math.max(right, ...xs), Math.max(top, ...ys)];
-}
-
-/** The transform that reverses an arrow, straight or circular, in place. */
-function turnedRound([x0, y0]: readonly [number, number], [x1, y1]: readonly [number, number]): string {
-  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
-  const [u, v] = [(x1 - x0) / length, -(y1 - y0) / length];
-  const far = u * (x0 + x1) - v * (y0 + y1);
-  return `matrix(${1 - 2 * u * u} ${-2 * u * v} ${-2 * u * v} ${1 - 2 * v * v} ${far * u} ${far * v})`;
 }
 
 /** A key of the elements of a motion: motions with equal keys can share elements. */

@@ -27,7 +27,7 @@ export class Ghost {
     this.frames = [];
     const groups = new Map<number, SVGGElement>();
     for (const part of past?.data.parts ?? []) {
-      if (part.kind === "text" || part.frame < -1 || (part.frame === -1 && part.role !== "trace")) continue;
+      if (!isGhost(part)) continue;
       let group = groups.get(part.frame);
       if (!group) {
         group = svg("g", {}, this.group);
@@ -38,12 +38,11 @@ export class Ghost {
     }
   }
 
-  /** Move it to the input of a row of the present design. */
-  draw(view: MotionView, row: number): void {
-    if (this.past === null) return;
-    const there = sameInput(this.past, view.input.values[row]!, row);
+  /** Move it to a row. */
+  draw(before: Before | null): void {
+    if (before === null) return;
     for (const { frame, group } of this.frames) {
-      const { x, y, angle } = this.past.pose(frame, there);
+      const { x, y, angle } = before.view.pose(frame, before.row);
       put(group, { transform: `translate(${x} ${-y}) rotate(${(-angle * 180) / Math.PI})` });
     }
   }
@@ -53,8 +52,19 @@ export class Ghost {
     const look = { class: `r-${part.role} ${toneClass(part.tone, this.data)}${filled ? " filled" : ""}` };
     const [x, y] = part.points;
     if (part.kind === "disc") svg("circle", { ...look, cx: x!, cy: -y!, r: part.radius }, group);
-    else if (part.kind !== "strokes") svg("path", { ...look, d: pathOf(part.points, part.kind === "area") }, group);
+    else svg("path", { ...look, d: pathOf(part.points, part.kind === "area") }, group);
   }
+}
+
+/** A row of the design before. */
+export interface Before {
+  readonly view: MotionView;
+  readonly row: number;
+}
+
+/** Whether a shape of the design before is drawn. */
+export function isGhost({ kind, frame, role }: Part): boolean {
+  return kind !== "text" && kind !== "strokes" && (frame >= 0 || (frame === -1 && role === "trace"));
 }
 
 /** The found row whose input is nearest to a value; among equals, the one nearest to a row. */

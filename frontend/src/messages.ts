@@ -52,6 +52,15 @@ export interface SetMass {
   inertia?: number | string | null;
 }
 
+export interface SetEntry {
+  kind: "set_entry";
+  id?: number;
+  table: string;
+  of: string;
+  typed: Record<string, string | readonly (string)[]>;
+  remove?: boolean;
+}
+
 export interface AddPoint {
   kind: "add_point";
   id?: number;
@@ -223,6 +232,22 @@ export interface ShowQuantities {
   kind: "show_quantities";
   id?: number;
   names: readonly (string)[];
+  simulated?: boolean;
+}
+
+export interface Simulate {
+  kind: "simulate";
+  id?: number;
+  until: number | string;
+  start_speed?: number | string;
+  at?: Record<string, number | string> | null;
+  change_points?: string;
+  step?: number | string | null;
+}
+
+export interface Cancel {
+  kind: "cancel";
+  id?: number;
 }
 
 export interface ListConfigurations {
@@ -251,6 +276,7 @@ export interface ListCircuits {
 export interface ListQuantities {
   kind: "list_quantities";
   id?: number;
+  simulated?: boolean;
 }
 
 export interface Export {
@@ -259,6 +285,7 @@ export interface Export {
   format: string;
   row?: number | null;
   dark?: boolean;
+  simulated?: boolean;
 }
 
 export interface MakeLink {
@@ -299,6 +326,7 @@ export interface PaletteShown {
   kind: "palette_shown";
   answers: number | null;
   parts: readonly (PalettePart)[];
+  forms: readonly (PaletteForm)[];
 }
 
 export interface FileState {
@@ -323,6 +351,8 @@ export interface FileState {
   part_entries: readonly (PartShown)[];
   masses: readonly (MassShown)[];
   mass_unit: string;
+  force_unit: string;
+  force_entries: readonly (EntryShown)[];
   drives: readonly (Drive)[];
   traceable: readonly (string)[];
   traced: readonly (string)[];
@@ -414,6 +444,19 @@ export interface Exported {
   media_type: string;
   content: string;
   notices: readonly (string)[];
+}
+
+export interface SimulationFound {
+  kind: "simulation_found";
+  answers: number | null;
+  message: string;
+  complete: boolean;
+  rows: number;
+  certified: number;
+  energy: string;
+  events: readonly (SimulationEvent)[];
+  forms: readonly (FormOffered)[];
+  page: PageData | null;
 }
 
 export interface Working {
@@ -518,6 +561,13 @@ export interface Pick {
   repeated: boolean;
 }
 
+export interface PaletteForm {
+  table: string;
+  title: string;
+  doc: string;
+  fields: readonly (PaletteField)[];
+}
+
 export interface ChangeableNumber {
   name: string;
   value: number;
@@ -562,6 +612,14 @@ export interface MassShown {
   y: string;
   inertia: string;
   rod: boolean;
+}
+
+export interface EntryShown {
+  table: string;
+  of: string;
+  takes: readonly (string)[];
+  there: boolean;
+  typed: Record<string, string | readonly (string)[]>;
 }
 
 export interface Drive {
@@ -628,6 +686,17 @@ export interface QuantityListed {
   derivatives: number;
 }
 
+export interface SimulationEvent {
+  row: number;
+  t: number;
+  text: string;
+}
+
+export interface FormOffered {
+  form: string;
+  label: string;
+}
+
 export interface NewtonIterate {
   equations: readonly (string)[];
   k: number;
@@ -652,6 +721,7 @@ export type LiveEdit =
   | MovePoints
   | SetInput
   | SetMass
+  | SetEntry
   | AddPoint
   | RemovePoint
   | AddLink
@@ -678,6 +748,7 @@ export type LiveRequest =
   | MovePoints
   | SetInput
   | SetMass
+  | SetEntry
   | AddPoint
   | RemovePoint
   | AddLink
@@ -703,6 +774,8 @@ export type LiveRequest =
   | SetSheet
   | SolveAt
   | ShowQuantities
+  | Simulate
+  | Cancel
   | ListConfigurations
   | NewtonSteps
   | ListCircuits
@@ -726,6 +799,7 @@ export type LiveEvent =
   | CircuitsFound
   | QuantitiesListed
   | Exported
+  | SimulationFound
   | Working
   | NewtonShown
   | PointMoved

@@ -84,6 +84,12 @@ export class MotionView {
     return this.series[0] ?? STILL;
   }
 
+  /** The times of the rows in order [s], if the motion is over the time; they do not fall. */
+  get times(): Float64Array | null {
+    const { name, unit, values } = this.input;
+    return name === "t" && unit === "s" ? Float64Array.from(this.order, (row) => values[row]!) : null;
+  }
+
   /** Whether the input decreases at a row in the order of the motion. */
   falls(index: number): boolean {
     const value = (k: number): number => this.input.values[this.order[k]!]!;

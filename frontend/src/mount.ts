@@ -7,7 +7,7 @@ import { toggle, Transport } from "./controls";
 import { stepTowards, type Step } from "./drag";
 import { Drawing } from "./drawing";
 import { keepFitted } from "./equation_size";
-import { Ghost } from "./ghost";
+import { Ghost, sameInput } from "./ghost";
 import { InWords } from "./in_words";
 import { declareKeys, press, showKeys, type Command } from "./keys";
 import { MotionView } from "./motion";
@@ -18,7 +18,7 @@ import { Player } from "./player";
 import { Presentation } from "./presentation";
 import { Questions } from "./questions";
 import { Slowly } from "./slowly";
-import { html, say } from "./svg";
+import { html, put, say } from "./svg";
 import { RowTable } from "./table";
 import { themeButton } from "./theme_button";
 import { themeRules } from "./theme";
@@ -82,6 +82,9 @@ const SPOKEN_EVERY = 3000;
 /** Maximum interval of updates during a drag [ms]. */
 const UPDATED_WITHIN = 120;
 
+/** Without updates for so many of their intervals, a drag rests: everything is drawn. */
+const RESTS_AFTER = 3;
+
 let mounted = 0;
 
 /** Show a motion in an element. */
@@ -136,8 +139,12 @@ class Page implements Mounted {
   private frame = 0;
   private last = 0;
   private drawn = -1;
+  /** When the last update of a drag came, and after what time [ms]. */
   private steady = -Infinity;
+  private pace = 0;
   private updates = 0;
+  /** Whose turn it is during a drag: a chart by its number, or the numbers; null: everything. */
+  private turn: number | null = null;
   private spoken = 0;
   private readonly gone = new AbortController();
   private readonly sized = new ResizeObserver(() => this.drawing.fit());
@@ -196,10 +203,12 @@ class Page implements Mounted {
     if (steady) {
       const kept = data.motions.map((motion, k) => withVectors(motion, motions[k]));
       this.data = { ...data, view: around(view, data.view), stroke, pin, text, motions: kept };
-      this.steady = performance.now();
+      const now = performance.now();
+      this.pace = Math.min(UPDATED_WITHIN, Math.max(UPDATED_WITHIN / RESTS_AFTER, now - this.steady));
+      this.steady = now;
     }
     this.views = [];
-    this.dress();
+    if (!steady) this.dress();
     if (!steady) this.layOut();
     say(this.title, data.title);
     this.drawing.renew(this.data);
@@ -261,30 +270,42 @@ class Page implements Mounted {
     return (this.views[this.motion] ??= new MotionView(this.data.motions[this.motion]!, this.data));
   }
 
-  /** Show a motion, starting at one of its rows. */
-  private show(motion: number, index: number, steady = false): void {
+  /** Show a motion, starting at one of its rows; `rests`: whether a drag has stopped for a while. */
+  private show(motion: number, index: number, steady = false, rests = false): void {
     this.motion = motion;
     const view = this.view;
     this.drawn = -1;
     if (this.data.motions.length > 1) this.drawing.renew({ ...this.data, view: view.data.view });
-    this.drawing.show(view);
-    this.drawing.element.setAttribute("aria-label", this.data.title || "mechanism");
+    this.drawing.show(view, steady && !rests, this.past);
+    put(this.drawing.element, { "aria-label": this.data.title || "mechanism" });
     this.ghost.show(this.past);
     this.arrows.show(view);
     this.transport.show(view);
-    // During a drag, numbers are updated at half the rate of the drawing.
     const still = view.series.length === 0;
     if (!still) this.questions.show(this.data, view.data, steady);
-    if (!still && (!steady || this.updates++ % 2 === 0)) {
-      this.charts.show(view, this.past, steady);
+    // During a drag every chart and the numbers have their turn.
+    this.turn = steady && !rests ? this.updates++ % (this.charts.count + 1) : null;
+    if (!still) this.charts.show(view, this.past, steady, this.turn);
+    if (!still && this.numbered) {
       this.table.show(view);
       this.whole.show(view, steady);
       this.polygon.show(view);
     }
     this.root.classList.toggle("lw-still", still);
+    this.root.classList.toggle("lw-in-time", view.times !== null);
     say(this.summary, view.data.summary);
     if (this.choice) this.choice.selectedIndex = motion;
-    this.player.restart(view.order.length, view.data.closed, index);
+    this.player.restart(view.order.length, view.data.closed, index, view.times);
+  }
+
+  private get numbered(): boolean {
+    return this.turn === null || this.turn === this.charts.count;
+  }
+
+  /** Show everything that waited for its turn during a drag. */
+  private settle(): void {
+    this.steady = -Infinity;
+    this.show(this.motion, this.player.at, true, true);
   }
 
   /** Show another motion, at the current input if it reaches this. */
@@ -337,13 +358,14 @@ class Page implements Mounted {
     const row = this.view.order[this.player.at]!;
     if (row !== this.drawn) {
       this.drawn = row;
-      this.drawing.draw(row, this.view.turned(this.player.at, this.player.back));
-      this.ghost.draw(this.view, row);
+      const before = this.past && { view: this.past, row: sameInput(this.past, this.view.input.values[row]!, row) };
+      this.drawing.draw(row, this.view.turned(this.player.at, this.player.back), before);
+      this.ghost.draw(before);
       this.arrows.draw(row);
-      if (this.view.series.length) this.charts.draw(row);
+      if (this.view.series.length) this.charts.draw(row, this.turn);
       this.transport.draw(this.view, this.player.at, row);
-      this.table.draw(row);
-      this.polygon.draw(row);
+      if (this.numbered) this.table.draw(row);
+      if (this.numbered) this.polygon.draw(row);
       this.root.dataset.row = String(row);
       this.hooks.row?.(this.motion, row);
     }
@@ -353,6 +375,7 @@ class Page implements Mounted {
 
   private tick(now: number): void {
     // During a drag every update draws a frame; no other frames are drawn.
+    if (this.steady > -Infinity && now - this.steady > RESTS_AFTER * this.pace) this.settle();
     if (now - this.steady > UPDATED_WITHIN) this.pass(now);
     this.frame = requestAnimationFrame((next) => this.tick(next));
   }

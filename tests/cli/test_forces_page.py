@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import linkwork as lw
@@ -28,6 +29,24 @@ def test_forces_of_a_motion_are_written_and_plotted(run: Run, tmp_path: Path) ->
     assert header.startswith("crank,O.force.x,")
     assert first.startswith("90,")
     assert plot.stat().st_size > 0
+
+
+def test_forces_say_when_a_law_leaves_the_reach(run: Run, tmp_path: Path) -> None:
+    """A crank of a double rocker cannot turn on at 36 degrees, 1.8 s after it starts."""
+    rocker = lw.linkage(
+        points={"A": (0, 0), "B": (40, 0), "C": (70, 40), "D": (100, 0)},
+        lengths={"A B": 60, "B C": 40, "C D": 30, "A D": 100},
+        links={"ground": ["A", "D"], "crank": ["A", "B"], "rod": ["B", "C"], "rocker": ["C", "D"]},
+        masses={"rod": lw.Mass(mass=1, shape="rod")},
+        inputs=lw.Input(link="crank", law="20*t", start=0, stop=5, step=0.5),
+    )
+    rocker.save(tmp_path / "m.toml")
+    done = run("forces", str(tmp_path / "m.toml"))
+    assert done.exit_code == 1
+    # 60² + 100² - 2 60 100 cos(crank) = 70²
+    when = math.degrees(math.acos((60**2 + 100**2 - 70**2) / (2 * 60 * 100))) / 20
+    assert f"t = {when:.6f}"[:10] in done.stdout
+    assert "dead point" in done.stdout
 
 
 def test_forces_are_drawn_as_arrows(run: Run, tmp_path: Path) -> None:

@@ -73,6 +73,20 @@ def test_an_interrupt_is_quiet(environment: dict[str, str]) -> None:
         assert process.wait(60) == 130
 
 
+def test_an_interrupt_while_the_program_is_imported_is_quiet(environment: dict[str, str]) -> None:
+    program = (
+        "import sys\n"
+        "class Interrupted:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'numpy': raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupted())\n"
+        "from linkwork.__main__ import main\n"
+        "main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
+
+
 def _wait_until_it_reads(pid: int) -> None:
     """Until the process sleeps in a read of its standard input."""
     channel = Path(f"/proc/{pid}/wchan")
@@ -153,9 +167,9 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
     start: Start, folder: Path, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
-    # 1,000 turns of a motion that does not repeat itself
+    # 400 turns of a motion that does not repeat itself
     (folder / "never.toml").write_text(NEVER, encoding="utf-8")
-    slow = ["sweep", "never.toml", "--from", "0", "--to", "360000", "--step", "300"]
+    slow = ["sweep", "never.toml", "--from", "0", "--to", "144000", "--step", "300"]
     shown = _in_terminal(slow, terminal)
     assert b"sweeping  [" in shown
     assert b"sweeping  [" not in shown.split(b"\x1b[?25h")[-1]  # the bar is gone at the end

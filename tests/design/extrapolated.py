@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-import numpy as np
-
 import linkwork as lw
 from linkwork.api import Mechanism
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import number_named, with_numbers
-from linkwork.motion.leading_input import leading_input
-from linkwork.motion.model import Model, model_of
-from linkwork.motion.named_quantities import RowValues
+from linkwork.motion.model import Model
 
-__all__ = ["changed_by", "extrapolated", "own_position", "values_of"]
+__all__ = ["changed_by", "extrapolated", "own_position"]
 
 
 def extrapolated(
@@ -47,19 +43,3 @@ def own_position(model: Model, v: Array) -> Array:
         for _ in range(2):
             found = model.compiled.solver.sharpen(found)
     return found
-
-
-def values_of(
-    mechanism: lw.Mechanism, name: str, v: Array, wanted: list[str], to: float
-) -> dict[str, float]:
-    """Quantities of a design with one other number, at the position next to a given one."""
-    number = number_named(mechanism.description, name)
-    model = model_of(with_numbers(mechanism.description, {number: to}))
-    here = own_position(model, v)
-    first, second = np.zeros_like(here), np.zeros_like(here)
-    if model.equations.inputs:
-        rates = model.compiled.solver.rates(here, leading_input(model.rows)[1])
-        first, second = rates.first, rates.second
-    rows = RowValues(model, here, first, second, np.ones(1, dtype=bool))
-    asked = {name: model.quantities.find(name) for name in wanted}
-    return {name: float(np.ravel(a.values(rows, model.speed))[0]) for name, a in asked.items()}

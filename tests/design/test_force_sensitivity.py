@@ -72,11 +72,20 @@ FORCES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", [MACHINE, MACHINE + FRICTION], ids=["smooth", "rubbing"])
-def test_forces_have_the_derivatives_of_differences(text: str) -> None:
+#: At rest, where friction holds a range of efforts.
+STILL = (MACHINE + FRICTION).replace('speed = "300 rpm"\n', "").replace("damping = 0.01", "")
+RUBBING = ["A.friction", "efficiency", "friction_power"]
+HELD = ["crank.effort", "crank.effort.backward", "efficiency", "A.friction", "d.normal"]
+
+
+@pytest.mark.parametrize(
+    ("text", "names_of"),
+    [(MACHINE, FORCES), (MACHINE + FRICTION, FORCES + RUBBING), (STILL, HELD)],
+    ids=["smooth", "rubbing", "held"],
+)
+def test_forces_have_the_derivatives_of_differences(text: str, names_of: list[str]) -> None:
     machine = lw.loads(text)
     names = ["O A", "A B", "m2", "T.y", *(["mu"] if text != MACHINE else [])]
-    names_of = [*FORCES, *(["A.friction"] if text != MACHINE else [])]
     found = {of: machine.sensitivity(of, at=50, by=names) for of in names_of}
     assert {s.status.name for s in found.values()} == {"FOUND"}
     for name in names:
@@ -115,6 +124,29 @@ def test_rows_of_a_table_have_the_sensitivities_of_positions() -> None:
     machine = lw.loads(MACHINE)
     rows = np.asarray(machine.gradient("crank.effort", by=["A B"])["A B"])
     assert rows[5] == pytest.approx(machine.sensitivity("crank.effort", at=50)["A B"], rel=1e-10)
+
+
+def test_forces_without_known_derivatives_are_refused_with_their_reason() -> None:
+    machine = lw.loads(MACHINE)
+    with pytest.raises(InputError, match=r'of "disagreement" are not known: it measures rounding'):
+        machine.sensitivity("disagreement", at=50)
+    law = (lw.LawSegment(law="3-4-5", over=1.0, by=90.0),)
+    timed = machine.changed(inputs=[lw.Input(link="crank", law=law)])
+    with pytest.raises(InputError, match="time drives the rows; give the input a speed"):
+        timed.sensitivity("crank.effort", at=0.5)
+    robot = lw.example("five-bar-robot")
+    given = cast(Linkage, robot.description)
+    masses = {k: lw.Mass(mass=1.0, shape="rod") for k in given.links if k != "ground"}
+    rubbing = robot.changed(
+        masses=masses, gravity=lw.Gravity(), friction={"E1": lw.Friction(mu=0.1, radius=1)}
+    )
+    start = rubbing.solve().input
+    with pytest.raises(InputError, match="friction depends on the rates of several inputs"):
+        rubbing.sensitivity(f"{next(iter(start))}.effort", at=start)
+    loops = lw.example("rapier-drive").changed(masses={"rod": lw.Mass(mass=1.0, shape="rod")})
+    assert np.isfinite(float(loops.sensitivity("θ12.effort", at=60)["a2"]))
+    with pytest.raises(InputError, match="links read from the loops: give points and links"):
+        loops.sensitivity("A.force.x", at=60)
 
 
 def test_a_machine_without_loads_has_no_forces_to_differentiate() -> None:

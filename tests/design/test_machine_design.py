@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,20 @@ def test_a_motor_has_to_give_the_peak_at_its_speed_and_the_mean_square_without_e
     assert found.fits
     assert not machine.motor_check(stall=39.0, free_speed="1200 rpm").fits
     assert not machine.motor_check(stall=60.0, free_speed="1200 rpm", rated=21.0).fits
+
+
+def test_a_motor_may_be_a_table_or_that_of_the_file() -> None:
+    machine = rotor("-(20 + 10*sin(crank))")
+    table = lw.Motor(speeds=("0 rpm", "200 rpm", "400 rpm"), torques=(50, 38, 24))
+    # straight between its speeds
+    assert machine.motor_check(motor=table).available == pytest.approx(31.0, rel=1e-14)
+    own = machine.changed(inputs=replace(machine.description.inputs[0], motor=table))
+    assert own.motor_check().available == pytest.approx(31.0, rel=1e-14)
+    short = lw.Motor(speeds=("0 rpm", "200 rpm"), torques=(50, 38))
+    with pytest.raises(lw.InputError, match="from 0 rpm to 200 rpm, but the input turns at 300"):
+        machine.motor_check(motor=short)
+    with pytest.raises(lw.InputError, match="there is no motor"):
+        machine.motor_check()
 
 
 def test_harmonics_of_a_sum_of_sines_are_its_terms() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -16,7 +15,8 @@ import linkwork as lw
 from linkwork.design.differentiable_numbers import chosen_numbers
 from linkwork.design.differentiated_forces import LoadedRows
 from linkwork.foundation.errors import InputError, UnknownNameError
-from tests.design.extrapolated import changed_by, extrapolated, own_position, values_of
+from tests.campaigns.gradients import gradient_campaign
+from tests.design.extrapolated import changed_by, extrapolated
 from tests.library_mechanisms import driven_examples, read_example
 from tests.thinned import thinned
 
@@ -48,8 +48,8 @@ def slide_rate(crank: complex, rod: complex, offset: complex) -> complex:
     )
 
 
-#: Most of their numbers cannot vary alone: redundant links, pitch curves.
-REFUSED = ("oval-gears", "parallel-cranks", "dixon-one", "dixon-two", "scissor-three-bars")
+#: Their curves and pitch curves are splines, which differences differentiate.
+SPLINES = ("curved-slot", "eccentric-cam", "elliptical-gears", "garage-door", "oval-gears")
 NAMES = ["O2 A", "B A", "d.offset"]
 AT = (40.0, 120.0, 0.0)
 
@@ -119,6 +119,54 @@ def test_numbers_of_a_motion_have_the_derivatives_of_their_rows(of: str) -> None
     assert found["O2 A"] == pytest.approx(other[of], rel=1e-9)
 
 
+def around(start: float, stop: float, step: float = 1.0) -> lw.Mechanism:
+    return lw.loops(
+        loops={"1": "r*e^(i*t) = x + i*y"},
+        dimensions={"r": 2.0, "c": 1.0, "s": 0.5},
+        guess={"t": 30, "x": 1.0, "y": 1.0},
+        inputs=lw.Input(variable="t", start=start, stop=stop, step=step),
+        outputs={"mixed": "c*x + s*y + 0.1*x^2"},
+    )
+
+
+@pytest.mark.parametrize(("start", "step"), [(-90, 0.25), (90, -0.25)])
+def test_a_dwell_moves_as_its_closed_form(start: float, step: float) -> None:
+    """r cos t stays within a band b of its extreme for 2 acos(1 - b/r)."""
+    motion = around(start, -start, step)
+    r, band = 2.0, 0.3
+    found = motion.sensitivity(f"dwell(x, {band})", by=["r"])
+    cosine = 1.0 - band / r
+    by_r = -2.0 * (band / r**2) / math.sqrt(1.0 - cosine**2)
+    # the slope of the cubic between rows
+    assert found.value == pytest.approx(math.degrees(2.0 * math.acos(cosine)), rel=1e-8)
+    assert found["r"] == pytest.approx(math.degrees(by_r), rel=1e-8)
+    begins = motion.sensitivity(f"dwell_start(x, {band})", by=["r"])
+    assert abs(float(begins["r"])) == pytest.approx(abs(math.degrees(by_r)) / 2.0, rel=1e-8)
+
+
+def test_a_dwell_that_is_the_whole_table_does_not_change() -> None:
+    found = around(0, 360).sensitivity("dwell(x, 5)", by=["r"])
+    assert found.status is lw.SensitivityStatus.FOUND
+    assert (float(found.value), float(found["r"])) == (360.0, 0.0)
+
+
+@pytest.mark.parametrize("step", [2.0, -2.0])
+def test_a_time_ratio_has_the_derivative_of_its_extremes(step: float) -> None:
+    mechanism = around(0, 360 if step > 0 else -360, step)
+    for name, at in (("c", 1.0), ("s", 0.5), ("r", 2.0)):
+        found = mechanism.sensitivity("time_ratio(mixed)", by=[name])
+
+        def ratio(x: float, name: str = name) -> dict[str, float]:
+            return {"": changed_by(mechanism, name, x).sweep().value("time_ratio(mixed)")}
+
+        assert found[name] == pytest.approx(extrapolated(ratio, at, 5e-4)[""], rel=1e-9, abs=1e-11)
+
+
+def test_a_time_ratio_of_equal_strokes_has_a_corner() -> None:
+    found = around(0, 360).sensitivity("time_ratio(x)", by=["r"])
+    assert found.status is lw.SensitivityStatus.CORNER
+
+
 def test_a_length_given_by_a_formula_varies_alone_and_with_its_dimension() -> None:
     mechanism = read_example("geared-five-bar")
     found = mechanism.sensitivity("rod1", at=60, by=["a", "O A"])
@@ -126,57 +174,23 @@ def test_a_length_given_by_a_formula_varies_alone_and_with_its_dimension() -> No
     assert "O A" not in mechanism.sensitivity("rod1", at=60).derivatives
 
 
-@pytest.mark.parametrize("name", thinned(driven_examples(), 9))
-def test_all_quantities_of_a_library_mechanism_have_the_derivatives_of_differences(
+@pytest.mark.parametrize("name", thinned(driven_examples(), 12))
+def test_all_quantities_of_a_library_mechanism_have_the_derivatives_of_its_equations(
     name: str,
 ) -> None:
-    mechanism = read_example(name)
-    model = mechanism.model
-    start = model.start_in_file_units.copy()
-    start[0] += 0.7 if len(start) else 0.0
-    inputs = {x.name: float(u) for x, u in zip(model.equations.inputs, start, strict=True)}
-    position = mechanism.solve(inputs, certify=False)
-    if not position.status.ok:
-        position = mechanism.solve(certify=False)
-    values = np.array(list(position.input.values())) * model.input_scale
-    v = own_position(model, np.append(position.q, values)[None, :])
-    numbers, _ = chosen_numbers(model, None)
-    random = np.random.default_rng(len(name))
-    numbers = tuple(numbers[k] for k in random.permutation(len(numbers))[:2])
-    taped = LoadedRows(model, numbers, v, 2)
-    known, further = model.quantities, set(model.quantities.names.further)
-    wanted, results = [], []
-    for own in (*known.own.values(), *known.derived.values()):
-        if own.row in further:
-            continue  # forces have a test of their own
-        for rate in ("", ".d1", ".d2"):
-            asked = known.find(f"{own.name}{rate}")
-            if asked.needs <= 2:
-                wanted.append(asked.name)
-                with np.errstate(all="ignore"):
-                    results.append(asked.values(taped, taped.speed))
-    rates = [np.broadcast_to(x, (len(numbers), 1))[:, 0] for x in taped.tape.forward(results)]
-    size, compared = model.equations.length_scale, 0
-    for k, number in enumerate(numbers):
-        at = float(number.of(model.description))
-        step = 0.015 if number.table == "angles" else 1.5e-4 * size
-        with np.errstate(all="ignore"):
-            here = values_of(mechanism, number.name, v, wanted, at)
-            try:
-                other = extrapolated(
-                    partial(values_of, mechanism, number.name, v, wanted), at, step
-                )
-            except InputError:
-                continue  # two dimensions of ground agree to first order only
-        for own_name, slopes in zip(wanted, rates, strict=True):
-            scale = max(abs(here[own_name]) / size, abs(other[own_name]))
-            if math.isfinite(scale) and scale < 1e3 * max(1.0, 1.0 / size):
-                # six digits of differences whose steps lose half of the sixteen
-                assert slopes[k] == pytest.approx(
-                    other[own_name], rel=1e-6, abs=1e-6 * scale + 1e-9
-                )
-                compared += 1
-    assert compared > 0 or name in REFUSED
+    """The equations that the file states, in seventy digits, differentiated by every number."""
+    counts, false = gradient_campaign(driven_examples().index(name))
+    assert not false
+    # whatever the file of oval gears gives changes the form of the equations
+    assert counts["compared"] > 0 or not counts["numbers"]
+    assert counts["of these with stated equations"] > 0 or name in SPLINES
+
+
+def test_sketched_coordinates_that_only_select_a_shape_have_no_effect() -> None:
+    """Three points in line are fitted by an iteration from the sketch; its result knows it not."""
+    found = read_example("stephenson-valve-gear").sensitivity("x", at=50)
+    assert found["F S G"] != 0.0
+    assert [found[f"{p}.{axis}"] for p in ("F", "G", "S") for axis in "xy"] == [0.0] * 6
 
 
 @pytest.mark.parametrize("name", ["slider-crank", "jansen-leg", "curved-slot", "five-bar-robot"])
@@ -265,10 +279,6 @@ def test_wrong_names_are_refused(of: str, by: list[str] | None, message: str) ->
         read_example("slider-crank").sensitivity(of, at=60, by=by)
 
 
-def test_numbers_without_known_derivatives_are_refused() -> None:
-    crank = read_example("slider-crank")
-    message = re.escape('the derivatives of "dwell(d, 1)" are not known')
-    with pytest.raises(InputError, match=message):
-        crank.sensitivity("dwell(d, 1)")
+def test_a_motion_without_dead_point_has_no_limit_to_differentiate() -> None:
     with pytest.raises(InputError, match="no dead point above its start"):
-        crank.sensitivity("limit.upper")
+        read_example("slider-crank").sensitivity("limit.upper")

@@ -100,3 +100,14 @@ def test_a_mechanism_whose_forces_have_no_cells_says_so(tmp_path: Path) -> None:
     assert "Forces" not in sheet.book.sheetnames
     texts = [str(cell.value) for row in sheet.book["About"].iter_rows() for cell in row]
     assert any("no sheets of forces: forces of gear pairs have no cells" in t for t in texts)
+
+
+@pytest.mark.parametrize("links", [("ground", "rocker"), ("coupler", "crank")])
+def test_torsion_springs_have_cells(links: tuple[str, str], tmp_path: Path) -> None:
+    spring = lw.Spring(name="torsion", links=links, stiffness=9000, free=40, damping=80)
+    mechanism = coarse(loaded(lw.example("four-bar"), seed=2), 6).changed(springs=[spring])
+    sheet = written(tmp_path, mechanism)
+    check(sheet, mechanism)
+    stiffer = mechanism.changed(springs=[replace(spring, stiffness=12000)])
+    sheet.set("torsion_stiffness", 12000.0)
+    check(sheet, stiffer)

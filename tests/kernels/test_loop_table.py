@@ -55,7 +55,7 @@ def test_residual_equals_the_sums_of_cosines_and_sines(examples: list[Example]) 
 
 
 def test_jacobian_and_input_derivative_equal_complex_steps(examples: list[Example]) -> None:
-    for seed, example in enumerate(examples):
+    for seed, example in enumerate(examples[:400]):
         v = example.v
         wanted = np.empty((len(v), example.table.equations, example.table.variables))
         for k in range(example.table.variables):

@@ -353,3 +353,42 @@ def test_balanced_lamp_stands_at_every_height() -> None:
         height**2 + (60 * np.cos(degrees(motion, "arm"))) ** 2,
         160**2,
     )
+
+
+@law("pendulum")
+def test_pendulum_is_at_its_exact_places() -> None:
+    """From rest at 180°, the place after 1, 5 and 10 s by elliptic functions (IFToMM A01)."""
+    motion = lw.example("pendulum").simulate(10, step=1)
+    exact = [
+        0.986291751131875319 - 0.165010853125541169j,
+        -0.942305435043757335 - 0.334754338414000581j,
+        -0.27508746257611686 - 0.961419205099125064j,
+    ]
+    same((motion["A.x"] + 1j * motion["A.y"])[[1, 5, 10]], exact, 1)
+
+
+@law("door-closer")
+def test_door_closer_falls_as_two_exponentials() -> None:
+    """I θ'' + c θ' + k (θ - θ_free) = 0 up to the frame: θ = θ_free + Σ a e^(λ t)."""
+    motion = lw.example("door-closer").simulate(3, step=0.05)
+    inertia, damping, stiffness, free = 20 * 0.9**2 / 3, 18, 14, -0.5
+    slow, fast = np.roots([inertia, damping, stiffness])[::-1]
+    t = motion["t"]
+    begin = math.pi / 2 - free
+    angle = free + begin * (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow)
+    closed = t[motion["door"] <= 0][0]
+    same(motion["door"], np.where(t < closed, angle, 0), 2)
+    assert [word for word in motion.limit if word] == ["stop of door"]
+
+
+@law("compressor")
+def test_compressor_gives_the_power_of_its_motor_to_gas_friction_and_speed() -> None:
+    """d = r cos θ + √(l² - r² sin² θ); motor + gas = d/dt(energy) + friction."""
+    motion = lw.example("compressor").simulate(0.12, step=0.01)
+    turn = degrees(motion, "crank")
+    same(motion["d"], 40 * np.cos(turn) + np.sqrt(120**2 - (40 * np.sin(turn)) ** 2), 160)
+    power, load, rate, friction = (
+        motion[name] for name in ("power", "load_power", "energy_rate", "friction_power")
+    )
+    assert friction[-1] > 0
+    same(power + load - friction, rate, float(np.abs(rate).max()))

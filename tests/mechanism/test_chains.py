@@ -75,6 +75,7 @@ def test_a_chain_has_its_name_whatever_its_links_are_called(seed: int) -> None:
             assert chain_name(_chain(*edges)) == chain_name(_of(graph))
 
 
+@pytest.mark.extended  # the table is a file that nobody edits
 def test_the_table_of_eight_links_is_what_counting_gives() -> None:
     found: list[tuple[int, int, int, str, Any]] = []
     for graph in kinematic_chains(8):

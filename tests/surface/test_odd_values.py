@@ -138,3 +138,17 @@ to = 1
 step = 0.5
 """
     assert lw.loads(text).sweep().found.all()
+
+
+def test_forces_at_a_speed_beyond_all_accelerations_have_a_status() -> None:
+    fast = changed("crank-press", 'speed = "120 rpm"', "speed = 1e308")
+    found = lw.loads(fast).forces(at=30)
+    assert found.status is not lw.ForceStatus.FOUND
+
+
+def test_a_load_is_no_complex_number() -> None:
+    text = changed("crank-press", '[0, "20000', '["cis(30)", "20000')
+    with pytest.raises(
+        lw.MechanismError, match=r"column 1: cis is complex, a load is a real number"
+    ):
+        lw.loads(text)

@@ -39,6 +39,7 @@ def family() -> Any:
         (lambda: BAR.sweep(limits_of=3), "the quantities must be a list of names, got 3"),
         (lambda: BAR.sweep(limits_of=[3]), NO_NAME),
         (lambda: BAR.sweep(change_points=3), '"3" is not a policy at a change point'),
+        (lambda: BAR.sweep(change_points=np.array([])), '"[]" is not a policy at a change point'),
         (lambda: BAR.sweep(step=90)[3], NO_NAME),
         (lambda: BAR.sweep(step=90).trace(3), NO_NAME),
         (lambda: BAR.solve()[3], NO_NAME),

@@ -64,7 +64,7 @@ def test_any_text_is_read_or_refused(text: str) -> None:
     assert is_read_or_refused(lambda: read_text("format = 1\n" + text))
 
 
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(st.data())
 def test_a_file_with_mistakes_is_read_or_refused(data: st.DataObject) -> None:
     text = data.draw(st.sampled_from(sorted(SAMPLES.values())))
@@ -75,7 +75,7 @@ def test_a_file_with_mistakes_is_read_or_refused(data: st.DataObject) -> None:
     assert is_read_or_refused(lambda: read_text(text))
 
 
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(st.data())
 def test_a_file_with_other_values_is_read_or_refused(data: st.DataObject) -> None:
     """Every value of a right file is exchanged for one that TOML allows."""

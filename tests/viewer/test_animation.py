@@ -45,8 +45,8 @@ def test_arrows_of_inputs_point_the_way_they_run(
 
     monkeypatch.setattr(MovingScene, "at", at)
     motion = lw.example(name).cycle()
-    animation({"motion": motion}, "gif", options=FilmOptions(rows=60, dpi=20))
-    del shown[:-60]  # where names were tried
+    animation({"motion": motion}, "gif", options=FilmOptions(rows=30, dpi=20))
+    del shown[:-30]  # where names were tried
     values = next(iter(motion.inputs.values()))[[row for row, _ in shown]]
     rises = np.remainder(np.diff(values) + 180, 360) - 180 > 0
     assert [up for _, up in shown[:-1]] == rises.tolist()

@@ -41,6 +41,26 @@ def test_pins_have_arrows_that_follow_the_motion(open_page: Open, press: lw.Moti
         assert [part * per / means for part in drawn] == pytest.approx(
             wanted, abs=2e-3 * math.hypot(*wanted)
         )
+        dashes = page.locator(".lw-forces .shaft").evaluate_all(
+            "all => all.map((one) => one.getAttribute('stroke-dasharray'))"
+        )
+        assert dashes == ["none"] * len(dashes)
+
+
+def test_a_small_force_is_drawn_dashed_and_not_to_scale(open_page: Open, press: lw.Motion) -> None:
+    page = open_page({"motion": press})
+    page.evaluate("linkwork.goToRow(12)")  # before the work, which is a hundred times as large
+    legend = page.locator(".lw-legend").inner_text()
+    found = re.search(r"dashed: below ([0-9.]+) N, not to scale", legend)
+    assert found is not None
+    for name in ("A", "C", "O"):
+        small = [float(np.asarray(press[f"{name}.force.{axis}"])[12]) for axis in "xy"]
+        assert math.hypot(*small) < float(found[1])
+        label = page.get_by_text(f"F({name})", exact=True)
+        group = page.locator(".lw-forces .lw-force", has=label)
+        assert group.locator(".shaft").get_attribute("stroke-dasharray") != "none"
+        tip = _tips(page, f"F({name})")
+        assert math.atan2(*tip) == pytest.approx(math.atan2(*small), abs=1e-2)
 
 
 def test_the_force_polygon_of_a_link_adds_up_to_its_other_forces(

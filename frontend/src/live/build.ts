@@ -4,6 +4,7 @@ import type { DrivenInput, FileState, LiveEdit, PalettePart } from "../messages"
 import { toggle } from "../controls";
 import { html } from "../svg";
 import type { Desk } from "./asking";
+import { rebuilt, type ForceForms } from "./force_forms";
 import { typed } from "./ranges";
 
 /** A field of a form: a name or number to type, or points and links to choose. */
@@ -79,15 +80,20 @@ export class Build {
   private readonly paths: HTMLElement;
   private readonly parts: HTMLElement;
   private readonly text: HTMLTextAreaElement;
+  private readonly groups = new Map<string, HTMLDetailsElement>();
   private offered: readonly Piece[] = PLAIN;
 
-  constructor(private readonly desk: Desk) {
+  constructor(
+    private readonly desk: Desk,
+    private readonly forms: ForceForms,
+  ) {
     this.input = this.group("Input", true);
     this.palette = this.group("Add", true);
     this.masses = this.group("Masses", false);
+    for (const title of ["Gravity", "Friction", "Motor", "Stops"]) this.group(title, false);
     this.paths = this.group("Paths of points", false);
     this.parts = this.group("Remove", false);
-    const box = this.group("Text of the file", false);
+    const box = this.group("Text of the file", false, "text");
     this.text = html("textarea", { rows: 18, spellcheck: "false", "aria-label": "Text of the file" }, box);
     const apply = html("button", { type: "button" }, box, "Use this text");
     apply.addEventListener("click", () => desk.ask({ kind: "set_text", text: this.text.value }));
@@ -101,33 +107,28 @@ export class Build {
     this.text.value = file.text;
     this.inputs(file);
     this.pieces(file);
-    this.weights(file);
+    this.loads(file);
     this.traces(file);
     this.removable(file);
   }
 
-  /** A form for the mass of every link; an empty one has none. */
-  private weights(file: FileState): void {
-    this.masses.querySelectorAll("form, p").forEach((old) => old.remove());
+  /** Forms for masses, gravity, friction, motors and stops. */
+  private loads(file: FileState): void {
     const lead = "The centre is in the frame of the link, from its first point towards its second. A link of two points without centre and inertia is a uniform rod.";
-    html("p", { class: "lw-lead" }, this.masses, lead);
-    const length = file.length_unit;
-    for (const { link, mass, x, y, inertia } of file.masses) {
-      const form = html("form", { class: "lw-form", "aria-label": `Mass of ${link}` }, this.masses);
-      html("p", { class: "lw-wide" }, form, link);
-      const fields = [
-        { key: "mass", label: `Mass [${file.mass_unit}]`, value: mass },
-        { key: "x", label: `Centre x [${length}]`, value: x },
-        { key: "y", label: `Centre y [${length}]`, value: y },
-        { key: "inertia", label: `Inertia [${file.mass_unit} ${length}²]`, value: inertia },
-      ].map(({ key, label, value }) => ({ key, input: field(form, label, value) }));
-      html("button", { type: "submit" }, form, `Set the mass of ${link}`);
-      form.addEventListener("submit", (event) => {
-        event.preventDefault();
-        const given = fields.filter(({ input }) => input.value.trim());
-        this.desk.ask({ kind: "set_mass", link, ...Object.fromEntries(given.map(({ key, input }) => [key, typed(input.value)])) });
-      });
-    }
+    rebuilt(this.element, () => {
+      this.fill(this.masses, lead, () => file.masses.forEach((own) => this.forms.mass(this.masses, own, file)));
+      for (const { table, doc } of this.forms.kinds) {
+        const box = this.groups.get(table)!;
+        this.fill(box, `${doc}.`, () => this.forms.all(box, table, file));
+      }
+    });
+  }
+
+  private fill(box: Element, lead: string, forms: () => void): void {
+    box.querySelectorAll("form, p").forEach((old) => old.remove());
+    html("p", { class: "lw-lead" }, box, lead);
+    forms();
+    if (!box.querySelector("form")) html("p", { class: "lw-empty" }, box, "Nothing here can have it yet.");
   }
 
   private traces(file: FileState): void {
@@ -138,9 +139,19 @@ export class Build {
     }
   }
 
-  private group(title: string, open: boolean): HTMLElement {
+  /** Open a group of forms, and choose its first field. */
+  open(name: string): void {
+    const box = this.groups.get(name);
+    if (!box) return;
+    box.open = true;
+    box.scrollIntoView({ block: "nearest" });
+    box.querySelector<HTMLElement>("input, select, textarea")?.focus();
+  }
+
+  private group(title: string, open: boolean, name = title.toLowerCase()): HTMLElement {
     const box = html("details", { class: "lw-group", ...(open ? { open: "" } : {}) }, this.element);
     html("summary", {}, box, title);
+    this.groups.set(name, box);
     return box;
   }
 

@@ -15,12 +15,14 @@ import { Editor } from "./draw/editor";
 import { Readiness } from "./draw/readiness";
 import { ExportMenu } from "./export_menu";
 import { firstHint } from "./first_hint";
+import { ForceForms } from "./force_forms";
 import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
 import { Notices } from "./notices";
 import { Plots } from "./plots";
 import { presentNewton } from "./presented";
+import { SimulatePanel } from "./simulate";
 import { Starting } from "./starting";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
@@ -44,11 +46,13 @@ export class LivePage {
   private readonly dimensions: Dimensions;
   private readonly ways: Ways;
   private readonly newton: Newton;
+  private readonly forms: ForceForms;
   private readonly build: Build;
   private readonly editor: Editor;
   private readonly canvas: CanvasTools;
   private readonly readiness: Readiness;
   private readonly circuits: CircuitsPanel;
+  private readonly simulate: SimulatePanel;
   private readonly plots: Plots;
   private readonly exports: ExportMenu;
   private readonly busy = new Busy();
@@ -80,8 +84,9 @@ export class LivePage {
     this.dimensions = new Dimensions(desk);
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
-    this.build = new Build(desk);
-    this.editor = new Editor(desk, {
+    this.forms = new ForceForms(desk);
+    this.build = new Build(desk, this.forms);
+    this.editor = new Editor(desk, this.forms, {
       mode: (edited) => this.chosen(edited),
       viewed: () => this.viewed(),
       hint: (text) => this.hint && (this.hint.textContent = text),
@@ -90,6 +95,12 @@ export class LivePage {
     this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
     this.plots = new Plots(desk);
     this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
+    this.simulate = new SimulatePanel(desk, {
+      show: (page) => this.lookInTime(page),
+      update: (page) => this.page?.update(page),
+      goToRow: (row) => this.page?.goToRow(row),
+      form: (name) => this.openForm(name),
+    });
     this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
     this.bar.element.append(this.exports.element);
     document.body.append(this.busy.element);
@@ -97,6 +108,7 @@ export class LivePage {
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
       { title: "Circuits", element: this.circuits.element, shown: (on) => this.circuits.shown(on) },
+      { title: "Simulate", element: this.simulate.element },
       { title: "Newton", element: this.newton.element, shown: (on) => this.newton.shown(on) },
       { title: "Build", element: this.build.element },
     ]);
@@ -132,7 +144,7 @@ export class LivePage {
 
   /** The displayed row of the motion of the file. */
   private row(): number | null {
-    const away = this.moving === null || this.editor.edited || this.circuits.elsewhere;
+    const away = this.moving === null || this.editor.edited || this.circuits.elsewhere || this.simulate.elsewhere;
     return this.page === null || away ? null : this.page.row;
   }
 
@@ -144,6 +156,32 @@ export class LivePage {
     this.page.update(shown);
     if (page === null && this.left !== null) this.page.goToRow(this.left);
     if (page === null) this.left = null;
+  }
+
+  /** Draw a simulation from its start, or the motion of the file. */
+  private lookInTime(page: PageData | null): void {
+    if (page !== null) {
+      this.circuits.left();
+      if (this.editor.edited) this.editor.choose("move");
+      this.notices.calm();
+    }
+    this.plots.simulated = page !== null;
+    this.look(page);
+    if (page === null) {
+      if (this.found !== null) this.limits(this.found);
+    } else if (this.page !== null) {
+      this.page.goTo(0, 0);
+      const [input] = this.file!.inputs;
+      if (input) this.page.charts.plot(`${input.name}.velocity`);
+      this.page.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    }
+    this.plots.turned();
+  }
+
+  /** Open a form that mends something, and choose its first field. */
+  private openForm(name: string): void {
+    this.tabs.choose(this.tabs.indexOf("Build"));
+    this.build.open(name);
   }
 
   private here(): Record<string, number> {
@@ -158,6 +196,7 @@ export class LivePage {
         this.starting.offer(false);
         break;
       case "palette_shown":
+        this.forms.kinds = event.forms;
         this.build.offer(event.parts);
         this.editor.offer(event.parts);
         break;
@@ -182,6 +221,9 @@ export class LivePage {
       case "circuits_found":
         this.circuits.told(event);
         break;
+      case "simulation_found":
+        this.simulate.told(event);
+        break;
       case "quantities_listed":
         this.plots.told(event);
         break;
@@ -190,6 +232,7 @@ export class LivePage {
         break;
       case "working":
         this.busy.progress(event.fraction);
+        this.simulate.working(event.fraction);
         return;
       case "newton_shown":
         this.newton.show(event);
@@ -226,6 +269,7 @@ export class LivePage {
   }
 
   private refused(message: string): void {
+    this.simulate.refused(message);
     if (this.bar.link.opened) {
       this.bar.link.refuse(message);
       return;
@@ -243,6 +287,7 @@ export class LivePage {
     this.build.show(file);
     this.ways.renew();
     this.circuits.renew();
+    this.simulate.renew(file);
     this.plots.renew();
     this.newton.renew();
     this.editor.renew(file);
@@ -258,10 +303,11 @@ export class LivePage {
   }
 
   private motion(found: MotionFound): void {
-    const unit = this.file!.inputs[0]?.unit ?? "";
     if (!found.live) this.found = found;
     this.left = null;
     this.circuits.left();
+    this.simulate.left();
+    this.plots.simulated = false;
     this.rowless = found.page === null && found.missing === found.rows;
     this.moving = found.page;
     this.element.dataset.live = String(found.live);
@@ -271,8 +317,12 @@ export class LivePage {
     } else if (found.missing < found.rows) {
       this.still(null, "This mechanism has no points to draw. The command linkwork sweep prints its numbers.");
     }
-    this.notices.limits(found, unit, (input) => this.page?.goToInput(input));
+    this.limits(found);
     this.updated();
+  }
+
+  private limits(found: MotionFound): void {
+    this.notices.limits(found, this.file!.inputs[0]?.unit ?? "", (input) => this.page?.goToInput(input));
   }
 
   /** Count updates, for whoever waits for one. */
@@ -305,7 +355,7 @@ export class LivePage {
     this.hint.textContent = "Drag a pin or a link.";
     this.newton.attach(page);
     this.plots.attach(page);
-    presentNewton(page, this.tabs, this.newton, () => !this.rowless && this.moving !== null && this.editor.choose("move"));
+    presentNewton(page, this.tabs, this.newton, () => this.simulate.elsewhere, () => !this.rowless && this.moving !== null && this.editor.choose("move"));
     if (this.first) canvas.before(this.first);
     this.canvas.attach(page);
     this.editor.attach(page);
@@ -322,6 +372,7 @@ export class LivePage {
     const { drawing } = this.page!.places;
     if (edited) {
       this.page!.play(false);
+      this.element.querySelector(".lw")!.classList.add("lw-still"); // the drawing has its size of a sketch now
       const empty = Object.keys(this.file!.points).length === 0;
       drawing.see(empty ? { x: 0, y: 0, width: SHEETS[this.file!.length_unit] ?? 240 } : wider(drawing.window));
     } else {

@@ -19,7 +19,9 @@ export const TROUBLES: Readonly<Record<string, string>> = {
 
 export class Newton {
   readonly element = html("div", { class: "lw-newton" });
+  private readonly lead: HTMLElement;
   private readonly guesses: HTMLElement;
+  private readonly row: HTMLElement;
   private readonly steps: HTMLElement;
   private readonly detail: HTMLElement;
   private readonly outcome: HTMLElement;
@@ -37,9 +39,9 @@ export class Newton {
   private on = false;
 
   constructor(private readonly desk: Desk) {
-    html("p", { class: "lw-lead" }, this.element, "Drag the guess in the drawing or move its sliders, and watch the Newton–Raphson steps that start from it at the current input.");
+    this.lead = html("p", { class: "lw-lead" }, this.element, "Drag the guess in the drawing or move its sliders, and watch the Newton–Raphson steps that start from it at the current input.");
     this.guesses = html("div", {}, this.element);
-    const row = html("div", { class: "lw-newton-row" }, this.element);
+    const row = (this.row = html("div", { class: "lw-newton-row" }, this.element));
     this.button(row, "Guess of the file", () => this.begin());
     this.button(row, "‹ Step", () => this.step(-1));
     this.button(row, "Step ›", () => this.step(1));
@@ -76,7 +78,7 @@ export class Newton {
 
   /** Another row is displayed: use the same guess at its input. */
   moved(): void {
-    if (!this.on) return;
+    if (!this.on || this.none) return;
     this.at = this.desk.here();
     this.find();
   }
@@ -87,7 +89,7 @@ export class Newton {
   }
 
   show(found: NewtonShown): void {
-    if (!this.on) return;
+    if (!this.on || this.none) return;
     this.found = found;
     this.guess = { ...found.guess };
     for (const [name, value] of Object.entries(found.guess)) this.shownGuess.get(name)?.(value);
@@ -99,6 +101,21 @@ export class Newton {
     this.choose(Math.min(this.chosen, found.iterates.length - 1));
   }
 
+  /** Whether there is nothing to solve: a draft. */
+  private get none(): boolean {
+    return this.desk.file().lacks.length > 0;
+  }
+
+  /** A sentence in the place of steps. */
+  private empty(sentence: string): void {
+    this.found = null;
+    this.clear();
+    for (const box of [this.guesses, this.steps, this.detail]) box.replaceChildren();
+    this.outcome.textContent = sentence;
+    this.outcome.dataset.trouble = "";
+    this.outcome.dataset.status = sentence ? "none" : "";
+  }
+
   private button(parent: Element, text: string, act: () => void): void {
     html("button", { type: "button" }, parent, text).addEventListener("click", act);
   }
@@ -106,6 +123,13 @@ export class Newton {
   /** Start from the guess of the file at the displayed input. */
   private begin(): void {
     const file = this.desk.file();
+    const { none } = this;
+    for (const part of [this.lead, this.guesses, this.row]) part.hidden = none;
+    if (none) {
+      this.empty("Newton\u2019s steps begin once the sketch is a mechanism.");
+      return;
+    }
+    if (this.outcome.dataset.status === "none") this.empty("");
     this.page?.goToInput(this.page.input); // it stands still
     this.at = this.desk.here();
     this.guess = Object.fromEntries(file.unknowns.map((one) => [one.name, one.guess]));

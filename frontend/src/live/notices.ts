@@ -19,6 +19,7 @@ export class Notices {
   /** The dead points of a motion, each with a button that moves to it. */
   limits(found: MotionFound, unit: string, goTo: (input: number) => void): void {
     const text = reach(found);
+    if (!text && this.motion.hidden) return;
     this.motion.replaceChildren();
     this.motion.hidden = !text;
     this.motion.dataset.limits = String(found.limits.length);

@@ -7,13 +7,15 @@ import type { Desk } from "./asking";
 export class Plots {
   private page: Mounted | null = null;
   private listed = false;
+  /** Whether the displayed motion is a simulation. */
+  simulated = false;
 
   constructor(private readonly desk: Desk) {}
 
   attach(page: Mounted): void {
     this.page = page;
     this.listed = false;
-    page.charts.ask = (names) => this.desk.background({ kind: "show_quantities", names });
+    page.charts.ask = (names) => this.desk.background({ kind: "show_quantities", names, simulated: this.simulated });
   }
 
   /** The file has changed: its quantities may differ. */
@@ -21,11 +23,18 @@ export class Plots {
     this.listed = false;
   }
 
+  /** Another motion is displayed: it may have other quantities. */
+  turned(): void {
+    this.page?.charts.askAgain();
+    this.listed = false;
+    this.moved();
+  }
+
   /** A motion is displayed: list its quantities once. */
   moved(): void {
     if (this.listed || !this.page) return;
     this.listed = true;
-    this.desk.background({ kind: "list_quantities" });
+    this.desk.background({ kind: "list_quantities", simulated: this.simulated });
   }
 
   told({ quantities }: QuantitiesListed): void {

@@ -56,6 +56,9 @@ def write_designs(
     root = as_path(folder)
     prepare_folder(root, options)
     save_text(found.task.text, root / "task.toml")
+    if found.task.curve is not None:
+        # the task names the file of its curve
+        save_text(found.task.curve.text, root / found.task.curve.file)
     files: dict[int, str] = {}
     chosen = [
         (k, design)

@@ -12,6 +12,7 @@ from linkwork.mechanism.linkage import Linkage
 
 if TYPE_CHECKING:
     from linkwork.mechanism.dimensions import Number
+    from linkwork.mechanism.motor import Motor
     from linkwork.results.machine_design import (
         Counterweights,
         Flywheel,
@@ -58,18 +59,21 @@ class DynamicMechanism(LoadedMechanism):
     def motor_check(
         self,
         *,
-        stall: float,
-        free_speed: Number,
+        motor: Motor | None = None,
+        stall: float | None = None,
+        free_speed: Number | None = None,
         rated: float | None = None,
         motion: Motion | None = None,
     ) -> MotorCheck:
-        """Peak and root mean square of the effort against a motor.
+        """Peak and root mean square of the effort against a motor, by default that of the input.
 
         Parameters
         ----------
-        stall : float
-            Torque at rest [force · length].
-        free_speed : number or str
+        motor : Motor, optional
+            A motor, which may be a table of torques over speeds.
+        stall : float, optional
+            Instead: torque at rest [force · length].
+        free_speed : number or str, optional
             Speed without torque: ``"1500 rpm"``; the torque falls linearly to it.
         rated : float, optional
             Torque that the motor gives without end, for the root mean square.
@@ -79,7 +83,7 @@ class DynamicMechanism(LoadedMechanism):
         Raises
         ------
         InputError
-            Without a speed or a whole turn.
+            Without a motor, a speed or a whole turn, and beyond the motor's table.
 
         Examples
         --------
@@ -89,7 +93,12 @@ class DynamicMechanism(LoadedMechanism):
         False
         """
         return design.motor_check(
-            self.model, self._turn(motion), stall=stall, free_speed=free_speed, rated=rated
+            self.model,
+            self._turn(motion),
+            motor=motor,
+            stall=stall,
+            free_speed=free_speed,
+            rated=rated,
         )
 
     def harmonics(self, of: str, count: int = 8, *, motion: Motion | None = None) -> Harmonics:

@@ -111,7 +111,8 @@ class LoadedMechanism(SolvableMechanism):
         """The motion in time under masses, loads, springs, a motor and stops; see
         :mod:`linkwork.dynamics`.
 
-        The input is free: it starts at ``at`` with ``start_speed``. Friction is left out.
+        The input is free: it starts at ``at`` with ``start_speed``. Friction of joints takes the
+        energy ``friction_work`` of the motion, and can hold the mechanism at rest.
 
         Parameters
         ----------
@@ -138,7 +139,8 @@ class LoadedMechanism(SolvableMechanism):
         Raises
         ------
         InputError
-            If nothing has mass, there is not one input, or a law drives it.
+            If nothing has mass, there is not one input, or a law drives it; for friction in joints
+            whose forces redundant links leave undetermined.
 
         Examples
         --------

@@ -48,11 +48,25 @@ class Task:
 
     @classmethod
     def path(
-        cls, points: Sequence[Sequence[float]], *, order: str = "as given", **tables: Any
+        cls,
+        points: Sequence[Sequence[float]],
+        *,
+        inputs: Sequence[float] | None = None,
+        order: str = "as given",
+        **tables: Any,
     ) -> Self:
-        """A task of points (x, y), passed in their order or, with ``order="any"``, in any."""
+        """A task of points (x, y), passed in their order or, with ``order="any"``, in any.
+
+        ``inputs``: angles of the crank at the points. Timed points, and more than nine of them, are
+        met by least squares.
+        """
         wanted = {"order": order, **tables.pop("wanted", {})}
-        positions = [{"point": list(point)} for point in _rows(points, 2)]
+        positions: list[dict[str, Any]] = [{"point": list(point)} for point in _rows(points, 2)]
+        if inputs is not None:
+            if len(inputs) != len(positions):
+                raise InputError(f"{len(positions)} points need as many inputs, got {len(inputs)}")
+            for position, value in zip(positions, inputs, strict=True):
+                position["input"] = value
         return cls._of("path", positions=positions, wanted=wanted, **tables)
 
     @classmethod

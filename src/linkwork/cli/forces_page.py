@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.cli.motion_page import range_lines
+from linkwork.cli.motion_page import limit_fields, range_lines
 from linkwork.cli.position_page import inputs_text
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import Column, fixed, significant, table_lines
@@ -70,7 +70,8 @@ def motion_forces_lines(
         (status.name.lower().replace("_", " "), f"{count}: {status.value}")
         for status, count in counts.items()
     ]
-    lines += fields([("found", str(len(found) - counts.total())), *told])
+    ends = [] if motion.found.all() else [*limit_fields(motion)]
+    lines += fields([("found", str(len(found) - counts.total())), *told, *ends])
     listed = [
         name
         for name in names or found.values

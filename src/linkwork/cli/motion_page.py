@@ -18,7 +18,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked
 from linkwork.results.quantity import Kind
 
-__all__ = ["failure_line", "motion_lines", "range_lines"]
+__all__ = ["failure_line", "limit_fields", "motion_lines", "range_lines"]
 
 _MOST_RUNS = 4  # ranges of failed rows that are listed
 
@@ -32,7 +32,7 @@ def motion_lines(
     """
     head = f"{_range_text(motion)}: {_how_many(motion)}"
     lines = [*title_lines(motion.mechanism), *sentence(str, head)]
-    pairs = [*_counts(motion), *_limits(motion)]
+    pairs = [*_counts(motion), *limit_fields(motion)]
     if motion.found.any():
         pairs += _evidence(motion, measure)
         pairs += _numbers(motion, numbers)
@@ -118,7 +118,7 @@ def _runs(motion: Motion, status: Status) -> str:
     return f"{', '.join(shown)} {motion.input_units[name]}".rstrip() + more
 
 
-def _limits(motion: Motion) -> Iterator[tuple[str, str]]:
+def limit_fields(motion: Motion) -> Iterator[tuple[str, str]]:
     """Dead points and other ends of the branch, one to a line."""
     name, _ = _lead(motion)
     unit = motion.input_units[name]

@@ -18,6 +18,8 @@ from linkwork.results.table import Table
 
 __all__ = ["equilibria_lines", "motion_data", "simulation_lines"]
 
+_ROUNDING = 1e-11  # of the energy: what the balance leaves open
+
 
 def simulation_lines(motion: Motion, names: Sequence[str] = ()) -> list[str]:
     """How a simulation ended, its events and the ranges of its quantities."""
@@ -48,6 +50,12 @@ def _facts(motion: Motion) -> Iterator[tuple[str, str]]:
         if len(fine):
             unit = motion.quantity("kinetic_energy").unit
             yield "energy", f"{fine[0]:.10g} at first, {fine[-1]:.10g} at last {unit}"
+            if motion.friction_work is not None:
+                lost = motion.friction_work[np.isfinite(energy)][-1]
+                given = fine[-1] - fine[0] + lost
+                size = max(np.abs(fine).max(), abs(lost))
+                given = 0.0 if abs(given) < _ROUNDING * size else given
+                yield "", f"friction took {lost:.10g}, loads and motor gave {given:.10g}"
 
 
 def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list[str]:
@@ -94,4 +102,5 @@ def motion_data(motion: Motion, table: Table) -> dict[str, Any]:
             if word
         ],
         "columns": {name: column.tolist() for name, column in table.columns.items()},
+        "friction_work": None if motion.friction_work is None else motion.friction_work.tolist(),
     }

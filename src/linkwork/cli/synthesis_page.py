@@ -28,15 +28,22 @@ def synthesis_lines(found: Synthesis) -> list[str]:
 
 
 def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
-    yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
-    yield "real", str(found.real)
-    yield "proved", str(found.proved)
+    if found.starts:
+        yield "starts", str(found.starts)
+        yield "local minima", f"{found.real}, different ones"
+    else:
+        yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
+        yield "real", str(found.real)
+        yield "proved", str(found.proved)
     if found.triples:
         yield "triples", str(found.triples)
     yield "completeness", found.message
+    if found.interrupted:
+        yield "interrupted", "the designs are the best found until then"
     driven = len(found.designs)
     yield "mechanisms", str(found.linkages)
-    yield "designs", f"{driven}, one for each link that can be driven"
+    each = "driven at A0" if found.starts else "one for each link that can be driven"
+    yield "designs", f"{driven}, {each}"
     for kind, count in found.defects.items():
         yield kind.value, f"{count}"
     yield "without defects", str(found.sound)

@@ -23,13 +23,12 @@ from linkwork.forces.joint_forces import joint_forces
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import read_first_links
-from linkwork.forces.system import free_bodies, free_bodies_of, known_acts, totals
+from linkwork.forces.system import NO_WORK, free_bodies, free_bodies_of, known_acts, totals
 from linkwork.forces.virtual_work import work_terms
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
-from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
@@ -85,29 +84,39 @@ class LoadedRows(DifferentiatedRows):
         InputError
             If its derivatives are not known.
         """
-        try:
+        why = self._unknown(name)
+        if not why:
             with np.errstate(all="ignore"):
                 for known in self._tables():
                     if name in known:
                         return known[name]
-        except (NotElementwise, TypeError, AttributeError):
-            pass  # a part whose reactions take decisions row by row
-        raise InputError(f'the derivatives of "{name}" are not known: sample its tolerance')
+            # what remains of a loop file are forces of the linkage that its loops read as
+            why = "its reactions are those of links read from the loops: give points and links"
+        raise InputError(f'the derivatives of "{name}" are not known: {why}')
+
+    def _unknown(self, name: str) -> str:
+        """Why no force, or this one, has known derivatives; "" if that is not known yet."""
+        if name == "disagreement":
+            return "it measures rounding"
+        if self.model.untimed is not None:
+            return "time drives the rows; give the input a speed instead of a law, or sample"
+        if getattr(self.description, "friction", None) and len(self.equations.inputs) > 1:
+            return "friction depends on the rates of several inputs; sample its tolerance"
+        return ""
 
     def _tables(self) -> Iterator[dict[str, Any]]:
         """All quantities of forces; reactions last, for free bodies cost the most."""
         yield self._efforts
         yield self._totals
-        yield self._reactions
+        if isinstance(self.description, Linkage):
+            yield self._losses
+            yield self._joints.readings()
 
     @cached_property
     def _loads(self) -> AppliedLoads:
         """All loads; those of a linkage are those of its free bodies."""
         geometry, description = TapedGeometry(self), self.description
         assert isinstance(description, LoadedBodies)
-        # where time drives the rows, inputs have rates and bends of their own
-        if self.model.untimed is not None:
-            raise NotElementwise
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
         if isinstance(description, Linkage):
@@ -119,24 +128,53 @@ class LoadedRows(DifferentiatedRows):
         return applied
 
     @cached_property
-    def _efforts(self) -> dict[str, Any]:
-        """Efforts of all inputs by virtual work, and their power."""
-        inputs = self.equations.inputs
-        found: list[Any] = [np.zeros(len(self.solution)) for _ in inputs]
+    def _ideal(self) -> tuple[list[Any], Array]:
+        """Efforts of all inputs without friction, and the size of the largest term, (B,)."""
+        found: list[Any] = [np.zeros(len(self.solution)) for _ in self.equations.inputs]
+        largest = np.zeros(len(self.solution))
         alone = self._loads.geometry.alone
         for load, moved in work_terms(self._loads):
             for k, own in enumerate([moved] if alone else moved):
                 found[k] = found[k] - (np.conj(load) * own).real  # eq. (71)
-        if getattr(self.description, "friction", None):
-            if not alone:
-                raise NotElementwise
-            # rates of friction by each of several inputs are not on the tape
+                largest = np.fmax(largest, np.abs(_bare(load)) * np.abs(_bare(own)))
+        return found, largest
+
+    @cached_property
+    def _efforts(self) -> dict[str, Any]:
+        """Efforts of all inputs by virtual work, and their power."""
+        inputs, found = self.equations.inputs, list(self._ideal[0])
+        if self._rubs:
             found[0] = found[0] + self._joints.friction_effort()
         named = {effort_name(x.name): own for x, own in zip(inputs, found, strict=True)}
         if self.speed is not None:
             rates = zip(self._input_rate, found, strict=True)
             named["power"] = sum((rate * own for rate, own in rates), 0.0) * self.speed
         return named
+
+    @property
+    def _rubs(self) -> bool:
+        return bool(getattr(self.description, "friction", None))
+
+    @cached_property
+    def _losses(self) -> dict[str, Any]:
+        """What friction takes of the only input's power, and its effort the other way."""
+        if not self._rubs:
+            return {}
+        (ideal,), largest = self._ideal
+        joints = self._joints
+        useful, lost = ideal * joints.way, joints.friction_effort() * joints.way
+        # at a dead point of the loads the efficiency jumps
+        works = np.abs(_bare(useful)) > NO_WORK * largest
+        spent = np.where(works, useful + lost, np.nan)
+        ahead = _bare(useful) >= 0.0
+        found = {"efficiency": np.where(ahead, useful / spent, spent / useful)}
+        if self.speed is None:
+            (name,) = (x.name for x in self.equations.inputs)
+            back = self._equilibrium(-1.0).friction_effort()
+            found[f"{effort_name(name)}.backward"] = ideal + back
+        else:
+            found["friction_power"] = lost * np.abs(self.speed)
+        return found
 
     @cached_property
     def _totals(self) -> dict[str, Any]:
@@ -146,34 +184,33 @@ class LoadedRows(DifferentiatedRows):
 
     @cached_property
     def _joints(self) -> _Equilibrium:
-        """The equilibrium of a linkage."""
+        """The equilibrium of a linkage in motion, or about to move."""
+        return self._equilibrium(1.0)
+
+    def _equilibrium(self, side: float) -> _Equilibrium:
+        """The equilibrium of a linkage that moves on, or back."""
         description, geometry = self.description, TapedGeometry(self)
-        if not isinstance(description, Linkage):
-            raise NotElementwise
+        assert isinstance(description, Linkage)
         there = np.logical_not(self.lost)
         plain = RowValues(self.model, self.solution, *self._rates, there)
         nominal = free_bodies_of(self.model, plain)
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
         taped = free_bodies(description, geometry, applied)
-        return _Equilibrium(taped, nominal, self.tape)
-
-    @cached_property
-    def _reactions(self) -> dict[str, Any]:
-        """Reactions of all joints."""
-        return self._joints.readings()
+        return _Equilibrium(taped, nominal, self.tape, side)
 
 
 class _Equilibrium:
     """The equilibrium of free bodies whose acts are on a tape, solved with plain numbers."""
 
-    def __init__(self, bodies: FreeBodies, nominal: FreeBodies, tape: Tape) -> None:
+    def __init__(self, bodies: FreeBodies, nominal: FreeBodies, tape: Tape, side: float) -> None:
         self.bodies, self.tape = bodies, tape
         geometry, rate = nominal.geometry, nominal.applied.rate
-        way = geometry.table_direction if rate == 0.0 else np.sign(rate)
+        #: 1 or -1: which way the leading input moves, or is about to.
+        self.way = side * float(geometry.table_direction if rate == 0.0 else np.sign(rate))
         acts = known_acts(nominal)
         # plain numbers decide about friction, self-stress and lift-off
-        self.solved = joint_forces(nominal, acts, np.broadcast_to(way, geometry.rows))
+        self.solved = joint_forces(nominal, acts, np.broadcast_to(self.way, geometry.rows))
         self.acts = known_acts(bodies)
         self._solve()
 

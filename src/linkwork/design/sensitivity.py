@@ -21,13 +21,11 @@ from linkwork.motion.model import Model
 from linkwork.results.motion import LimitKind, Motion
 from linkwork.results.position import Position
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
-from linkwork.results.quantities.definition import MotionRows, RowSlopes
-from linkwork.results.quantity import Kind
+from linkwork.results.quantities.definition import RowSlopes
 from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
 
 __all__ = [
     "LIMITS",
-    "has_slopes",
     "is_of_motion",
     "play_of_motion",
     "play_of_position",
@@ -45,13 +43,6 @@ _FITS = 1e-9  # longest links per unit of a number: a redundant link that follow
 def is_of_motion(of: str) -> bool:
     """Whether a name is that of a number of a whole motion."""
     return "(" in of or of.strip() in LIMITS
-
-
-def has_slopes(model: Model, of: str) -> bool:
-    """Whether the derivatives of a number of a motion are known."""
-    if of.strip() in LIMITS:
-        return True
-    return model.quantities.find_of_motion(of).quantity.slopes is not None
 
 
 def sensitivity_of_position(
@@ -302,11 +293,6 @@ class _Part:
 def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Part]]:
     asked = model.quantities.find_of_motion(of)
     _check(asked.of, of)
-    if asked.quantity.slopes is None:
-        raise InputError(
-            f'the derivatives of "{of}" are not known: ask for min, max, mean, stroke or '
-            "path_length, or sample its tolerance"
-        )
     if asked.of.rate is not None and asked.of.rate.by_time:
         raise UnknownNameError(
             f'"{of}" has no sensitivity: ask for it by the input, such as "{asked.of.own.name}.d1"'
@@ -316,14 +302,8 @@ def _number(model: Model, motion: Motion, of: str) -> tuple[float, str, list[_Pa
         columns: tuple[Array, ...] = asked.columns(motion)
     else:
         columns = (motion[asked.of.name],)
-    whole = MotionRows(
-        input=motion.inputs[asked.names.lead] * model.input_scale[leading_input(model.rows)[0]],
-        value=columns[0],
-        first=columns[1] if asked.follows else np.full(len(motion), np.nan),
-        second=columns[2] if asked.follows else np.full(len(motion), np.nan),
-        unit=1.0,
-        turn=2.0 * np.pi if asked.names.inputs[asked.names.lead] is Kind.ANGLE else 0.0,
-    )
+    leading = motion.inputs[asked.names.lead] * model.input_scale[leading_input(model.rows)[0]]
+    whole = asked.rows(leading, *columns)
     with np.errstate(all="ignore"):
         slopes = asked.quantity.slopes(whole, asked.numbers)
     return value, asked.unit, list(_parts(rows, slopes, asked))

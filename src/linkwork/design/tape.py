@@ -119,6 +119,10 @@ class Tape(Consensus):
         """The value of a number."""
         return number.values[0].item()
 
+    def detached(self, number: Any) -> Any:
+        """The value of a number, a constant."""
+        return self.value_of(number) if isinstance(number, TapedNumber) else number
+
     def is_steady(self, number: Any) -> bool:
         """Whether no input changes a number."""
         if not isinstance(number, TapedNumber):
@@ -130,8 +134,9 @@ class Tape(Consensus):
     def solve_shortest(
         self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
     ) -> Sequence[Any] | None:
-        """One step of an iteration: the matrix enters by its values only."""
-        a, b = _plain_values(matrix), _plain_values([right])[0]
+        """The solution for a right side with derivatives and a matrix without."""
+        a = np.array(matrix, dtype=float)
+        b = np.array([self.detached(x) for x in right], dtype=float)
         if not (np.isfinite(a).all() and np.isfinite(b).all()):
             raise np.linalg.LinAlgError
         inverse = np.linalg.pinv(a, rcond=RANK_TOLERANCE)
@@ -253,13 +258,6 @@ class Tape(Consensus):
                 for parent in self._parents[node]:
                     wanted[parent] = 1
         return [node for node, used in enumerate(wanted) if used]
-
-
-def _plain_values(rows: Sequence[Sequence[Any]]) -> Array:
-    """Numbers and taped numbers as a matrix."""
-    return np.array(
-        [[x.values[0] if isinstance(x, TapedNumber) else x for x in row] for row in rows], float
-    )
 
 
 def _product(factor: Any, rate: Any) -> Any:

@@ -12,7 +12,6 @@ from linkwork.batch.family import family_of
 from linkwork.batch.sampling import Normal, random
 from linkwork.design.sensitivity import (
     LIMITS,
-    has_slopes,
     play_of_motion,
     play_of_position,
     sensitivity_of_motion,
@@ -107,9 +106,6 @@ def tolerance_of(
     count, start = whole_number("samples", samples), whole_number("seed", seed)
     names = [number.name for number in given.numbers]
     pins = tuple((link, p) for p in given.clearances for link in pins_of(model.description)[p])
-    # a dwell has corners everywhere, but random designs have one each
-    if isinstance(solved, Motion) and count and not has_slopes(model, of):
-        return _only_sampled(model, solved, of, given, (count, start))
     if isinstance(solved, Motion):
         found = sensitivity_of_motion(model, solved, of, names)
         moved = play_of_motion(model, solved, of, pins)
@@ -136,25 +132,6 @@ def tolerance_of(
         contributions=tuple(sorted(shared, key=lambda part: (-part.share, part.name))),
         status=status,
         sampled=sampled,
-    )
-
-
-def _only_sampled(
-    model: Model, solved: Motion, of: str, given: Deviations, drawn: tuple[int, int]
-) -> Tolerance:
-    """The tolerance of a number whose derivatives are not known."""
-    if given.clearances:
-        raise InputError(f'the derivatives of "{of}" are not known, nor what clearances do to it')
-    return Tolerance(
-        mechanism=model.description.name,
-        of=of,
-        unit=model.quantities.find_of_motion(of).unit,
-        inputs={},
-        input_units={},
-        value=solved.value(of),
-        contributions=(),
-        status=SensitivityStatus.CORNER,
-        sampled=_sample(model, solved, of, given, {}, drawn),
     )
 
 

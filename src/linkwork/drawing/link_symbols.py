@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 
 from linkwork.drawing.coupling_symbols import couplings
-from linkwork.drawing.measures import Measures
+from linkwork.drawing.measures import COINCIDENT, Measures
 from linkwork.drawing.pose import Pose
 from linkwork.drawing.scene import Disc, Polygon, Polyline, Primitive, Role, xy
 from linkwork.mechanism.figures import Disc as Wheel
@@ -62,7 +62,8 @@ def pin_radius(pose: Pose, name: str, measures: Measures) -> float:
     discs = pose.skeleton.of(Wheel)
     # wheels of a draft may have no radius yet
     radii = (0.4 * disc.radius for disc in discs if disc.center == name and disc.radius > 0)
-    return min([measures.pin, *radii])
+    # still a length beside the coordinates of a much larger mechanism
+    return min([measures.pin, *(max(radius, COINCIDENT * measures.size) for radius in radii)])
 
 
 def pin_symbols(pose: Pose, measures: Measures) -> Iterator[Primitive]:

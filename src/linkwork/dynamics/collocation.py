@@ -24,6 +24,7 @@ _POINTS = 12
 _MOST_ROUNDS = 12
 _SETTLED = 1e-15  # of the accelerations: a change that is rounding
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
+_ROUNDING, _GROWTH = 1e-9, 1.5  # of the accelerations: more is none; of steps with it
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
 
 _x, _w = legendre.leggauss(_POINTS)
@@ -68,11 +69,29 @@ class Step:
         place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
         return place, self.speed + gained, bend
 
+    @property
+    def nodes(self) -> Array:
+        """The times of its points, (n,)."""
+        return self.t + self.h * _C
+
+    def integral(self, values: Array, t: Array) -> Array:
+        """The integral of a function with values at the points (n,), up to times (B,)."""
+        x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
+        found: Array = legendre.legvander(x, _POINTS) @ (self.h * (_SPEED @ values))
+        return found
+
 
 def try_step(
-    acceleration: Callable[[Array, Array, Array], Array], t: float, s: float, speed: float, h: float
-) -> tuple[Step | None, float]:
-    """A step of the length ``h``, ``None`` if it does not succeed, and the length to try next."""
+    acceleration: Callable[[Array, Array, Array], Array],
+    t: float,
+    s: float,
+    speed: float,
+    h: float,
+    rougher: float = math.inf,
+) -> tuple[Step | None, float, float]:
+    """A step of the length ``h``, ``None`` if it does not succeed, the length to try next, and its
+    last coefficients relative to the accelerations; ``rougher``: those of the longer step before.
+    """
     times = t + h * _C
     guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
     a = np.full(_POINTS, float(guess[0]))
@@ -85,7 +104,7 @@ def try_step(
         else:
             found = acceleration(place, w, times)
         if not np.isfinite(found).all() or not np.isfinite(jacobian).all():
-            return None, _SMALLEST * h
+            return None, _SMALLEST * h, math.inf
         change = np.linalg.solve(jacobian, found - a)
         a = a + change
         size = np.abs(a).max() + abs(speed) / abs(h)
@@ -93,17 +112,21 @@ def try_step(
             break
     else:
         if np.abs(change).max() > 1e-10 * size:
-            return None, 0.5 * h
-    tail = float(np.abs((_FIT @ a)[-2:]).max())
-    scale = max(abs(speed), abs(h) * float(np.abs(a).max()))
+            return None, 0.5 * h, math.inf
+    tail, largest = float(np.abs((_FIT @ a)[-2:]).max()), float(np.abs(a).max())
+    scale = max(abs(speed), abs(h) * largest)
+    rough = tail / largest if largest > 0.0 else 0.0
     error = abs(h) * tail / scale if scale > 0.0 else 0.0
     factor = _LARGEST
     if error > 0.0:
         factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / _POINTS))
-    if error > 30.0 * _TOLERANCE:
-        return None, max(_SMALLEST, min(factor, 0.7)) * h
+    # where large forces balance, what a shorter step does not reduce is their rounding
+    noise = rough < _ROUNDING and rough > 0.5 * rougher
+    if error > 30.0 * _TOLERANCE and not noise:
+        return None, max(_SMALLEST, min(factor, 0.7)) * h, rough
+    factor = _GROWTH if noise else factor
     step = Step(t=t, h=h, s=s, speed=speed, accelerations=a)
-    return step, max(factor, _SMALLEST) * h
+    return step, max(factor, _SMALLEST) * h, rough
 
 
 def _linearise(
@@ -115,7 +138,8 @@ def _linearise(
 ) -> tuple[Array, Array]:
     """Accelerations at all points, and the Jacobian of the collocation equations, (n, n)."""
     eps = math.sqrt(EPSILON)
-    ds = eps * max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps, 1e-12)
+    # of the way of the step, so that units change nothing
+    ds = eps * (max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps) or 1.0)
     dw = eps * max(float(np.abs(w).max()), abs(ds / h))
     many = acceleration(
         np.concatenate([place, place + ds, place]),

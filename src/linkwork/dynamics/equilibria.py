@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from linkwork.dynamics.reduced import ReducedLeg
+from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.dynamics.simulation import start_of
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array

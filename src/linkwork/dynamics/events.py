@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.dynamics.collocation import Step
-from linkwork.dynamics.reduced import ReducedLeg
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.dynamics.joint_friction import Rubbing
+from linkwork.dynamics.reduced_leg import ReducedLeg
+from linkwork.foundation.arrays import Array
 from linkwork.mechanism.stop import Stop
 from linkwork.results.quantities.asked import Asked
 
-__all__ = ["Bound", "Event", "first_event"]
+__all__ = ["Bound", "Event", "first_event", "margins_on", "shorter_step"]
 
 _LOOKS = 24  # places of a step at which signs are compared
+_STEP_LOOKS = 33  # at which a step may have left its leg
 _ROUNDS = 60  # halvings are the worst case
 _NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next one is looked for
 
@@ -39,37 +41,81 @@ class Bound:
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Margin ``number`` changes its sign between two times, as near as rounding allows."""
+    """Margin ``number`` changes its sign between two times, as near as rounding allows.
+
+    ``falls``: whether it is one that counts only where it becomes negative.
+    """
 
     number: int
     before: float
     after: float
+    falls: bool
 
 
 Margins = Callable[[Array, Array, Array], Array]
 
 
-def first_event(step: Step, end: float, margins: Margins, falling: BoolArray) -> Event | None:
+def margins_on(
+    leg: ReducedLeg, bounds: Sequence[Bound], rubbing: Rubbing | None, gain: Array
+) -> Margins:
+    """The margins of the leg's two ends, of stops, of rest and the signs of friction, and of
+    comparisons, in this order.
+    """
+    edges = leg.table.edges
+
+    def margins(s: Array, speed: Array, t: Array) -> Array:
+        found = [s - edges[0], edges[-1] - s]
+        found += [bound.margin(leg, s, speed, t, gain) for bound in bounds]
+        if rubbing is not None:
+            found += [rubbing.direction * speed]
+            found += [*leg.friction_margins(s, speed, t, gain, rubbing).T]
+        if leg.reduction.comparisons:
+            found += [*leg.margins(s, speed, t, gain).T]
+        return np.stack(found, axis=1)
+
+    return margins
+
+
+def shorter_step(step: Step, low: float, high: float) -> float | None:
+    """The length that leads just beyond the ends of a leg, of a step that goes on further."""
+    times = np.linspace(step.t, step.t + step.h, _STEP_LOOKS)
+    s = step.at(times)[0]
+    outside = np.flatnonzero((s < low) | (s > high))
+    if not len(outside):
+        return None
+    # between the last place that is known and the first one that is not
+    k = int(outside[0])
+    within = float(times[k - 1] - step.t) if k > 1 else 0.0
+    return max(within, 0.5 * float(times[k] - step.t))
+
+
+def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> Event | None:
     """The first sign change of margins (B, K) on a step up to the time ``end``.
 
-    ``falling`` (K,): which margins count only where they become negative.
+    All but the last ``comparisons`` margins count only where they become negative.
     """
     times = np.linspace(step.t, end, _LOOKS + 1)
     values = margins(*step.at(times)[:2], times)
+    falling = np.arange(values.shape[1]) < values.shape[1] - comparisons
     changes = (values[1:] > 0.0) != (values[:-1] > 0.0)
     changes &= ~falling | (values[:-1] > 0.0)
     if not changes.any():
         return None
     k = int(np.flatnonzero(changes.any(axis=1))[0])
     both = np.flatnonzero(changes[k])
-    low, high = values[k, both], values[k + 1, both]
-    # the first one of those between two places, by the straight line
-    number = int(both[np.argmin(low / (low - high))])
-    return _located(step, margins, number, times[k : k + 2], values[k : k + 2, number])
+    # several may change between the same two places: the first one counts
+    found = [
+        (*_located(step, margins, number, times[k : k + 2], values[k : k + 2, number]), number)
+        for number in map(int, both)
+    ]
+    before, after, number = min(found)
+    return Event(number=number, before=before, after=after, falls=bool(falling[number]))
 
 
-def _located(step: Step, margins: Margins, number: int, times: Array, values: Array) -> Event:
-    """The sign change between two times, to rounding."""
+def _located(
+    step: Step, margins: Margins, number: int, times: Array, values: Array
+) -> tuple[float, float]:
+    """Just before and just after the sign change between two times."""
     (low, high), (below, above) = times.tolist(), values.tolist()
     for _ in range(_ROUNDS):
         width = high - low
@@ -85,4 +131,4 @@ def _located(step: Step, margins: Margins, number: int, times: Array, values: Ar
         k = int(np.flatnonzero((all_values[1:] > 0.0) != (all_values[:-1] > 0.0))[0])
         low, high = all_times[k : k + 2].tolist()
         below, above = all_values[k : k + 2].tolist()
-    return Event(number=number, before=low, after=high)
+    return low, high

@@ -15,6 +15,7 @@ _NODES = 24
 _TAIL = 3  # coefficients that show whether a function is resolved
 _RESOLVED = 2e-14  # of the size on the leg
 _ROUNDING = 1e-10  # of the size: coefficients below that do not fall with the panel are rounding
+_FARTHEST = 100.0  # half panels: polynomials have no meaning there
 _DEEPEST = 10  # halvings of a panel: what is then not resolved is rounding
 
 
@@ -40,13 +41,14 @@ class Panels:
         return panel, (2.0 * at - low - high) / (high - low)
 
     def __call__(self, at: Array) -> Array:
-        """The functions at places (B,), (B, K)."""
+        """The functions at places (B,), (B, K); NaN far beyond the ends."""
         panel, x = self.locate(at)
         count = self.coefficients.shape[1]
         powers = np.cos(np.arccos(np.clip(x, -1.0, 1.0))[:, None] * np.arange(count))
         beyond = np.abs(x) > 1.0
         if beyond.any():
-            powers[beyond] = np.polynomial.chebyshev.chebvander(x[beyond], count - 1)
+            known = np.where(np.abs(x) < _FARTHEST, x, np.nan)
+            powers[beyond] = np.polynomial.chebyshev.chebvander(known[beyond], count - 1)
         if len(self.coefficients) == 1:
             return np.asarray(powers @ self.coefficients[0])
         found: Array = np.einsum("bm,bmk->bk", powers, self.coefficients[panel])

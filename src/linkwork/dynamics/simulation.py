@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.events import Bound
-from linkwork.dynamics.reduced import Forcing, Reduction
-from linkwork.dynamics.travel import Sample, Travel
+from linkwork.dynamics.reduction import Forcing, Reduction
+from linkwork.dynamics.sample import Sample
+from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told, finite_number
@@ -193,7 +195,7 @@ def _motion(travel: Travel, certify: bool) -> Motion:
         now = travel.t, travel.s, travel.speed
         last = Sample(
             t=now[0], leg=travel.number, lap=travel.lap, s=now[1], speed=now[2],
-            acceleration=np.nan, event="end",
+            acceleration=np.nan, event="end", lost=travel.lost,
         )  # fmt: skip
         samples.append(last)
     rows = _rows(travel, samples, certify)
@@ -204,10 +206,14 @@ def _motion(travel: Travel, certify: bool) -> Motion:
     added = np.array([*(bool(sample.event) for sample in samples), *([False] * len(missing))])
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.held is not None:
-        told += f"; at rest since t = {travel.held:.10g} s, held by a load that switches there"
+        told += f"; at rest since t = {travel.held:.10g} s, held by {travel.holder}"
     if travel.ended:
         told = f"the motion ends at t = {travel.t:.10g} s: {travel.ended}"
-    return motion_of_rows(named, rows, told, added)
+    motion = motion_of_rows(named, rows, told, added)
+    if not travel.reduction.rubs:
+        return motion
+    lost = np.array([*(sample.lost for sample in samples), *([np.nan] * len(missing))])
+    return replace(motion, friction_work=lost)
 
 
 def _rows(travel: Travel, samples: Sequence[Sample], certify: bool) -> SolvedRows:

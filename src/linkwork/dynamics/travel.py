@@ -10,39 +10,26 @@ import numpy as np
 
 from linkwork.dynamics.collocation import Step, try_step
 from linkwork.dynamics.curve import PositionCurve
-from linkwork.dynamics.events import Bound, Event, first_event
-from linkwork.dynamics.reduced import ReducedLeg, Reduction
+from linkwork.dynamics.events import Bound, Event, first_event, margins_on, shorter_step
+from linkwork.dynamics.joint_friction import Rubbing
+from linkwork.dynamics.reduced_leg import ReducedLeg
+from linkwork.dynamics.reduction import Reduction
+from linkwork.dynamics.sample import Sample
+from linkwork.dynamics.stiction import release, starting_directions
 from linkwork.expression.tree import Node
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 
-__all__ = ["Sample", "Travel"]
+__all__ = ["Travel"]
 
-_BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
-_LOOKS = 33  # places at which a step is looked at
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
-_RESTS = 1e-8  # of the whole time: a bounce that lasts no longer is rest
+_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
+_MOST_TRIES = 3  # to find the signs of friction at the beginning of a step
 _AT_REST = 1e-5  # of the fastest speed so far
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sample:
-    """A state at a time: the leg, laps gained, place, speed and acceleration of the leader.
-
-    ``event``: what happens there, "" for one that was asked for.
-    """
-
-    t: float
-    leg: int
-    lap: int
-    s: float
-    speed: float
-    acceleration: float
-    event: str = ""
 
 
 @dataclass(eq=False)
@@ -50,7 +37,8 @@ class Travel:
     """A motion under way.
 
     ``times`` (B,): those asked for, rising. ``samples``: the states found so far. ``ended``: why
-    the motion ended early, "" if it did not. ``held``: since when switching loads keep it at rest.
+    the motion ended early, "" if it did not. ``held``: since when it is kept at rest, and
+    ``holder`` by what. ``lost``: the work that friction has taken.
     """
 
     curve: PositionCurve
@@ -63,6 +51,9 @@ class Travel:
     t: float = 0.0
     lap: int = 0
     held: float | None = None
+    holder: str = ""
+    lost: float = 0.0
+    rubbing: Rubbing | None = None
 
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
@@ -86,15 +77,20 @@ class Travel:
         return self.lap * self.curve.gain
 
     def _acceleration(self, s: Array, speed: Array, t: Array) -> Array:
-        return self.leg.acceleration(s, speed, t, self.gain)
+        return self.leg.acceleration(s, speed, t, self.gain, self.rubbing)
 
     def begin(self, input_speed: float) -> None:
         """Set the speed of the input at the start, [rad/s] or [length/s]."""
         self.speed = input_speed / float(self.leg.input_slope(np.array([self.s]))[0])
         self._switch()
-        self._record(0.0, self.s, self.speed, self._now())
+        if self.speed:
+            self._hold()
+        elif self.reduction.rubs:
+            self._start()
+        # at rest under friction the acceleration is none
+        self._record(0.0, self.s, self.speed, 0.0 if self._is_held else self._now())
         edges = self.leg.table.edges
-        way = self.speed or self._now()
+        way = self.speed or (0.0 if self._is_held else self._now())
         # a start at the end of a leg that moves away from it is on the leg before
         if (self.s <= edges[0] and way < 0.0) or (self.s >= edges[-1] and way > 0.0):
             self._leave(0 if way < 0.0 else 1)
@@ -105,28 +101,32 @@ class Travel:
 
     def run(self) -> None:
         """Step until all times are reached or the motion ends."""
-        h = self._first_step()
+        h, rougher = self._first_step(), math.inf
         while self.t < self.until and not self.ended:
-            if self._rests():
+            if self._rests() or self._sticks() or self._is_outside():
                 continue
             short = self.until - self.t
-            step, following = try_step(
-                self._acceleration, self.t, self.s, self.speed, min(h, short)
+            step, following, rough = try_step(
+                self._acceleration, self.t, self.s, self.speed, min(h, short), rougher
             )
-            shorter = None if step is None else self._shorter(step)
+            shorter = None if step is None else shorter_step(step, *self.leg.reach)
             if shorter is not None:
                 step, following = None, shorter
-            if step is None:
-                h = following
-                if h < _SHORTEST * self.until:
-                    self.ended = "the accelerations have no bound there"
+            if step is not None and self._misjudges(step):
                 continue
+            if step is None:
+                h, rougher = following, rough
+                if h < _SHORTEST * self.until:
+                    self.ended = self._unbounded()
+                continue
+            rougher = rough if following <= step.h else math.inf
             event = self._event(step)
             end = step.t + step.h if event is None else self._end(event)
             self._take(step, end)
             h = following if event is None and step.h < short else max(following, h)
             if event is not None:
                 self._meet(event)
+                rougher = math.inf
                 if event.number >= 2:  # the accelerations have jumped
                     h = min(h, self._first_step())
             if self.progress is not None:
@@ -142,37 +142,9 @@ class Travel:
             times.append(math.sqrt((high - low) / pull))
         return max(_FIRST * min(times), 10.0 * _SHORTEST * self.until)
 
-    def _shorter(self, step: Step) -> float | None:
-        """The length that leads just beyond the end of the leg, of a step that goes on further."""
-        edges = self.leg.table.edges
-        low = edges[0] - _BEYOND * (edges[1] - edges[0])
-        high = edges[-1] + _BEYOND * (edges[-1] - edges[-2])
-        times = np.linspace(step.t, step.t + step.h, _LOOKS)
-        s = step.at(times)[0]
-        outside = np.flatnonzero((s < low) | (s > high))
-        if not len(outside):
-            return None
-        # between the last place that is known and the first one that is not
-        k = int(outside[0])
-        within = float(times[k - 1] - step.t) if k > 1 else 0.0
-        return max(within, 0.5 * float(times[k] - step.t))
-
-    # Events: margins of the leg's two ends, of the stops, of the comparisons, in this order
-
     def _event(self, step: Step) -> Event | None:
-        edges, gain, leg = self.leg.table.edges, self.gain, self.leg
-        comparisons = len(self.reduction.comparisons)
-        falling = np.array([True] * (2 + len(self.bounds)) + [False] * comparisons)
-
-        def margins(s: Array, speed: Array, t: Array) -> Array:
-            found = [s - edges[0], edges[-1] - s]
-            found += [bound.margin(leg, s, speed, t, gain) for bound in self.bounds]
-            rows = np.stack(found, axis=1)
-            if not comparisons:
-                return rows
-            return np.concatenate([rows, leg.margins(s, speed, t, gain)], axis=1)
-
-        return first_event(step, step.t + step.h, margins, falling)
+        margins = margins_on(self.leg, self.bounds, self.rubbing, self.gain)
+        return first_event(step, step.t + step.h, margins, len(self.reduction.comparisons))
 
     def _end(self, event: Event) -> float:
         """Stops are met just before, all others just after."""
@@ -181,33 +153,50 @@ class Travel:
     def _take(self, step: Step, end: float) -> None:
         times = self.times[self.taken :]
         times = times[(times > step.t) & (times <= end)]
+        lost = self._losses(step, np.append(times, end))
         if len(times):
-            for t, s, speed, bend in zip(times, *step.at(times), strict=True):
-                self._record(float(t), float(s), float(speed), float(bend))
+            for t, s, speed, bend, more in zip(times, *step.at(times), lost, strict=False):
+                here = float(t), float(s), float(speed), float(bend)
+                self._record(*here, lost=self.lost + float(more))
             self.taken += len(times)
+        self.lost += float(lost[-1])
         self.steps.append((self.number, self.lap, step, end))
         place, pace, _ = step.at(np.array([end]))
         self.t, self.s, self.speed = end, float(place[0]), float(pace[0])
 
+    def _losses(self, step: Step, times: Array) -> Array:
+        """The work of friction from the beginning of a step up to times (B,)."""
+        if self.rubbing is None:
+            return np.zeros(len(times))
+        s, speed, _ = step.at(step.nodes)
+        power = self.leg.friction_power(s, speed, step.nodes, self.gain, self.rubbing)
+        return step.integral(power, times)
+
     def _record(
-        self, t: float, s: float, speed: float, acceleration: float, event: str = ""
-    ) -> None:
+        self, t: float, s: float, speed: float, acceleration: float, event: str = "",
+        lost: float | None = None,
+    ) -> None:  # fmt: skip
         self.samples.append(
             Sample(
                 t=t, leg=self.number, lap=self.lap, s=s, speed=speed, acceleration=acceleration,
-                event=event,
+                event=event, lost=self.lost if lost is None else lost,
             )
         )  # fmt: skip
 
     def _meet(self, event: Event) -> None:
-        bounds = len(self.bounds)
+        bounds = 2 + len(self.bounds)
         if event.number < 2:
             self._leave(event.number)
-        elif event.number < 2 + bounds:
+        elif event.number < bounds:
             self._hit(self.bounds[event.number - 2])
+        elif self.rubbing is not None and event.number == bounds:
+            self._come_to_rest()
+        elif event.falls:
+            self._hold()
         else:
             self._record(self.t, self.s, self.speed, self._now(), "switch")
             self._switch()
+            self._hold()
             self._check_chatter()
 
     def _switch(self) -> None:
@@ -233,11 +222,20 @@ class Travel:
         if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
             # pushed back as soon as it moves either way: it stays
             self.ended, self.held = "", self.recent[0]
+            self.holder = "a load that switches there"
             chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
             self.samples = [k for k in self.samples if k not in chatter]
             for t in self.times[self.taken :]:
                 self._record(float(t), self.s, 0.0, 0.0)
             self.taken, self.t = len(self.times), self.until
+
+    def _is_outside(self) -> bool:
+        """Whether the leg ended at another event, to rounding; the motion is then on the next."""
+        low, high = self.leg.table.edges[[0, -1]]
+        out = bool((self.s <= low and self.speed < 0) or (self.s >= high and self.speed > 0))
+        if out:
+            self._leave(0 if self.speed < 0.0 else 1)
+        return out
 
     def _leave(self, side: int) -> None:
         """Onto the next leg, where another variable may lead."""
@@ -257,11 +255,13 @@ class Travel:
         self.s = new.begin if ahead else new.end
         if old != new.lead:
             self.speed /= float(self.leg.slopes(np.array([self.s]))[0, old])
+        self._hold()
 
     def _note_lap(self, ahead: bool) -> None:
         """Finish at once if a lap has ended as it began and all further ones are the same."""
         last = len(self.curve.legs) - 1 if ahead else 0
         repeats = self.curve.closed and self.reduction.of_position and not self.bounds
+        repeats = repeats and not self.reduction.rubs
         if not repeats or self.number != last:
             return
         known = self.lapped
@@ -291,11 +291,14 @@ class Travel:
         name = f"stop of {bound.asked.name}"
         self._record(self.t, self.s, self.speed, self._now(), name)
         self.speed *= -bound.restitution
+        self._hold()
         pull = self._now()
         bounce = 2.0 * abs(self.speed) / abs(pull) if pull else math.inf
         if bounce < _RESTS * self.until:
             self.speed = 0.0
         self.resting = bound if self.speed == 0.0 else None
+        if self.speed == 0.0:
+            self.rubbing = None
 
     resting: Bound | None = None
 
@@ -303,13 +306,16 @@ class Travel:
         """Stay at a stop as long as the loads push there; whether time has passed."""
         if self.resting is None:
             return False
-        looks = np.linspace(self.t, self.until, 400)
-        ones = np.ones_like(looks)
-        pull = self._acceleration(self.s * ones, 0.0 * ones, looks)
         eps = 1e-6 * (self.leg.table.edges[-1] - self.leg.table.edges[0])
         two = np.array([self.s - eps, self.s + eps])
         margin = self.resting.margin(self.leg, two, np.zeros(2), np.full(2, self.t), self.gain)
         away = math.copysign(1.0, margin[1] - margin[0])
+        looks = np.linspace(self.t, self.until, 400)
+        if self.leg.friction is not None:
+            pull = away * (starting_directions(self.leg, self.s, looks, self.gain) == away)
+        else:
+            ones = np.ones_like(looks)
+            pull = self._acceleration(self.s * ones, 0.0 * ones, looks)
         leaves = np.flatnonzero(away * pull > 0.0)
         until = self.until if not len(leaves) else float(looks[leaves[0]])
         self.resting = None
@@ -322,3 +328,72 @@ class Travel:
         self.t = until
         self._switch()
         return True
+
+    @property
+    def _is_held(self) -> bool:
+        """Whether the machine is at rest and no direction is chosen."""
+        return self.reduction.rubs and self.rubbing is None
+
+    def _hold(self) -> None:
+        """Take the signs of friction from the state, for the steps that follow."""
+        if not self.reduction.rubs or not self.speed:
+            return
+        direction = math.copysign(1.0, self.speed)
+        self.rubbing = self.leg.hold(self.s, self.speed, self.t, self.gain, direction)
+
+    def _start(self) -> bool:
+        """Choose the direction in which the loads overcome friction at rest, if they do."""
+        here = np.array([self.t])
+        direction = float(starting_directions(self.leg, self.s, here, self.gain)[0])
+        if direction:
+            self.rubbing = self.leg.hold(self.s, 0.0, self.t, self.gain, direction)
+        return direction != 0.0
+
+    def _come_to_rest(self) -> None:
+        self.speed, self.rubbing = 0.0, None
+        if not self._start():
+            self._record(self.t, self.s, 0.0, 0.0, "rest")
+
+    def _sticks(self) -> bool:
+        """Stay at rest as long as friction holds the machine; whether time has passed."""
+        if not self._is_held or self._start():
+            return False
+        # comparisons follow the time meanwhile
+        self.reduction.switches = FrozenDict()
+        starts = release(self.leg, self.s, self.t, self.until, self.gain)
+        begin, end = self.t, self.until if starts is None else starts
+        times = self.times[self.taken :]
+        for t in times[times <= end]:
+            self._record(float(t), self.s, 0.0, 0.0)
+            self.taken += 1
+        self.t = end
+        self._switch()
+        if starts is None:
+            self.held, self.holder = begin, "friction"
+        elif self._start():
+            self._record(self.t, self.s, 0.0, self._now(), "start")
+        return True
+
+    def _misjudges(self, step: Step) -> bool:
+        """Whether friction has another sign as soon as a step begins; it is taken from there."""
+        if self.rubbing is None or self.rubbing.sides is None or self.tried > _MOST_TRIES:
+            self.tried = 0
+            return False
+        times = step.t + np.array([0.0, 0.02]) * step.h
+        s, speed, _ = step.at(times)
+        margins = self.leg.friction_margins(s, speed, times, self.gain, self.rubbing)
+        if not ((margins[0] <= 0.0) & (margins[1] < 0.0)).any():
+            self.tried = 0
+            return False
+        self.tried += 1
+        place, pace, time = float(s[1]), float(speed[1]), float(times[1])
+        self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
+        return True
+
+    tried = 0
+
+    def _unbounded(self) -> str:
+        """Why no step succeeds."""
+        if self.rubbing is not None and not math.isfinite(self._now()):
+            return "friction locks the mechanism there: no acceleration is in equilibrium with it"
+        return "the accelerations have no bound there"

@@ -186,7 +186,7 @@ class _Orientation:
     def __init__(self, linkage: Linkage, problems: Problems) -> None:
         self.linkage = linkage
         self._parent: dict[str, tuple[str, float]] = {b: (b, 0.0) for b in linkage.links}
-        for key, part in linkage.keyed_parts():
+        for key, part in linkage.keyed_parts:
             kept = part.kept_angle(linkage)
             gap = 0.0 if kept is None else self._join(*kept)
             if kept is not None and gap:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from linkwork.equations.model import Output
 from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.real_values import check_real
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import canonical
@@ -14,8 +15,6 @@ from linkwork.results import quantities
 from linkwork.results.quantity import Kind
 
 __all__ = ["read_outputs"]
-
-_COMPLEX_ONLY = ("cis",)
 
 
 def read_outputs(
@@ -75,27 +74,7 @@ def _check_names(tree: Node, known: Mapping[str, str], text: str) -> None:
                 text,
                 node.column,
             )
-    _check_real(tree, text)
-
-
-def _check_real(tree: Node, text: str) -> None:
-    match tree:
-        case Call() if tree.function in _COMPLEX_ONLY:
-            raise ExpressionError(
-                f"column {tree.column}: {tree.function} is complex, an output is a real number",
-                text,
-                tree.column,
-            )
-        case Call():
-            for argument in tree.arguments:
-                _check_real(argument, text)
-        case Binary():
-            _check_real(tree.left, text)
-            _check_real(tree.right, text)
-        case Negative():
-            _check_real(tree.operand, text)
-        case Name() | Number():
-            return
+    check_real(tree, text, "an output")
 
 
 def _kind(tree: Node, kind_of: Callable[[str], str]) -> str:

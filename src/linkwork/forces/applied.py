@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -61,7 +62,7 @@ class AppliedLoads:
     stored_rates: list[Array] = field(default_factory=list)
     switches: Mapping[Node, float] = FrozenDict()
 
-    @property
+    @cached_property
     def moves(self) -> bool:
         """Whether the leading input has a speed."""
         return bool(np.any(np.not_equal(self.rate, 0.0)))
@@ -135,10 +136,16 @@ class AppliedLoads:
             length = np.abs(geometry.place(second).v - geometry.place(first).v)
             centre, inertia = length / 2.0, mass * length**2 / 12.0
         place, turn, rate = geometry.local(link, centre), geometry.angle(link), self.rate
+        squared = rate * rate  # a power of a float may overflow with an error
         velocity, bend, spin, turned = (
             # without a speed nothing moves, and rates need not exist
-            part * rate**order if self.moves else np.zeros(geometry.shape)
-            for part, order in ((place.d1, 1), (place.d2, 2), (turn.d1, 1), (turn.d2, 2))
+            part * factor if self.moves else np.zeros(geometry.shape)
+            for part, factor in (
+                (place.d1, rate),
+                (place.d2, squared),
+                (turn.d1, rate),
+                (turn.d2, squared),
+            )
         )
         falling = mass * (velocity * np.conj(fall)).real
         self.masses.append(

@@ -42,7 +42,7 @@ class Act:
     force: ComplexArray
     moment: Array | float = 0.0
 
-    def times(self, factor: float) -> Act:
+    def times(self, factor: Array | float) -> Act:
         """The act multiplied."""
         return Act(self.on, self.place, factor * self.force, factor * self.moment)
 
@@ -190,27 +190,28 @@ class FreeBodies:
         (B, E, n), E rows: two forces and a moment of every link, two forces of a free point.
         """
         # W of eq. (72)
-        rows = np.zeros((self.geometry.rows, self.equations, len(self.unknowns)))
+        # all rows of one entry side by side, as acts have them
+        entries = np.zeros((self.equations, len(self.unknowns), self.geometry.rows))
         for k, acts in enumerate(self.unknowns):
             for act in acts:
-                self._add(rows[:, :, k], act)
-        return rows
+                self._add(entries[:, k], act)
+        return np.ascontiguousarray(entries.transpose(2, 0, 1))
 
     def sums(self, acts: Iterable[Act]) -> Array:
         """The sums of forces and scaled moments of known acts, (B, E)."""
-        rows = np.zeros((self.geometry.rows, self.equations))
+        sums = np.zeros((self.equations, self.geometry.rows))
         for act in acts:
-            self._add(rows, act)
-        return rows
+            self._add(sums, act)
+        return np.ascontiguousarray(sums.T)
 
     @property
     def equations(self) -> int:
         """E."""
         return 3 * len(self.bodies) - len(self.free_points)
 
-    def _add(self, rows: Array, act: Act) -> None:
+    def _add(self, sums: Array, act: Act) -> None:
         for row, value in self.entries(act):
-            rows[:, row] += value
+            sums[row] += value
 
     def entries(self, act: Act) -> Iterator[tuple[int, Array]]:
         """What an act adds to the sums of forces and scaled moments, by row."""

@@ -39,6 +39,7 @@ class Geometry:
         self.links = description.carried
         self._places: dict[str, Jet] = {}
         self._angles: dict[str, Jet] = {}
+        self._directions: dict[str, Jet] = {}
 
     @cached_property
     def rows(self) -> int:
@@ -78,6 +79,17 @@ class Geometry:
         found: Array = (self.input_rates.T * each.T).sum(axis=-1)
         return found
 
+    @cached_property
+    def input_ways(self) -> Array:
+        """The rate of every input; of a simulated motion at rest its acceleration, (p,) or (p, B).
+
+        Friction acts against the motion, or against that which begins.
+        """
+        if self.model.untimed is None or self.model.description.timed:
+            return self.input_rates
+        still = (self.input_rates == 0.0).all(axis=0)
+        return np.where(still, self.input_bends, self.input_rates)
+
     @property
     def input_bends(self) -> Array:
         """The acceleration of every input where time drives the mechanism, (p, B)."""
@@ -98,6 +110,11 @@ class Geometry:
 
     def direction(self, link: str) -> Jet:
         """The unit vector of a link's x axis: from its first point towards its second."""
+        if link not in self._directions:
+            self._directions[link] = self._direction(link)
+        return self._directions[link]
+
+    def _direction(self, link: str) -> Jet:
         if link == GROUND:
             one = np.ones(self.rows, dtype=complex)
             return Jet(one, 0.0 * one, 0.0 * one)

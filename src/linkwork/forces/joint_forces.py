@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from linkwork.forces.equilibrium import Balance, balance
 from linkwork.forces.free_bodies import Act, FreeBodies, Reading
 from linkwork.foundation.arrays import Array, BoolArray
 
-__all__ = ["FrictionEfforts", "JointForces", "joint_forces"]
+__all__ = ["FrictionEfforts", "JointForces", "doubtful_followers", "joint_forces"]
 
 _STRESSED = 1e-9  # part of a doubtful force that makes another one doubtful
 _AT_REST = 1e-12  # of the fastest motion: rounding of a joint that does not move
@@ -61,17 +62,26 @@ class JointForces:
 
     def read(self, reading: Reading) -> tuple[Array, BoolArray]:
         """A reading and where it is not determined, (B,) each."""
+        value: Array = np.zeros(len(self.unknowns)) + reading.constant
+        for k, factor in reading.terms:
+            value += factor * self._given[:, k]
+        if reading.follow is not None:
+            value += self.amounts[:, reading.follow]
+        if self.balance.stress is None and not self.doubtful.any():
+            return value, np.zeros(len(value), dtype=bool)
         factors = np.zeros_like(self.unknowns)
         for k, factor in reading.terms:
             factors[:, k] += factor
-        value: Array = (factors * np.nan_to_num(self.unknowns)).sum(axis=1) + reading.constant
         doubt = self.balance.undetermined(factors)
-        if reading.follow is not None:
-            value = value + self.amounts[:, reading.follow]
         for k, answer in enumerate(self.answers):
             change = np.abs((factors * answer).sum(axis=1))
             doubt |= self.doubtful[:, k] & ((change > _STRESSED) | (reading.follow == k))
         return value, doubt
+
+    @cached_property
+    def _given(self) -> Array:
+        """The unknowns; 0 where they do not exist, for readings that need none of them."""
+        return np.nan_to_num(self.unknowns)
 
     def acts(self) -> Iterable[Act]:
         """What follows from the unknowns."""
@@ -119,7 +129,7 @@ def joint_forces(bodies: FreeBodies, acts: Iterable[Act], direction: Array) -> J
             doubtful=np.zeros((rows, 0), dtype=bool), found=every, proved=every,
         )  # fmt: skip
     # friction in a stressed joint is as unknown as its force
-    doubtful = _doubtful(bodies, known, answers)
+    doubtful = doubtful_followers(bodies, known, answers)
     first, change = np.zeros((rows, count, 2)), np.zeros((rows, count, 2, count))
     for j, follower in enumerate(followers):
         for m, own in enumerate(follower.size.unknowns):
@@ -143,13 +153,14 @@ def joint_forces(bodies: FreeBodies, acts: Iterable[Act], direction: Array) -> J
 def _way(motion: Array, bodies: FreeBodies) -> Array:
     """The sign of a relative motion when the leading input grows; 0 at rest, (B,)."""
     geometry = bodies.geometry
-    rate = geometry.by_leading(np.broadcast_to(motion, (len(motion), geometry.rows)))
+    each = np.broadcast_to(motion, (len(motion), geometry.rows))
+    rate = (geometry.input_ways.T * each.T).sum(axis=-1)
     limit = _AT_REST * geometry.fastest * max(1.0, geometry.length)
     found: Array = np.where(np.abs(rate) > limit, np.sign(rate), 0.0)
     return found
 
 
-def _doubtful(bodies: FreeBodies, known: Balance, answers: Sequence[Array]) -> BoolArray:
+def doubtful_followers(bodies: FreeBodies, known: Balance, answers: Sequence[Array]) -> BoolArray:
     """Which followers a self-stress changes, of itself or through others, (B, K)."""
     rows, count = len(answers[0]), len(answers)
     found = np.zeros((rows, count), dtype=bool)

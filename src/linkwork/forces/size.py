@@ -7,6 +7,7 @@ unknowns from which a size follows, (B, m).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["LargerOf", "NormOf", "Sided", "Size"]
+__all__ = ["LargerOf", "Linear", "NormOf", "Sided", "Size"]
 
 
 class Size(Protocol):
@@ -39,6 +40,15 @@ class Size(Protocol):
     def rows(self, which: IndexArray) -> Size:
         """The size in some rows."""
 
+    def side(self, u: Array) -> int:
+        """The side of its edges on which unknowns (m,) are."""
+
+    def inside(self, u: Array, side: int) -> Array:
+        """How far unknowns (B, m) are on a side: negative beyond its edge, (B,)."""
+
+    def smooth(self, side: int) -> Size:
+        """The size as it is on a side, continued smoothly beyond its edges."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NormOf:
@@ -61,6 +71,15 @@ class NormOf:
         return np.where(reach <= size / 2.0, self.factor * 2.0 / size, np.inf)
 
     def rows(self, which: IndexArray) -> NormOf:
+        return self
+
+    def side(self, u: Array) -> int:
+        return 0
+
+    def inside(self, u: Array, side: int) -> Array:
+        return np.ones(len(u))
+
+    def smooth(self, side: int) -> NormOf:
         return self
 
 
@@ -90,6 +109,17 @@ class Sided:
         )
         return Sided(unknowns=self.unknowns, plus=plus, minus=minus, constant=self.constant)
 
+    def side(self, u: Array) -> int:
+        return 1 if u[0] >= 0.0 else -1
+
+    def inside(self, u: Array, side: int) -> Array:
+        found: Array = side * u[:, 0]
+        return found
+
+    def smooth(self, side: int) -> Linear:
+        factor = self.plus if side > 0 else -np.asarray(self.minus)
+        return Linear(unknowns=self.unknowns, factors=(factor,), constant=self.constant)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LargerOf:
@@ -114,4 +144,57 @@ class LargerOf:
         return np.where(reach * sum(self.factors) < apart, 0.0, np.inf)
 
     def rows(self, which: IndexArray) -> LargerOf:
+        return self
+
+    def side(self, u: Array) -> int:
+        larger = int(np.argmax(np.abs(u) * self.factors))
+        return larger + 1 if u[larger] >= 0.0 else -larger - 1
+
+    def inside(self, u: Array, side: int) -> Array:
+        larger = abs(side) - 1
+        other = np.abs(u[:, 1 - larger]) * self.factors[1 - larger]
+        found: Array = np.sign(side) * u[:, larger] * self.factors[larger] - other
+        return found
+
+    def smooth(self, side: int) -> Linear:
+        larger = abs(side) - 1
+        factors = [0.0, 0.0]
+        factors[larger] = math.copysign(self.factors[larger], side)
+        return Linear(unknowns=self.unknowns, factors=tuple(factors))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Linear:
+    """A sum of unknowns times ``factors`` and a constant: another size on one side of its edges."""
+
+    unknowns: tuple[int, ...]
+    factors: tuple[Array | float, ...]
+    constant: float = 0.0
+
+    def value(self, u: Array) -> Array:
+        found: Array = self.constant + (u * self.gradient(u)).sum(axis=1)
+        return found
+
+    def gradient(self, u: Array) -> Array:
+        found = np.empty_like(u)
+        for k, factor in enumerate(self.factors):
+            found[:, k] = factor
+        return found
+
+    def bend(self, u: Array, reach: Array) -> Array:
+        return np.zeros(len(u))
+
+    def rows(self, which: IndexArray) -> Linear:
+        factors = tuple(
+            own[which] if isinstance(own, np.ndarray) and own.ndim else own for own in self.factors
+        )
+        return Linear(unknowns=self.unknowns, factors=factors, constant=self.constant)
+
+    def side(self, u: Array) -> int:
+        return 0
+
+    def inside(self, u: Array, side: int) -> Array:
+        return np.ones(len(u))
+
+    def smooth(self, side: int) -> Linear:
         return self

@@ -29,6 +29,7 @@ from linkwork.results.quantity import Kind
 from linkwork.results.reactions import ForceStatus
 
 __all__ = [
+    "NO_WORK",
     "ForceRows",
     "ForceValue",
     "free_bodies",
@@ -39,7 +40,8 @@ __all__ = [
 ]
 
 _UNBOUNDED = 1e9  # radians, or longest links, per unit of the input: no rate at all
-_NO_WORK = 1e-12  # of the largest term
+#: Of the largest term of a sum of work: less is none.
+NO_WORK = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,6 +84,8 @@ class _Solution:
         #: Where friction leaves no equilibrium, and where this, or the equilibrium, is proved.
         self.locked = np.zeros(self.geometry.rows, dtype=bool)
         self.proved = np.ones(self.geometry.rows, dtype=bool)
+        #: Where friction holds the mechanism at rest.
+        self.held = np.zeros(self.geometry.rows, dtype=bool)
 
     def slips(self, name: str, rows: BoolArray) -> None:
         """Mark where a wheel would need more adhesion."""
@@ -94,9 +98,8 @@ class _Solution:
         none = np.zeros(self.geometry.rows, dtype=bool)
         unknown = none if undetermined is None else undetermined & self.regular
         value = np.where(self.regular & ~unknown, value, np.nan)
-        size = np.nanmax(np.abs(value), initial=0.0)
         # rounding of a contact without force is no lift-off
-        lifted = value < -1e-9 * size if pushes else none
+        lifted = value < -1e-9 * np.nanmax(np.abs(value), initial=0.0) if pushes else none
         self.values[name] = ForceValue(
             kind=kind,
             about=about,
@@ -143,6 +146,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             _add_losses(found, by_work, largest, rubbing)
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
+        # loads, weights and energies are known at rest all the same
+        found.regular |= found.held
         for name, kind, about, value in totals(geometry, applied):
             point, pushed, _ = name.partition(".load.")
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
@@ -152,6 +157,7 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
     status[found.locked & ~lost] = ForceStatus.SELF_LOCKING.code
+    status[found.held & ~lost] = ForceStatus.HELD.code
     return ForceRows(values=found.values, status=status.astype(np.int8), proved=found.proved)
 
 
@@ -234,6 +240,9 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
     found.locked = found.regular & ~forces.found
     found.regular &= forces.found
     found.proved = forces.proved
+    if any(own.motion is not None for own in bodies.following):
+        found.held = found.regular & _held(bodies.geometry)
+        found.regular &= ~found.held
     read_first_links(bodies, [*acts, *forces.acts()])
     for reading in bodies.readings:
         value, doubt = forces.read(reading)
@@ -245,6 +254,14 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
             normal, mu = reading.adhesion
             found.slips(reading.name, np.abs(value) > mu * np.abs(forces.unknowns[:, normal]))
     return rubbing
+
+
+def _held(geometry: Geometry) -> BoolArray:
+    """Rows of a simulation in which the mechanism stays at rest, (B,)."""
+    if geometry.model.untimed is None or geometry.model.description.timed:
+        return np.zeros(geometry.rows, dtype=bool)
+    found: BoolArray = (geometry.input_ways == 0.0).all(axis=0)
+    return found
 
 
 def _direction(found: _Solution) -> Array:
@@ -292,7 +309,7 @@ def _add_losses(found: _Solution, ideal: Array, largest: Array, rubbing: Frictio
     useful = geometry.by_leading(ideal) * way
     lost = geometry.by_leading(rubbing.efforts) * way
     # nothing moves against the loads at their dead point: rounding would be taken for a sign
-    useful = np.where(np.abs(useful) > _NO_WORK * largest.max(axis=0), useful, 0.0)
+    useful = np.where(np.abs(useful) > NO_WORK * largest.max(axis=0), useful, 0.0)
     spent = useful + lost
     # the input drives the loads, or they drive it: a negative value means that friction holds them
     efficiency = np.where(useful >= 0.0, useful / spent, spent / useful)

@@ -22,6 +22,7 @@ __all__ = [
     "cis",
     "copysign",
     "degrees",
+    "detached",
     "display_value",
     "everywhere",
     "exponential",
@@ -237,6 +238,11 @@ def leader_value(x: float) -> float:
 def plain_value(x: _Number) -> _Number:
     """A number as a plain one where its derivatives do not matter; lanes are refused."""
     return x.arithmetic.value_of(x) if is_batched(x) else x
+
+
+def detached(x: _Number) -> _Number:
+    """A number without derivatives, in arithmetics that know them."""
+    return x.arithmetic.detached(x) if is_batched(x) else x
 
 
 def is_steady(x: float) -> bool:

@@ -79,6 +79,10 @@ class Consensus(Arithmetic[Any]):
         """The value of a number that starts an iteration or decides a rank; lanes have many."""
         raise NotElementwise
 
+    def detached(self, number: Any) -> Any:
+        """A number without its derivatives, in arithmetics that know them."""
+        return number
+
     def is_steady(self, number: Any) -> bool:
         """Whether a number has no derivatives, in arithmetics that know them."""
         return True
@@ -86,7 +90,10 @@ class Consensus(Arithmetic[Any]):
     def solve_shortest(
         self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
     ) -> Sequence[Any] | None:
-        """The shortest least-squares solution; ``None`` where lanes are solved as arrays."""
+        """The shortest least-squares solution; ``None`` where lanes are solved as arrays.
+
+        Arithmetics with derivatives expect a matrix without any.
+        """
         return None
 
     def carry(self, value: Any, number: Any) -> Any:

@@ -14,6 +14,7 @@ from linkwork.foundation.errors import InputError
 __all__ = ["as_told", "finite_number", "plain_number", "whole_number"]
 
 _LONGEST_TOLD = 40
+_LARGE = 1e308  # no number below is infinite as a float
 
 
 def plain_number(given: object) -> float | None:
@@ -23,6 +24,8 @@ def plain_number(given: object) -> float | None:
     """
     if type(given) is float:  # most are, and abstract classes take long to ask
         return given
+    if type(given) is int and -_LARGE < given < _LARGE:
+        return float(given)
     if isinstance(given, np.ndarray) and given.ndim == 0:
         given = given[()]
     # True is a number for Python, and a mistake here

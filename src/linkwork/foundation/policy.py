@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from linkwork.foundation.errors import InputError, choices
+from linkwork.foundation.plain_numbers import as_told
 
 __all__ = ["ChangePointPolicy"]
 
@@ -17,7 +18,7 @@ class ChangePointPolicy(Enum):
     TURN = "turn"
 
     @classmethod
-    def of(cls, name: str | ChangePointPolicy) -> ChangePointPolicy:
+    def of(cls, name: object) -> ChangePointPolicy:
         """The policy of a name: ``stop``, ``straight`` (keep the tangent) or ``turn``.
 
         Raises
@@ -28,8 +29,9 @@ class ChangePointPolicy(Enum):
         if isinstance(name, ChangePointPolicy):
             return name
         names = [policy.value for policy in cls]
-        if name not in names:
+        told = name if isinstance(name, str) else as_told(name)
+        if told not in names:
             raise InputError(
-                f'"{name}" is not a policy at a change point {choices("policies", names, name)}'
+                f'"{told}" is not a policy at a change point {choices("policies", names, told)}'
             )
-        return cls(name)
+        return cls(told)

@@ -15,6 +15,7 @@ __all__ = [
     "PROOF_SLACK",
     "RANK_TOLERANCE",
     "REGULAR_CONDITION",
+    "REST",
     "UNIT_ROUNDOFF",
 ]
 
@@ -38,6 +39,8 @@ LARGEST_POLISH = 1e-6
 CLOSER_TANGENT = 0.1
 #: Relative to their size: rows of a motion that differ by less show one position, solved twice.
 EQUAL_ROWS = 1e-9
+#: Relative: slower motion is rest, to the accuracy of positions.
+REST = 1e-11
 #: A complex solution this near to its mirror image may be a real one.
 ALMOST_REAL = 1e-6
 #: The same of a multiple solution, whose path ends less precisely.

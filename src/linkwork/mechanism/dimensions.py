@@ -21,6 +21,7 @@ __all__ = ["Number", "Numbers"]
 #: A number, or a formula of the named dimensions.
 Number = float | int | str
 _LONGEST_CHAIN = 200
+_LARGE = 1e308  # no number below is infinite
 Report = Callable[[Iterable[str | int], str], None]
 
 
@@ -51,8 +52,9 @@ class Numbers:
         ExpressionError
             If the formula cannot be read or has no finite real value.
         """
-        if type(number) is float and math.isfinite(number):
-            return number
+        # most are plain: other questions take longer
+        if (type(number) is float or type(number) is int) and -_LARGE < number < _LARGE:
+            return float(number)
         if isinstance(number, str):
             return value(parse(number), self.known, self.unit, number)
         plain = cast(float, number) if is_batched(number) else plain_number(number)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.frozen import FrozenDict
@@ -62,17 +62,34 @@ class Draft(JoinedBodies):
         for table in PARTS:
             entries: tuple[Part, ...] = getattr(self, table)
             set_(self, table, tuple(part.find_spelling(same) for part in entries))
-        self.__dict__.pop("parts", None)
+        for kept in ("parts", "keyed_parts"):
+            self.__dict__.pop(kept, None)
         inputs = tuple(_spelled_input(driven, same) for driven in self.inputs)
         set_(self, "inputs", inputs)
         set_(self, "trace", tuple(map(same, self.trace)))
+        self._examine()
+
+    def _examine(self) -> None:
+        """Find the problems and the shapes of the links."""
         problems = Problems()
-        set_(self, "problems", problems)
+        object.__setattr__(self, "problems", problems)
         check_linkage(self, problems)
-        set_(self, "shapes", Shapes() if problems else link_shapes(self, problems))
+        object.__setattr__(self, "shapes", Shapes() if problems else link_shapes(self, problems))
         if not problems:
-            for key, part in self.keyed_parts():
+            for key, part in self.keyed_parts:
                 part.check_shapes(PartChecks(self, problems, key))
+
+    def with_tables(self, tables: Mapping[str, Any]) -> Self:
+        """A copy with other numbers under the same names in some tables, examined.
+
+        Names keep their spelling and entries their types, which ``replace`` would check again.
+        """
+        copy = object.__new__(type(self))
+        # without what was computed from the numbers and kept
+        kept = {part.name: getattr(self, part.name) for part in fields(self)}
+        copy.__dict__.update({**kept, **tables})
+        copy._examine()
+        return copy
 
     @property
     def turning_on_one_point(self) -> frozenset[str]:
@@ -119,7 +136,7 @@ class Draft(JoinedBodies):
             kept[table] = tuple(part for k, part in parts if not self._lacks((table, k)))
         found = replace(self, **kept)  # type: ignore[arg-type]
         # what is left may refer to a part that was left out
-        keys = [key for key, _ in found.keyed_parts()]
+        keys = [key for key, _ in found.keyed_parts]
         keys += map(found.input_key, range(len(found.inputs)))
         if any(map(found._lacks, keys)):
             return found.drawable

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from linkwork.foundation.elementwise import (
     choose,
-    cis,
-    degrees,
+    detached,
     everywhere,
-    is_steady,
     largest,
     phase,
     rect,
@@ -22,8 +19,9 @@ from linkwork.foundation.elementwise import (
 )
 from linkwork.foundation.lanes import Rest, rest_of
 from linkwork.mechanism.least_norm import full_rank, least_norm
+from linkwork.mechanism.link_dimension import Distance, Given, VertexAngle
 
-__all__ = ["Distance", "LinkShape", "ShapeError", "VertexAngle", "place"]
+__all__ = ["LinkShape", "ShapeError", "place"]
 
 _AGREE = 1e-9
 _MOST_STEPS = 60
@@ -38,87 +36,6 @@ class ShapeError(Exception):
         self.message = message
         self.table = table
         self.key = key
-
-
-@dataclass(frozen=True)
-class Distance:
-    """|ab| = length."""
-
-    a: str
-    b: str
-    length: float
-    table = "lengths"
-
-    @property
-    def key(self) -> str:
-        return f"{self.a} {self.b}"
-
-    @property
-    def points(self) -> tuple[str, ...]:
-        return (self.a, self.b)
-
-    @property
-    def amount_text(self) -> str:
-        return f"{self.length:.12g}"
-
-    def error(self, z: Mapping[str, complex]) -> float:
-        """Relative disagreement with placed points."""
-        return (abs(z[self.b] - z[self.a]) - self.length) / self.length
-
-    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        error = self.error(z)
-        # one that agrees by chance would no longer if a number changed
-        return abs(error) <= tolerance and is_steady(error)
-
-    def shown(self, z: Mapping[str, complex]) -> str:
-        return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
-
-    def narrow(self, rest: Rest) -> Distance:
-        return replace(self, length=rest.narrow(self.length))
-
-
-@dataclass(frozen=True)
-class VertexAngle:
-    """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``."""
-
-    a: str
-    vertex: str
-    b: str
-    angle: float
-    table = "angles"
-
-    @property
-    def key(self) -> str:
-        return f"{self.a} {self.vertex} {self.b}"
-
-    @property
-    def points(self) -> tuple[str, ...]:
-        return (self.a, self.vertex, self.b)
-
-    @property
-    def amount_text(self) -> str:
-        return f"{degrees(self.angle):.12g}°"
-
-    def error(self, z: Mapping[str, complex]) -> float:
-        """Disagreement with placed points [rad], within half a turn."""
-        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        # the difference as a rotation has no jump at half a turn
-        return phase(rays * cis(-self.angle)) if rays else math.inf
-
-    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
-        error = self.error(z)
-        # one that agrees by chance would no longer if a number changed
-        return abs(error) <= tolerance and is_steady(error)
-
-    def shown(self, z: Mapping[str, complex]) -> str:
-        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
-        return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
-
-    def narrow(self, rest: Rest) -> VertexAngle:
-        return replace(self, angle=rest.narrow(self.angle))
-
-
-Given = Distance | VertexAngle
 
 
 @dataclass(frozen=True)
@@ -256,7 +173,8 @@ def place(
         if not (state.place_next(0) or state.place_next(1)):
             state.place_next(2)
     given: list[Given] = [*distances, *vertices]
-    measured = state.measured
+    # what places a point before the last dimension is used need not be measured after all
+    measured = state.measured if len(given) < 2 * len(points) - 3 else []
     z = state.z
     if not all(g.agrees(z, _AGREE) for g in given):
         # n points have 2n coordinates; a link may still be moved and turned, 3 freedoms
@@ -308,7 +226,8 @@ def _together(
     """Solve all dimensions together from the sketch, completed by measured distances."""
     rows: list[Given] = list(given)
     measured: list[Distance] = []
-    placed = {p: sketch[p] for p in points}
+    # the sketch selects a shape; only what is measured in it enters its dimensions
+    start = {p: detached(sketch[p]) for p in points}
     for i in range(len(points)):
         for j in range(i + 1, len(points)):
             if len(rows) >= 2 * len(points) - 3:
@@ -316,10 +235,15 @@ def _together(
             length = abs(sketch[points[j]] - sketch[points[i]])
             candidate = Distance(points[i], points[j], length)
             # a measured length is added only if it is independent of the others
-            if length and full_rank(_slopes(placed, [*rows, candidate]), 1e-9):
+            if length and full_rank(_slopes(start, _detached([*rows, candidate])), 1e-9):
                 rows.append(candidate)
                 measured.append(candidate)
-    placed = _gauss_newton(placed, rows, _MOST_STEPS)
+    held = _detached(rows)
+    placed = _gauss_newton(start, held, _MOST_STEPS)
+    if any(own is not row for own, row in zip(held, rows, strict=True)):
+        # one exact step from the solution has its derivatives (implicit function theorem)
+        errors = [row.error(placed) for row in rows]
+        placed = _moved(placed, least_norm(_slopes(placed, held), errors))
     wrong = [row for row in given if not row.agrees(placed, _AGREE)]
     if wrong:
         raise ShapeError(
@@ -338,22 +262,28 @@ def _gauss_newton(
 
     Designs that have not converged after ``first`` steps continue separately.
     """
-    count = len(z)
     for k in range(steps):
         errors = [row.error(z) for row in rows]
         done = largest(abs(error) for error in errors) <= 1e-14
-        steady = all(map(is_steady, errors))
-        if everywhere(done) and steady:
+        if everywhere(done):
             break
         # in a family most designs need few steps: the others continue separately
         if k == first and (rest := rest_of(done)) is not None:
             return _gone_on(z, rows, steps - k, rest)
-        step = least_norm(_slopes(z, rows), errors)
-        z = {
-            p: choose(done if steady else False, place, place - vector(step[k], step[k + count]))
-            for k, (p, place) in enumerate(z.items())
-        }
+        moved = _moved(z, least_norm(_slopes(z, rows), errors))
+        z = {p: choose(done, place, moved[p]) for p, place in z.items()}
     return z
+
+
+def _moved(z: Mapping[str, complex], step: Sequence[float]) -> dict[str, complex]:
+    """Points less a step of their coordinates, x then y."""
+    count = len(z)
+    return {p: place - vector(step[k], step[k + count]) for k, (p, place) in enumerate(z.items())}
+
+
+def _detached(rows: Sequence[Given]) -> list[Given]:
+    """Dimensions without the derivatives of their numbers."""
+    return [row.detached() for row in rows]
 
 
 def _gone_on(
@@ -370,16 +300,12 @@ def _gone_on(
 
 def _slopes(z: Mapping[str, complex], rows: Sequence[Given]) -> list[list[float]]:
     """Derivatives of the rows' errors with respect to all coordinates, x then y: rows of 2n."""
-    first = next(iter(z.values()))
-    # central differences: truncation ~h² and rounding ~eps/h are then both about 1e-9 or less
-    h = 1e-7 * (largest(abs(place - first) for place in z.values()) or 1.0)
-    columns = []
-    for shift in (h, 1j * h):
-        for point in z:
-            plus = {**z, point: z[point] + shift}
-            minus = {**z, point: z[point] - shift}
-            columns.append([(row.error(plus) - row.error(minus)) / (2 * h) for row in rows])
-    return [list(row) for row in zip(*columns, strict=True)]
+    found = []
+    for row in rows:
+        by = row.gradients(z)
+        at = [by.get(point, 0j) for point in z]
+        found.append([g.real for g in at] + [g.imag for g in at])
+    return found
 
 
 def _upright(z: Mapping[str, complex], points: tuple[str, ...]) -> dict[str, complex]:

@@ -12,7 +12,8 @@ from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies, Measured, Shapes
 from linkwork.mechanism.description import Problems
-from linkwork.mechanism.link_shape import Distance, LinkShape, ShapeError, VertexAngle, place
+from linkwork.mechanism.link_dimension import Distance, VertexAngle
+from linkwork.mechanism.link_shape import LinkShape, ShapeError, place
 
 __all__ = ["link_shapes"]
 

@@ -37,6 +37,6 @@ class Linkage(Draft):
         One field for each table of parts, see :mod:`linkwork.mechanism.part.index`.
     """
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
+    def _examine(self) -> None:
+        super()._examine()
         self.problems.raise_any(f'mechanism "{self.name}"')

@@ -27,13 +27,13 @@ def check_linkage(linkage: JoinedBodies, problems: Problems) -> None:
         [
             *declared("points", linkage.points),
             *declared("links", linkage.links),
-            *(((*key, "name"), n) for key, part in linkage.keyed_parts() for n in part.names),
+            *(((*key, "name"), n) for key, part in linkage.keyed_parts for n in part.names),
         ],
     )
     _check_points(linkage, problems)
     _check_links(linkage, problems)
     _check_shared_points(linkage, problems)
-    for key, part in linkage.keyed_parts():
+    for key, part in linkage.keyed_parts:
         part.check(PartChecks(linkage, problems, key))
     check_masses(linkage, problems)
     check_friction(linkage, problems)
@@ -95,7 +95,7 @@ def _check_shared_points(linkage: JoinedBodies, problems: Problems) -> None:
     """Two links that share two points are one rigid body."""
     bodies: list[tuple[Key, str, tuple[str, ...]]] = [
         *((("links", link), link, points) for link, points in linkage.links.items()),
-        *((key, part.label, part.body) for key, part in linkage.keyed_parts() if part.body),
+        *((key, part.label, part.body) for key, part in linkage.keyed_parts if part.body),
     ]
     carriers: dict[str, list[int]] = {}
     for k, (_, _, points) in enumerate(bodies):
@@ -125,7 +125,7 @@ def _union(linkage: JoinedBodies, other: str, points: Iterable[str]) -> str:
 def _check_guided_once(linkage: JoinedBodies, problems: Problems) -> None:
     """A body may guide a point along one line only."""
     first: dict[tuple[str, str], str] = {}
-    for key, part in linkage.keyed_parts():
+    for key, part in linkage.keyed_parts:
         if part.guided is None:
             continue
         field, point, on = part.guided

@@ -145,12 +145,15 @@ def with_numbers(description: Description, numbers: Mapping[VariedNumber, Number
             changed[quantity.key] = tuple(place)
         else:
             changed[quantity.key] = number
-    return replace(description, **{t: _changed(description, t, new) for t, new in tables.items()})
+    changes = {table: _changed(description, table, new) for table, new in tables.items()}
+    if isinstance(description, Draft):
+        return description.with_tables(changes)
+    return replace(description, **changes)
 
 
 def _changed(description: Description, table: str, changes: Mapping[str, Any]) -> Any:
     if table != "sliders":
-        return {**getattr(description, table), **changes}
+        return FrozenDict({**getattr(description, table), **changes})
     assert isinstance(description, Draft)
     return tuple(
         replace(part, offset=changes[part.name]) if part.name in changes else part

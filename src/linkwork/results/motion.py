@@ -98,6 +98,8 @@ class Motion:
         The unknowns with angles in radians.
     failure : Failure, optional
         Why no position was found at the guess.
+    friction_work : array (N,), optional
+        Of a simulation with friction: the energy that it has taken so far.
 
     Examples
     --------
@@ -142,10 +144,13 @@ class Motion:
     redundant: Mapping[str, float] = FrozenDict()
     q: Array
     failure: Failure | None = None
+    friction_work: Array | None = None
 
     def __post_init__(self) -> None:
         for field in (*EVIDENCE, "added", "q"):
             object.__setattr__(self, field, read_only(getattr(self, field)))
+        if self.friction_work is not None:
+            object.__setattr__(self, "friction_work", read_only(self.friction_work))
         inputs = {name: read_only(values) for name, values in self.inputs.items()}
         object.__setattr__(self, "inputs", FrozenDict(inputs))
 

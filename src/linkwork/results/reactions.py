@@ -45,6 +45,10 @@ class ForceStatus(CodedEnum):
         "at a dead point or change point the input has no finite effort: ask for a value beside it"
     )
     NO_POSITION = "there is no position: see its own status"
+    HELD = (
+        "friction holds the mechanism at rest: it takes any value up to its limit, and forces are "
+        "not determined"
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

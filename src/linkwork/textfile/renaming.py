@@ -77,6 +77,11 @@ def rename(edits: TextEdits, of: str, name: str, new: str) -> None:
             text = _renamed(entry.given, pairs, whole=whole, load=load)
             if text != entry.given:
                 edits.put(entry.path, text)
+        elif entry.path[0] == "stops" and entry.path[-1] == "of":
+            own, dot, rest = str(entry.given).partition(".")
+            # a coordinate is of a point, all else of a link or part
+            if canonical(own) == folded and bool(dot) == (of == "point"):
+                edits.put(entry.path, f"{new}{dot}{rest}")
         elif _refers(entry, of) and canonical(str(entry.given)) == folded:
             edits.put(entry.path, new)
     for path, key in _keys(edits, of, folded, new):

@@ -89,7 +89,10 @@ class TextEdits:
         return [str(name) for name in found] if isinstance(found, list) else []
 
     def put(self, path: KeyPath, entry: Any) -> None:
-        """Write a value; creates a missing table and keeps comments on the line."""
+        """Write a value; creates a missing table and keeps comments on the line.
+
+        A table is written in one line.
+        """
         place = self._found(path)
         if place is not None:
             holder, key = place
@@ -106,7 +109,7 @@ class TextEdits:
             holder = nearest[0][nearest[1]]
         if not path or not isinstance(path[-1], str):
             raise InputError(f"{key_text(path)} is not in the file: no value can be written there")
-        holder.add(path[-1], entry)
+        holder.add(path[-1], _in_one_line(entry) if isinstance(entry, Mapping) else entry)
 
     def append(self, table: str, fields: Mapping[str, Any]) -> None:
         """Add an entry to a ``[[table]]``; a single ``[table]`` becomes its first entry."""
@@ -221,6 +224,15 @@ def _as_before(old: Any, entry: Any) -> Any:
     if isinstance(entry, float) and isinstance(plain, int) and entry.is_integer():
         return int(entry)
     return entry
+
+
+def _in_one_line(entry: Mapping[str, Any]) -> Any:
+    import tomlkit
+
+    line = tomlkit.inline_table()
+    line.update(entry)
+    # with blanks inside the braces, as files are written by hand
+    return tomlkit.parse(f"row = {{ {line.as_string()[1:-1]} }}")["row"]
 
 
 def _end_with_blank_line(document: Any) -> None:

@@ -22,7 +22,7 @@ from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import Loops, motion_page
 from linkwork.viewer.page_data import PageData, SolvingPage
-from linkwork.viewer.play_order import falling, play_order
+from linkwork.viewer.play_order import falling, in_time, play_order
 
 __all__ = [
     "ANIMATION_FORMATS",
@@ -181,9 +181,15 @@ def _film(
 
 
 def _film_rows(motion: Motion, options: FilmOptions) -> list[int]:
-    """The rows in playing order: around a closed circuit, or back and forth."""
+    """The rows in playing order: around a closed circuit, or back and forth; over the time at
+    equal intervals.
+    """
     order, closed = play_order(motion)
     wanted = options.rows or max(2, round(_LASTING * options.fps))
+    if in_time(motion):
+        times = next(iter(motion.inputs.values()))[order]
+        asked = np.linspace(times[0], times[-1], min(wanted, len(order)))
+        return [int(row) for row in order[np.searchsorted(times, asked, side="right") - 1]]
     if closed:
         count = min(wanted, len(order))
         return [int(order[k * len(order) // count]) for k in range(count)]

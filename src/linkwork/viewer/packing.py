@@ -95,10 +95,13 @@ def _clipped(kept: Array) -> tuple[Array, float]:
 
 
 def _plain(values: Array, found: BoolArray, order: int) -> PackedColumn:
-    kind = np.dtype(_FLOATS[order])
+    own = values if found.all() else values[found]
+    with np.errstate(over="ignore"):
+        kept = own.astype(_FLOATS[order])
     # larger values are gaps, as those that are not finite
-    fitting = np.abs(values[found]) <= np.finfo(kind).max
-    kept = np.where(fitting, values[found], np.nan).astype(kind)
+    fitting = np.isfinite(kept)
+    if not fitting.all():
+        kept[~fitting] = np.nan
     return PackedColumn(step=1.0, order=order, content=base64.b64encode(kept.tobytes()).decode())
 
 

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from linkwork.equations.input_motion import TIME
 from linkwork.foundation.arrays import BoolArray, ComplexArray, CountArray
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.motion import Motion
 
-__all__ = ["falling", "play_order"]
+__all__ = ["falling", "in_time", "play_order"]
 
 _MEETING = 1.5  # in multiples of the largest step: runs with nearer ends are joined
 
@@ -20,8 +21,11 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
 
     A table starts anywhere on a circuit, may have a gap without positions, and lists further
     branches at its end. Runs of neighbouring rows are joined at common ends; other runs follow each
-    other. The order follows time: it is reversed if the input speed is opposite to the table.
+    other. The order follows time: it is reversed if the input speed is opposite to the table. Rows
+    over the time keep their order, also where the mechanism rests.
     """
+    if in_time(motion):
+        return np.flatnonzero(motion.found), False
     places = _places(motion)
     runs = _runs(places, motion)
     limit = np.array([bool(what) for what in motion.limit], dtype=bool)
@@ -53,6 +57,11 @@ def play_order(motion: Motion) -> tuple[CountArray, bool]:
         if (motion.speed < 0) == (lead[-1] > lead[0]):
             order = np.roll(order[::-1], 1) if closed else order[::-1]
     return order, bool(closed and len(order) > 2)
+
+
+def in_time(motion: Motion) -> bool:
+    """Whether the rows are over the time: a law drives the mechanism, or loads move it."""
+    return motion.input_units.get(TIME) == "s"
 
 
 def falling(motion: Motion, rows: Sequence[int]) -> list[bool]:

@@ -58,6 +58,20 @@ def test_it_is_infinite_where_the_part_stands_still() -> None:
     assert motion["y.mechanical_advantage"][0] == pytest.approx(0.5, rel=1e-15)
 
 
+def test_it_is_infinite_at_the_dead_centres_of_a_press() -> None:
+    """The ram's rate is rounding there, 1e-14 mm/rad, in a motion, a position and a family."""
+    press, name = lw.example("crank-press"), "height.mechanical_advantage"
+    motion = press.sweep()
+    at = motion.inputs["crank"][np.isinf(motion[name])]
+    np.testing.assert_allclose(at, [90.0, 270.0, 450.0], rtol=1e-15)
+    assert press.solve(at=270)[name] == np.inf
+    bend = 60.0 + 60.0**2 / 400.0  # second derivative of the height there
+    near = press.solve(at=270 + 1e-6)[name]
+    assert near == pytest.approx(1.0 / (bend * np.radians(1e-6)), rel=1e-6)
+    designs = press.family({"O A": [60.0, 50.0]}).sweep()
+    assert (np.isinf(designs[name]).sum(axis=1) == 3).all()
+
+
 def test_it_is_missing_at_dead_points_of_the_input() -> None:
     motion = lw.example("rapier-drive-limited").sweep()
     dead = np.array(motion.limit) == "dead point"

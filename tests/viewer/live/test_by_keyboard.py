@@ -112,6 +112,22 @@ def test_a_presentation_steps_through_newton(browser: Any, tmp_path: Path) -> No
 
 
 @pytest.mark.extended
+def test_a_presentation_of_a_draft_asks_for_no_steps(browser: Any, tmp_path: Path) -> None:
+    path = tmp_path / "draft.toml"
+    path.write_text(FOUR_BAR.partition("[input]")[0], encoding="utf-8")
+    with shown(browser, MechanismFile(path)) as (page, _):
+        page.locator(".lw-readiness li").first.wait_for()
+        page.keyboard.press("F9")
+        outcome = page.locator(".lw-presenting .lw-outcome")
+        outcome.wait_for()
+        assert outcome.text_content() == "Newton’s steps begin once the sketch is a mechanism."
+        page.keyboard.press("ArrowRight")
+        page.wait_for_timeout(300)  # a request would be refused within this time
+        assert not page.locator(".lw-newton button").first.is_visible()
+        assert page.locator(".lw-message:visible").count() == 0
+
+
+@pytest.mark.extended
 def test_the_start_page_takes_the_focus_and_gives_it_back(browser: Any, tmp_path: Path) -> None:
     path = tmp_path / "four-bar.toml"
     path.write_text(FOUR_BAR, encoding="utf-8")

@@ -75,6 +75,14 @@ def test_loads_go_with_what_carries_them(bench: Workbench) -> None:
     assert "height" not in bench.text.partition("[friction]")[2].partition("[")[0]
 
 
+def test_stops_go_with_what_they_bound(bench: Workbench) -> None:
+    change(bench, _entry("stops", "", of="C.y", to="250"))
+    change(bench, _entry("stops", "", of="rod", to="250"))
+    change(bench, ask.RemoveLink(name="rod"))
+    assert 'of = "C.y"' in bench.text
+    assert 'of = "rod"' not in bench.text
+
+
 def test_a_negative_mass_is_a_problem_of_the_draft(bench: Workbench) -> None:
     state = change(bench, ask.SetMass(link="rod", mass=-1, x=1))
     (lack,) = state.lacks
@@ -97,3 +105,116 @@ def test_a_wrong_mass_or_load_is_refused(bench: Workbench, edit: ask.Edit, messa
     assert bench.text == before
     said = event.message if isinstance(event, tell.Refused) else str(event)
     assert message in said
+
+
+def _entry(table: str, of: str, /, *, remove: bool = False, **typed: str) -> ask.SetEntry:
+    return ask.SetEntry(table=table, of=of, typed=dict(typed), remove=remove)
+
+
+@pytest.mark.parametrize(
+    ("edit", "line", "undo"),
+    [
+        (
+            _entry("friction", "A", mu="0.1", radius="0.5 in"),
+            "A = { mu = 0.1, radius = 12.7 }",
+            "friction of A",
+        ),
+        (_entry("gravity", "", size="1.62 m/s^2"), 'size = "1.62 m/s^2"', "gravity"),
+        (
+            _entry("motor", "crank", stall="9e5", free_speed="25 m/s"),
+            'motor = { stall = 900000, free_speed = "25000 mm/s" }',
+            "",
+        ),
+        (
+            _entry("motor", "crank", stall="2*a", free_speed="-1500 rpm"),
+            'motor = { stall = "2*a", free_speed = "-1500 rpm" }',
+            "",
+        ),
+        (
+            ask.SetEntry(
+                table="motor", of="crank", typed={"speeds": ("0, 9 rpm",), "torques": ("5, 0",)}
+            ),
+            'motor = { speeds = [0, "9 rpm"], torques = [5, 0] }',
+            "motor of crank",
+        ),
+        (_entry("motor", "crank", inertia="40"), "inertia = 40", "motor of crank"),
+        (
+            _entry("stops", "", of="height", to="250", restitution="0.3"),
+            "to = 250",
+            "stops of height",
+        ),
+    ],
+)
+def test_an_entry_is_written_in_place_and_undone_by_name(
+    bench: Workbench, edit: ask.SetEntry, line: str, undo: str
+) -> None:
+    before = bench.text.replace("[trace]", "# paths\n[trace]")
+    bench.handle(ask.SetText(text=before))
+    events = bench.handle(edit)
+    if not undo:  # refused: a speed of a length, a formula of what there is not
+        assert isinstance(events[0], tell.ProblemsFound)
+        assert bench.text == before
+        return
+    assert isinstance(events[0], tell.FileState)
+    assert events[0].undo == undo
+    assert line in bench.text.splitlines()
+    old, new = before.splitlines(), bench.text.splitlines()
+    lost = [own for own in old if own not in new]
+    assert lost == ([] if edit.table != "gravity" else ['size = "9.81 m/s^2"'])  # comments stay
+    shown = next(
+        own
+        for own in events[0].force_entries
+        if own.table == edit.table and own.there and own.of in (edit.of, "0")
+    )
+    assert shown.takes
+    change(bench, _entry(edit.table, shown.of, remove=True))
+    gone = [own for own in old if own not in bench.text.splitlines()]
+    assert gone == ([] if edit.table != "gravity" else ["[gravity]", 'size = "9.81 m/s^2"'])
+
+
+def test_forms_show_what_is_in_the_file_and_what_could_be(bench: Workbench) -> None:
+    change(bench, _entry("friction", "height", mu="0.2"))
+    state = change(bench, _entry("stops", "", of="height", to="250"))
+    entries = {(own.table, own.of): own for own in state.force_entries}
+    assert {of for table, of in entries if table == "friction"} == {"O", "A", "C", "height"}
+    assert entries["friction", "O"].takes == ("mu", "radius")
+    assert entries["friction", "height"].takes == ("mu", "length")
+    assert entries["friction", "height"].typed == {"mu": "0.2"}
+    assert entries["stops", "0"].typed == {"of": "height", "to": "250"}
+    assert not entries["stops", ""].there
+    assert not entries["motor", "crank"].there
+    change(bench, _entry("stops", "0", of="height", to="251"))
+    assert "250" not in bench.text.partition("[[stops]]")[2]
+
+
+@pytest.mark.parametrize(
+    ("edit", "message"),
+    [
+        (_entry("friction", "A", mu="0.1"), "is missing: the friction of a pin needs it"),
+        (_entry("friction", "A", mu="-1", radius="3"), "must not be negative"),
+        (_entry("friction", "Q", mu="1"), "is no joint with friction (joints: O, A, C, height)"),
+        (_entry("friction", "A", my="1"), '"my" is not a key of [friction]'),
+        (_entry("frictoin", "A", mu="1"), 'there is no form "frictoin"'),
+        (_entry("motor", "rod", stall="1"), '"rod" is no input (inputs: crank)'),
+        (_entry("motor", "crank", free_speed="9 rpm"), "either a stall torque or a table"),
+        (_entry("stops", "3", of="height"), 'there is no stop number "3"'),
+        (_entry("stops", "", of="height"), "a stop needs from, to, or both"),
+        (_entry("gravity", "", size="9.81 furlongs"), "9.81 m/s^2"),
+        (_entry("gravity", "", angle="3 mm"), "is an angle"),
+    ],
+)
+def test_a_wrong_entry_is_refused_and_nothing_changes(
+    bench: Workbench, edit: ask.SetEntry, message: str
+) -> None:
+    before = bench.text
+    (event,) = bench.handle(edit)
+    assert bench.text == before
+    assert message in (event.message if isinstance(event, tell.Refused) else str(event))
+
+
+def test_stops_follow_the_names_of_what_they_bound(bench: Workbench) -> None:
+    for of in ("C.y", "rod", "height"):
+        change(bench, _entry("stops", "", of=of, to="990"))
+    for of, name, new in (("point", "C", "Q"), ("link", "rod", "bar"), ("part", "height", "h")):
+        change(bench, ask.Rename(of=of, name=name, new=new))
+    assert [stop.of for stop in now(bench).stops] == ["Q.y", "bar", "h"]

@@ -585,6 +585,13 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
         assert not isinstance(events[0], tell.Refused), events[0]
 
 
+def test_a_sketch_is_drawn_whatever_the_size_of_its_wheels(tmp_path: Path) -> None:
+    """The ground symbol of a wheel of 30 mm is no length next to coordinates of 1e23 mm."""
+    text = lw.example_text("crossed-belt").replace("O = [-60, 0]", "O = [-1e23, 0]")
+    bench = Workbench(MechanismFile(tmp_path / "far.toml", text), lw.loads)
+    assert "CannotClose" in kinds(bench.opened())
+
+
 # The file on disk
 
 

@@ -297,3 +297,24 @@ def test_all_driven_mechanisms_are_solved_as_in_python(
     page = open_web(f"{site.address}#example=four-bar")
     page.wait_for_selector(_READY)
     assert_same(page, driven_examples(), tmp_path)
+
+
+@pytest.mark.extended
+def test_a_simulation_in_a_browser_has_the_events_of_python(open_web: Open, site: Site) -> None:
+    page = open_web(f"{site.address}#example=crank-press")
+    page.wait_for_selector(".lw[data-row]")
+    page.get_by_role("tab", name="Simulate").click()
+    page.get_by_label("Until").fill("0.1")
+    page.get_by_label("Start speed").fill("60 rad/s")
+    page.get_by_label("Until").press("Enter")
+    page.wait_for_selector('.lw-simulate [data-complete="true"]')
+    own = lw.example("crank-press").simulate(0.1, start_speed="60 rad/s")
+    found = told(page, "simulation_found")
+    assert [event["row"] for event in found["events"]] == [
+        row for row, word in enumerate(own.limit) if word
+    ]
+    assert found["rows"] == len(own)
+    page.get_by_label("Until").fill("5000")
+    page.get_by_label("Until").press("Enter")
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_text("The simulation was cancelled: simulate again").first.wait_for()

@@ -6,6 +6,7 @@ import { declareKeys, press, type Command } from "../../keys";
 import type { PageData } from "../../page_data";
 import { shortNumber, trimmed } from "../../numbers";
 import type { Desk } from "../asking";
+import type { ForceForms } from "../force_forms";
 import { clean } from "../ranges";
 import { anchorAt, distance, tidy, type Anchor, type Place, type Places, type Sketch } from "./geometry";
 import { Inspector, type Chosen } from "./inspector";
@@ -70,9 +71,10 @@ export class Editor {
 
   constructor(
     private readonly desk: Desk,
+    forms: ForceForms,
     private readonly hooks: EditorHooks,
   ) {
-    this.inspector = new Inspector(desk, () => this.select(null), (chosen) => this.select(chosen));
+    this.inspector = new Inspector(desk, forms, () => this.select(null), (chosen) => this.select(chosen));
     this.keyed = new KeyPointer({
       choose: (chosen) => this.select(chosen),
       hint: hooks.hint,
@@ -206,7 +208,8 @@ export class Editor {
     this.grid = this.overlay.drawGrid(this.page, this.edited);
     const points = this.points;
     const selected = [...this.selected].flatMap((name) => (points[name] ? [points[name]!] : []));
-    this.overlay.select([...selected, ...(this.picking?.places ?? [])], drawing.pixel);
+    const marked = [...selected, ...(this.picking?.places ?? [])];
+    this.overlay.select(marked, marked.length ? drawing.pixel : 1); // measured only if needed
     this.keyed.offer(this.page, this.edited ? this.sketch : null, this.tool, this.grid / 10);
     this.redrawn();
   }

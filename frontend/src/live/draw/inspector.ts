@@ -5,6 +5,7 @@ import { shortNumber, trimmed } from "../../numbers";
 import { html } from "../../svg";
 import type { Desk } from "../asking";
 import { fill } from "../fields";
+import { rebuilt, type ForceForms } from "../force_forms";
 import { typed } from "../ranges";
 import { PartPanel } from "./part_panel";
 import { partsOf } from "./symbols";
@@ -31,6 +32,7 @@ export class Inspector {
 
   constructor(
     private readonly desk: Desk,
+    private readonly forms: ForceForms,
     private readonly closed: () => void,
     private readonly goTo: (chosen: Chosen) => void,
   ) {
@@ -57,6 +59,7 @@ export class Inspector {
     if (chosen.kind === "point") this.point(chosen.name, file);
     else if (chosen.kind === "link") this.link(chosen.name, file);
     else if (part) this.part(part, file);
+    this.forms.at(this.element, chosen.kind, chosen.name, file);
     this.more(this.element);
   }
 
@@ -154,7 +157,17 @@ export class Inspector {
 
   /** Other values of the same numbers. */
   private refresh(file: FileState): void {
-    const part = partNamed(this.element.dataset.of!.replace(/^part /, ""), file);
+    const of = this.element.dataset.of!;
+    const part = partNamed(of.replace(/^part /, ""), file);
+    rebuilt(this.element, () => {
+      const old = this.element.querySelector(".lw-forces-at");
+      const [kind, name] = [of.slice(0, of.indexOf(" ")) as Chosen["kind"], of.slice(of.indexOf(" ") + 1)];
+      this.forms.at(this.element, kind, name, file);
+      const fresh = this.element.querySelector(".lw-forces-at:last-child");
+      if (!old || !fresh || old === fresh) return;
+      (fresh as HTMLDetailsElement).open = (old as HTMLDetailsElement).open;
+      old.replaceWith(fresh);
+    });
     if (part) this.parts.refresh(this.element, part);
     for (const input of this.element.querySelectorAll<HTMLInputElement>("input[data-number]")) {
       const number = find(file, input.dataset.number!);

@@ -55,7 +55,8 @@ export class KeyPointer {
   /** Let the points and links of a sketch take the focus; null: nothing is edited. */
   offer(page: Mounted, sketch: Sketch | null, tool: string, step: number): void {
     [this.tool, this.step] = [tool, step];
-    const { element, pixel } = page.places.drawing;
+    const { drawing } = page.places;
+    const { element } = drawing;
     put(element, sketch ? { tabindex: 0, role: "application", "aria-roledescription": "drawing" } : { tabindex: -1, role: "img" });
     if (!sketch) element.removeAttribute("aria-roledescription");
     const things = sketch ? thingsOf(sketch) : [];
@@ -63,6 +64,7 @@ export class KeyPointer {
     const again = this.handles.dataset.names !== names;
     const [focus, from] = [document.activeElement, this.at];
     if (again) this.make(things, names);
+    const pixel = things.length ? drawing.pixel : 1; // measured only if needed
     things.forEach(({ at: [x, y], told }, k) => put(this.handles.children[k]!, { cx: x, cy: -y, r: 11 * pixel, "aria-label": told }));
     if (again && focus && from && (focus === element || focus.hasAttribute("data-named"))) this.refocus(things, from, focus);
     if (!sketch) this.hide();

@@ -73,7 +73,7 @@ export class PartPanel {
   }
 
   private isUsual({ name, entry }: PaletteField, part: PartShown): boolean {
-    return name in part.typed || entry === "flag" || entry === "choice" || ["radii", "teeth", "offset"].includes(name);
+    return name in part.typed || entry === "flag" || entry === "choice" || ["radii", "teeth", "offset", "stiffness", "free", "damping"].includes(name);
   }
 
   private field(box: Element, field: PaletteField, part: PartShown): void {

@@ -39,6 +39,10 @@ class Found:
         that points the other way is measured from its moving pivot.
     output : str
         The name of the output link or slider of a function; "" for other tasks.
+    starts : int
+        Starts of a least-squares fit; 0 where equations are solved.
+    interrupted : bool
+        Whether the user stopped it; the designs are the best so far.
     """
 
     candidates: tuple[Candidates, ...]
@@ -52,3 +56,5 @@ class Found:
     drives: tuple[Drive, ...] = tuple(Drive)
     zero: tuple[float, float] | None = None
     output: str = ""
+    starts: int = 0
+    interrupted: bool = False

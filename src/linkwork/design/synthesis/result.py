@@ -221,6 +221,10 @@ class Synthesis:
     dyads : tuple of Dyad
     designs : tuple of SynthesizedDesign
         Every mechanism with every driven link: sound ones by score, then refused ones.
+    starts : int
+        Starts of a least-squares fit; 0 where equations are solved.
+    interrupted : bool
+        Whether the user stopped it; the designs are the best so far.
     """
 
     task: Task
@@ -233,6 +237,8 @@ class Synthesis:
     message: str
     dyads: tuple[Dyad, ...]
     designs: tuple[SynthesizedDesign, ...]
+    starts: int = 0
+    interrupted: bool = False
 
     @property
     def delivered(self) -> tuple[SynthesizedDesign, ...]:
@@ -269,8 +275,11 @@ class Synthesis:
         return _WISHES[kind], count
 
     def __repr__(self) -> str:
+        solutions = f"{self.complex}: {self.real} real, {self.proved} proved"
+        if self.starts:
+            solutions = f"{self.real} local minima from {self.starts} starts"
         rows = [
-            ("solutions", f"{self.complex}: {self.real} real, {self.proved} proved"),
+            ("solutions", solutions),
             ("designs", f"{len(self.designs)} of {self.linkages} mechanisms"),
             ("delivered", f"{len(self.delivered)} of {self.sound} without defects"),
             ("completeness", self.message),
@@ -295,6 +304,8 @@ class Synthesis:
             "proved": self.proved,
             "triples": self.triples,
             "linkages": self.linkages,
+            "starts": self.starts,
+            "interrupted": self.interrupted,
             "completeness": self.completeness.name,
             "message": self.message,
             "delivered": len(self.delivered),

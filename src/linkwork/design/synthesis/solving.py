@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
@@ -32,7 +33,9 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
-    "path": solve_path,
+    "path": lambda task, wishes, progress: (solve_curve if task.is_approximate else solve_path)(
+        task, wishes, progress
+    ),
     "mixed": solve_path,
     "function": lambda task, wishes, progress: solve_function(task),
 }
@@ -76,6 +79,8 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         message=found.message,
         dyads=() if found.dyads is None else tuple(_dyads(found)),
         designs=tuple(_ranked(task, judged)),
+        starts=found.starts,
+        interrupted=found.interrupted,
     )
 
 

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from functools import cached_property
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import TypeVar
 
+from linkwork.design.improvement.settings import Improvement
+from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_keys import KINDS
 from linkwork.foundation.angles import AngleUnit
@@ -18,10 +23,12 @@ __all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
 
 _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
+_MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
 MECHANISMS = ("four-bar", "slider-crank")
 
 Point = tuple[float, float]
+_Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +125,12 @@ class Task:
     function : FunctionGoal, optional
     wanted : Wanted
     rank : Ranking
+    curve : Curve, optional
+        Points of a curve; they become the positions.
+    improvement : Improvement, optional
+        How dimensions are improved; of a path task, that points are met approximately.
+    folder : Path, optional
+        Where files are that the task names.
     text : str
         The text of the file that the task was read from.
 
@@ -137,9 +150,17 @@ class Task:
     function: FunctionGoal | None = None
     wanted: Wanted = field(default_factory=Wanted)
     rank: Ranking = field(default_factory=Ranking)
+    curve: Curve | None = None
+    improvement: Improvement | None = None
+    folder: Path | None = None
     text: str = ""
 
     def __post_init__(self) -> None:
+        if self.curve is not None:
+            if self.positions:
+                told = "and positions exclude each other: give points in one way"
+                raise MechanismError([Problem(key=("curve",), message=told)], f'task "{self.name}"')
+            object.__setattr__(self, "positions", tuple(_curve_positions(self.curve)))
         found = [Problem(key=key, message=message) for key, message in self._problems()]
         if found:
             raise MechanismError(found, f'task "{self.name}"')
@@ -151,15 +172,19 @@ class Task:
             if name not in MECHANISMS and self.kind != "improve":
                 known = " or ".join(f'"{known}"' for known in MECHANISMS)
                 yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
-        if self.kind in ("path", "mixed") and "four-bar" not in self.mechanisms:
+        exact = self.kind in ("path", "mixed") and not self.is_approximate
+        if exact and "four-bar" not in self.mechanisms:
             yield ("mechanism",), 'points are solved for the "four-bar" only'
         if self.kind == "function":
             if self.function is None:
                 yield ("function",), "is missing: what the output should follow"
             else:
                 yield from self.function.problems()
-        elif self.kind != "improve":
+        elif self.kind != "improve" or self.positions:
             yield from self._position_problems()
+        if self.improvement is not None:
+            for key, message in self.improvement.problems():
+                yield ("improve", *key), message
         yield from self._given_problems()
         yield from self._wish_problems()
 
@@ -171,10 +196,10 @@ class Task:
         for k, position in enumerate(self.positions):
             if self.kind == "motion" and position.angle is None:
                 yield ("positions", k, "angle"), "is missing: a motion task is a list of poses"
-            if self.kind == "path" and position.angle is not None:
+            if self.kind in ("path", "improve") and position.angle is not None:
                 yield (
                     ("positions", k, "angle"),
-                    'belongs to poses: leave it out, or write task = "mixed"',
+                    'belongs to poses: leave it out, or write task = "mixed" or "motion"',
                 )
             for name in ("tolerance", "angle_tolerance"):
                 if getattr(position, name) < 0:
@@ -209,7 +234,8 @@ class Task:
             )
         if self.kind in ("path", "mixed"):
             for k, position in enumerate(self.positions):
-                for name in ("input", "tolerance", "angle_tolerance"):
+                refused = () if self.is_approximate else ("input",)
+                for name in (*refused, "tolerance", "angle_tolerance"):
                     if getattr(position, name):
                         yield ("positions", k, name), "has no effect on points: leave it out"
         if self.kind == "function" and fixed:
@@ -223,7 +249,9 @@ class Task:
 
     def _repeated_positions(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         turn = self.angle.turn
-        for (j, one), (k, other) in combinations(enumerate(self.positions), 2):
+        # a curve may come back to a point
+        pairs = combinations if not self.is_approximate else _neighbours
+        for (j, one), (k, other) in pairs(enumerate(self.positions), 2):
             same = one.point == other.point
             if one.angle is not None and other.angle is not None:
                 same &= math.remainder(one.angle - other.angle, turn) == 0
@@ -268,6 +296,19 @@ class Task:
         if wanted.region and _area(wanted.region) == 0:
             yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
 
+    @cached_property
+    def is_approximate(self) -> bool:
+        """Whether points are met as well as possible, instead of exactly."""
+        if self.kind != "path":
+            return self.kind == "improve"
+        conditions = len(self.positions) - 1 + 2 * len(self.given.fixed_pivots)
+        return (
+            self.curve is not None
+            or self.improvement is not None
+            or conditions > _MOST_CONDITIONS
+            or any(position.input is not None for position in self.positions)
+        )
+
     @property
     def purpose(self) -> str:
         """What its designs are for, in one sentence."""
@@ -280,6 +321,16 @@ class Task:
     def in_radians(self, angle: float) -> float:
         """An angle of the file in radians."""
         return angle * self.angle.radians
+
+
+def _curve_positions(curve: Curve) -> Iterator[PrecisionPosition]:
+    inputs: Sequence[float | None] = curve.inputs or [None] * len(curve.points)
+    for point, angle in zip(curve.points, inputs, strict=True):
+        yield PrecisionPosition(point=point, input=angle)
+
+
+def _neighbours(positions: Iterable[_Item], _count: int) -> Iterator[tuple[_Item, _Item]]:
+    return pairwise(positions)
 
 
 def _area(corners: Sequence[Point]) -> float:

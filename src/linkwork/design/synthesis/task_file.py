@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.design.improvement.settings import Goal, Improvement
+from linkwork.design.synthesis.curve_file import read_curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task import (
     MECHANISMS,
@@ -45,11 +47,14 @@ def read_task(path: Path | str) -> Task:
     if path == "-" and sys.stdin is not None:
         return read_task_text(text_of(sys.stdin.buffer.read(), "standard input"), "standard input")
     name = str(path)
-    return read_task_text(text_of(bytes_of(as_path(path), name), name), name)
+    return read_task_text(text_of(bytes_of(as_path(path), name), name), name, as_path(path).parent)
 
 
-def read_task_text(text: str, name: str = "the task") -> Task:
-    """Read the task in a text; raises like :func:`read_task`."""
+def read_task_text(text: str, name: str = "the task", folder: Path | None = None) -> Task:
+    """Read the task in a text; raises like :func:`read_task`.
+
+    ``folder``: that of the files it names; by default the current one.
+    """
     data = data_of(text, name)
     lines = Lines.of(text)
     check_format(data, lines, name)
@@ -57,7 +62,7 @@ def read_task_text(text: str, name: str = "the task") -> Task:
     if structure.problems:
         raise located_error(structure.problems, lines, name)
     try:
-        return _task(structure.content, text, Path(name).stem)
+        return _task(structure.content, text, Path(name).stem, folder)
     except MechanismError as error:
         raise located_error(error.problems, lines, name) from None
 
@@ -97,8 +102,9 @@ def _plain(given: Any) -> Any:
             return given
 
 
-def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
+def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
+    curve = read_curve(content["curve"], folder) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
     return Task(
         kind=content["task"],
@@ -111,6 +117,9 @@ def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
         function=_function(content["function"]) if "function" in content else None,
         wanted=_wanted(content.get("wanted", {})),
         rank=_ranking(content.get("rank", {})),
+        curve=curve,
+        improvement=_improvement(content["improve"]) if "improve" in content else None,
+        folder=folder,
         text=text,
     )
 
@@ -118,10 +127,10 @@ def _task(content: Mapping[str, Any], text: str, stem: str) -> Task:
 #: The tables that each kind of task uses, besides those of all kinds.
 _USED = {
     "motion": {"positions", "given"},
-    "path": {"positions", "given"},
+    "path": {"positions", "given", "curve", "improve"},
     "mixed": {"positions", "given"},
     "function": {"function", "given"},
-    "improve": {"positions", "function", "curve", "improve"},
+    "improve": {"positions", "curve", "improve"},
 }
 
 
@@ -151,6 +160,19 @@ def _function(table: dict[str, Any]) -> FunctionGoal:
     if "pairs" in table:
         listed["pairs"] = _points(table["pairs"])
     return FunctionGoal(**{**table, **listed})
+
+
+def _improvement(table: dict[str, Any]) -> Improvement:
+    own = {key: entry for key, entry in table.items() if key != "goal"}
+    own["goals"] = tuple(map(_goal, table.get("goals", [])))
+    own["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
+    own["vary"] = tuple(table.get("vary", ()))
+    return Improvement(**own)
+
+
+def _goal(table: dict[str, Any]) -> Goal:
+    own: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}
+    return Goal(**own)
 
 
 def _wanted(table: dict[str, Any]) -> Wanted:

@@ -90,9 +90,22 @@ _CURVE = Key(
     "curve",
     Table(
         (
-            Key("file", Text(), "A CSV file next to the task: x, y in each row", required=True),
-            Key("timing", Text(("free", "as given")), "Whether the input follows the rows"),
-            Key("closed", Text(("closed", "open", "partial")), "The kind of curve"),
+            Key(
+                "file",
+                Text(),
+                "A CSV file next to the task: x, y and, for timing as given, input in each row",
+                required=True,
+            ),
+            Key(
+                "timing",
+                Text(("free", "as given")),
+                "Whether the inputs are those of the rows; default free",
+            ),
+            Key(
+                "closed",
+                Text(("closed", "open", "partial")),
+                "Whether it is a whole curve; default: by the distance of its ends",
+            ),
         )
     ),
     "A curve that the guided point follows",
@@ -167,17 +180,33 @@ _RANK = Key(
     ),
     "The order in which designs are delivered",
 )
+_GOALS = Tables(
+    (
+        Key("of", Text(), 'A quantity, "B.y", or a number of a motion, "stroke(d)"', required=True),
+        Key("target", PlainNumber(), "The wanted value"),
+        Key("least", PlainNumber(), "The smallest value allowed"),
+        Key("most", PlainNumber(), "The largest value allowed"),
+        Key("at", ListOf(PlainNumber(), "input", 1), "Inputs at which a quantity is wanted"),
+        Key("values", ListOf(PlainNumber(), "value", 1), "The values wanted there"),
+        Key("weight", PlainNumber(), "Weight of this goal; default 1"),
+    )
+)
 _IMPROVE = Key(
     "improve",
     Table(
         (
-            Key("goal", Text(), "The goal of the improvement"),
+            Key("goal", Text(("least squares",)), "How misses count; default least squares"),
+            Key("point", Text(), "The point that follows the positions; default the first traced"),
             Key("vary", ListOf(Text(), "number", 1), 'Numbers to vary: ["O2 A", "O4.x"]'),
-            Key("starts", Whole(1, 10**9), "Number of starts"),
+            Key("goals", _GOALS, "Goals besides the positions"),
             Key("bounds", Named(_PAIR, 0), 'Bounds of numbers: "O2 A" = [10, 60]'),
+            Key("starts", Whole(1, 10**6), "Number of starts"),
+            Key("spread", PlainNumber(), "Relative spread of the starts; default 0.05"),
+            Key("front", Whole(2, 1000), "Number of designs between two goals: a Pareto front"),
+            Key("seed", Whole(0, 2**31), "Seed of the starts; default 1"),
         )
     ),
-    "How the dimensions of a mechanism are improved",
+    "How dimensions are improved",
 )
 
 TASK = Form(

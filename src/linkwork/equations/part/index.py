@@ -17,7 +17,7 @@ __all__ = ["rows_of_parts"]
 def rows_of_parts(frames: Frames, problems: Problems) -> PartRows:
     """The rows of all parts of a linkage; their positions and rods are added to ``frames``."""
     rows = PartRows(frames, problems)
-    for key, part in frames.linkage.keyed_parts():
+    for key, part in frames.linkage.keyed_parts:
         module = import_module(f"linkwork.equations.part.{part_module(type(part))}")
         write: Callable[[Part, Key, PartRows], None] = module.write
         write(part, key, rows)

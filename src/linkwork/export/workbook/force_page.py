@@ -14,7 +14,7 @@ from linkwork.export.workbook.load_cells import LoadCells
 from linkwork.export.workbook.page_layout import print_table
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, names_in
-from linkwork.foundation.names import canonical
+from linkwork.foundation.names import GROUND, canonical
 from linkwork.results.quantity import Kind
 
 __all__ = ["ForceColumns", "write_forces"]
@@ -70,7 +70,10 @@ class _Page:
         for k, (load, parts, names) in enumerate(self.cells.loads, start=1):
             self._load(k, load, parts, names)
         for spring in self.cells.pulling:
-            self._spring(spring.name, *spring.between)
+            if spring.links is None:
+                self._spring(spring.name, *spring.between)
+            else:
+                self._torsion(spring.name, *spring.links)
         self._effort()
         sheet.write(
             1, 0,
@@ -288,6 +291,29 @@ class _Page:
                 for axis in "xy"
             ]  # fmt: skip
             self._push(point, None, keys[0], keys[1])
+        self.groups.append((f"Spring {name}", start, self.end - 1))
+
+    def _torsion(self, name: str, first: str, second: str) -> None:
+        """The torque of a torsion spring on two links, by the angle between them."""
+        start, linkage = self.end, self.cells.linkage
+        links = {"a": first, "b": second}
+        symbols = {word: canonical(link) for word, link in links.items() if link != GROUND}
+        between = "-".join(word if word in symbols else "0" for word in "ba")
+        scale = "*pi/180" if linkage.angle.value == "deg" else ""
+        angles = {**symbols, "free": f"{name} free"}
+        self._add(f"{name} turn", "turn", "rad", f"({between}-free){scale}", angles)
+        speeds = {word: rate_key(symbol, 1) for word, symbol in symbols.items()}
+        self._add(f"{name} rate", "rate", "rad/s", between, speeds)
+        names = {word: f"{name} {word}" for word in ("stiffness", "damping", "turn", "rate")}
+        unit = f"{linkage.force}·{linkage.length}"
+        for word, sign in (("a", ""), ("b", "-")):
+            if word not in symbols:
+                continue
+            text = f"{sign}(stiffness*turn+damping*on*rate)"
+            key = f"{name} on {links[word]}"
+            self._add(key, f"on {links[word]}", unit, text, {**names, "on": "moving"})
+            self.columns.torques.append((links[word], key))
+            self.work.append(f"{key}*{speeds[word]}")
         self.groups.append((f"Spring {name}", start, self.end - 1))
 
     def _effort(self) -> None:

@@ -13,6 +13,7 @@ from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import Book
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Node, names_in
+from linkwork.forces.part.spring import wound_angle
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
@@ -38,8 +39,11 @@ def force_problem(book: Book) -> str | None:
     others = [part for part in linkage.parts if not _has_cells(part)]
     if others:
         return f"forces of {others[0].title.lower()}s have no cells"
-    if any(spring.links is not None for spring in LoadCells(book, None).pulling):
-        return "torsion springs have no cells"
+    turning = {variable.symbol for variable in book.variables}
+    for spring in LoadCells(book, None).pulling:
+        for link in spring.links or ():
+            if link != GROUND and canonical(link) not in turning:
+                return f"the angle of {link}, for its torsion spring, has no cell"
     if linkage.friction:
         return "friction has no cells"
     if any(not sides for sides in book.rates.sides):
@@ -147,13 +151,14 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
     _write_masses(cells)
     force, length = linkage.force, linkage.length
     for spring in cells.pulling:
-        for word, value, unit in (
-            ("stiffness", spring.stiffness, f"{force}/{length}"),
-            ("free", spring.free, length),
-            ("damping", spring.damping, f"{force}·s/{length}"),
-        ):
-            key = f"{spring.name} {word}"
-            cells.number(key, f"{spring.name}_{word}", numbers(value), unit, "spring")
+        free = numbers(spring.free)
+        units = f"{force}/{length}", length, f"{force}·s/{length}"
+        if spring.links is not None:
+            free = wound_angle(spring, linkage) / linkage.angle.radians
+            units = f"{force}·{length}/rad", linkage.angle.value, f"{force}·{length}·s"
+        amounts = numbers(spring.stiffness), free, numbers(spring.damping)
+        for word, value, unit in zip(("stiffness", "free", "damping"), amounts, units, strict=True):
+            cells.number(f"{spring.name} {word}", f"{spring.name}_{word}", value, unit, "spring")
     for k, load in enumerate(linkage.loads, start=1):
         _write_load(cells, k, load)
     return cells

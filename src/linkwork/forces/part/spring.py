@@ -9,10 +9,11 @@ import numpy as np
 from linkwork.forces.free_bodies import FreeBodies, Reading
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
+from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.spring import Spring
 from linkwork.results.quantity import Kind
 
-__all__ = ["write"]
+__all__ = ["wound_angle", "write"]
 
 
 def write(spring: Spring, bodies: FreeBodies) -> None:
@@ -47,14 +48,9 @@ def _pull(spring: Spring, between: tuple[str, str], bodies: FreeBodies) -> None:
 
 def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
     linkage, geometry, applied = bodies.linkage, bodies.geometry, bodies.applied
-    numbers = geometry.numbers
     first, second = map(geometry.angle, links)
     turn = second - first
-    free = numbers(spring.free) * linkage.angle.radians
-    start = linkage.sketched_angle(links[1]) - linkage.sketched_angle(links[0])
-    # the sketch is within half a turn of the free angle; from there windings count
-    free += FULL_TURN * round((start - free) / FULL_TURN)
-    torque = _force(spring, bodies, turn.v - free, turn.d1)
+    torque = _force(spring, bodies, turn.v - wound_angle(spring, linkage), turn.d1)
     applied.turn(links[0], torque)
     applied.turn(links[1], -torque)
     about = f"torque of the spring on {links[0]}, and against it on {links[1]}"
@@ -62,6 +58,17 @@ def _wind(spring: Spring, links: tuple[str, str], bodies: FreeBodies) -> None:
     bodies.readings.append(
         Reading(name=name, kind=Kind.MOMENT, about=about, terms=(), constant=torque)
     )
+
+
+def wound_angle(spring: Spring, linkage: Linkage) -> float:
+    """The angle [rad] from the first link to the second of an unloaded torsion spring.
+
+    The sketch is within half a turn of it; from there windings count.
+    """
+    assert spring.links is not None
+    free = linkage.numbers(spring.free) * linkage.angle.radians
+    first, second = map(linkage.sketched_angle, spring.links)
+    return free + FULL_TURN * round((second - first - free) / FULL_TURN)
 
 
 def _force(spring: Spring, bodies: FreeBodies, stretch: Array, rate: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import get_args, get_type_hints
@@ -73,14 +73,15 @@ class JoinedBodies(_Tables, Bodies):
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """Every part, in the order of the tables of a file."""
-        return tuple(part for _, part in self.keyed_parts())
+        return tuple(part for _, part in self.keyed_parts)
 
     @property
     def loaded(self) -> bool:
         return bool(self.masses or self.loads or any(spring.pulls for spring in self.springs))
 
-    def keyed_parts(self) -> Iterator[tuple[Key, Part]]:
+    @cached_property
+    def keyed_parts(self) -> tuple[tuple[Key, Part], ...]:
         """All parts with their key paths in a file."""
-        for table in PARTS:
-            for k, part in enumerate(getattr(self, table)):
-                yield (table, k), part
+        return tuple(
+            ((table, k), part) for table in PARTS for k, part in enumerate(getattr(self, table))
+        )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from linkwork.expression.grammar import parse
+from linkwork.expression.real_values import check_real
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey
 from linkwork.mechanism.dimensions import Number
@@ -97,7 +98,7 @@ class Load(Part):
         for key, number in self.formulas:
             try:
                 if isinstance(number, str):
-                    parse(number, comparing=True)
+                    check_real(parse(number, comparing=True), number, "a load")
                 else:
                     loaded.numbers(number)
             except ExpressionError as error:

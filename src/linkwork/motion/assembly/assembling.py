@@ -12,13 +12,7 @@ import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
 from linkwork.foundation.angles import within_half_a_turn
-from linkwork.foundation.arrays import (
-    Array,
-    BoolArray,
-    ComplexArray,
-    CountArray,
-    IndexArray,
-)
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.foundation.status import Status

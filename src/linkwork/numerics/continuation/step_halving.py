@@ -210,7 +210,7 @@ class Halving:
         held, apart = prove_steps(
             self.prover.solver, start, goal, near, take_expansions(places, both)
         )
-        self.lose(np.unique(lanes.owner[lane[both[apart]]]))
+        self.lose(lanes.owner[lane[both[apart]]])
         open_ = np.flatnonzero(~held)
         down = np.arange(len(both)) < len(odd)
         low, high = np.where(down, to, both)[open_], np.where(down, both, to)[open_]
@@ -261,7 +261,7 @@ class Halving:
         # both halves from the middle, where everything is computed
         for k, ends in enumerate((lanes.left, lanes.right)):
             held, apart = prove_steps(solver, middle, ends, near, places)
-            self.lose(np.unique(lanes.owner[apart]))
+            self.lose(lanes.owner[apart])
             halves[k] = halves[k].take(np.flatnonzero(~held))
         return halves[0].with_(halves[1])
 

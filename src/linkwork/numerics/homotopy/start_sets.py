@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
@@ -93,12 +92,16 @@ def own_sets(signature: str = "") -> list[Path]:
 def write_set(kept: StartSet) -> None:
     """Keep a set in the user's cache, whole or not at all; nothing where that is not possible."""
     folder, name = _folder(), name_of(kept.topology)
+    part = folder / f"{os.urandom(8).hex()}.part"  # another process may write the same set
+    arrays = {f"{name}.{field}": array for field, array in kept.as_arrays().items()}
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as part:
-            arrays = {f"{name}.{field}": array for field, array in kept.as_arrays().items()}
-            np.savez(part, **arrays)  # type: ignore[arg-type]
-        os.replace(part.name, folder / f"{name}.npz")
+        try:
+            with part.open("xb") as file:
+                np.savez(file, **arrays)  # type: ignore[arg-type]
+            part.replace(folder / f"{name}.npz")
+        finally:
+            part.unlink(missing_ok=True)
 
 
 def name_of(topology: Topology) -> str:

@@ -194,8 +194,16 @@ class AskedOfMotion:
         value, first, second : (…, R)
             See :meth:`columns`.
         """
+        rows = self.rows(leading, value, first, second)
+        with np.errstate(all="ignore"):
+            return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)
+
+    def rows(
+        self, leading: Array, value: Array, first: Array = UNKNOWN, second: Array = UNKNOWN
+    ) -> MotionRows:
+        """What the number is computed from; parameters as of :meth:`evaluate`."""
         units, kind = self.names.units, self.names.inputs[self.names.lead]
-        rows = MotionRows(
+        return MotionRows(
             input=leading,
             value=value,
             first=np.broadcast_to(first, value.shape),
@@ -203,5 +211,3 @@ class AskedOfMotion:
             unit=units.scale(kind),
             turn=FULL_TURN if kind is Kind.ANGLE else 0.0,
         )
-        with np.errstate(all="ignore"):
-            return np.asarray(self.quantity.evaluate(rows, self.numbers), dtype=float)

@@ -27,6 +27,7 @@ __all__ = [
     "Solved",
     "at_extreme",
     "cubic",
+    "cubic_weight_slopes",
     "cubic_weights",
     "folded",
 ]
@@ -187,6 +188,12 @@ def cubic_weights(s: Array | float) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
     return (r**2 * (1.0 + 2.0 * s), s**2 * (1.0 + 2.0 * r)), (r**2 * s, -(s**2) * r)
 
 
+def cubic_weight_slopes(s: Array | float) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """The derivatives of :func:`cubic_weights` by s."""
+    r = 1.0 - s
+    return (-6.0 * r * s, 6.0 * r * s), (r * (r - 2.0 * s), s * (s - 2.0 * r))
+
+
 def cubic(s: Array | float, ends: tuple[Array, Array], slopes: tuple[Array, Array]) -> Array:
     """Hermite's cubic at s from 0 to 1; ``slopes`` are derivatives with respect to s."""
     r = 1.0 - s
@@ -215,6 +222,14 @@ class RowSlopes:
     first: Array | float = 0.0
     second: Array | float = 0.0
 
+    def in_order_of(self, rows: MotionRows) -> RowSlopes:
+        """Derivatives by rows of increasing input as those by the rows as they are."""
+        if len(rows.input) and rows.input[-1] >= rows.input[0]:
+            return self
+        parts = (np.broadcast_to(x, len(rows.input)) for x in (self.value, self.first, self.second))
+        value, first, second = (part[::-1] for part in parts)
+        return RowSlopes(value=value, first=first, second=second)
+
 
 @dataclass(frozen=True, kw_only=True)
 class MotionQuantity:
@@ -237,18 +252,18 @@ class MotionQuantity:
     measures : str
         ``quantity``: the same as the quantity; ``input``: the same as the leading input;
         ``number``.
-    slopes : callable, optional
+    slopes : callable
         As ``evaluate``, its derivatives for one motion, (R,).
     """
 
     word: str
     about: str
     evaluate: Callable[[MotionRows, tuple[float, ...]], Array]
+    slopes: Callable[[MotionRows, tuple[float, ...]], RowSlopes]
     of_point: bool = False
     numbers: tuple[str, ...] = ()
     needs: int = 0
     measures: str = "quantity"
-    slopes: Callable[[MotionRows, tuple[float, ...]], RowSlopes] | None = None
 
 
 def at_extreme(rows: MotionRows, side: float) -> Array:

@@ -1,8 +1,8 @@
 """Mechanical advantage: the force or moment at a part for one at the input, without friction.
 
-Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part does not
-move while the input does, as in a stretched toggle press, it is infinite; at dead points of the
-input, where no derivative with respect to the input exists, it is NaN.
+Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part is at rest to
+rounding while the input moves, as at the dead centre of a press, it is infinite and has no
+derivatives; at dead points of the input, where no derivative with respect to the input exists, it is NaN.
 
 References
 ----------
@@ -16,6 +16,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from linkwork.expression.jets import Jet
+from linkwork.foundation.arrays import BoolArray
+from linkwork.foundation.rounding import REST
 from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.results.quantity import Kind
 
@@ -39,9 +41,19 @@ def _parts(names: MechanismNames) -> Mapping[str, Kind]:
 
 def _advantage(names: MechanismNames, solved: Solved, part: str) -> Jet:
     moved = solved.own(part)
-    value = np.where(moved.d1 == 0.0, np.inf, 1.0 / moved.d1)  # eq. (61)
-    rate = np.where(moved.d1 == 0.0, np.nan, -moved.d2 / moved.d1**2)
+    rests = _rests(names, solved, part, moved)
+    value = np.where(rests, np.inf, 1.0 / moved.d1)  # eq. (61)
+    rate = np.where(rests, np.nan, -moved.d2 / moved.d1**2)
     return Jet(value, rate, UNKNOWN)
+
+
+def _rests(names: MechanismNames, solved: Solved, part: str, moved: Jet) -> BoolArray:
+    """Whether the rate of a part is 0 to the accuracy of the input and of its own position."""
+    reach = 1.0 if names.by == "rad" else np.nanmax(np.abs(solved.own(names.lead).v), initial=0.0)
+    size = 1.0 if names.unknowns[part] is Kind.ANGLE else np.abs(moved.v)
+    own = size / reach if reach else 0.0
+    found: BoolArray = np.abs(moved.d1) <= REST * (reach * np.abs(moved.d2) + own)
+    return found
 
 
 MECHANICAL_ADVANTAGE = (

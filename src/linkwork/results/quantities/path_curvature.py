@@ -19,13 +19,13 @@ import numpy as np
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.elementwise import replaced
+from linkwork.foundation.rounding import REST
 from linkwork.results.quantities.definition import UNKNOWN, MechanismNames, RowQuantity, Solved
 from linkwork.results.quantity import Kind
 
 __all__ = ["PATH_CURVATURE"]
 
 _STRAIGHT = 1e-12  # relative: a normal acceleration below this part of the whole is rounding
-_STILL = 1e-11  # relative: slower motion is rest, to the accuracy of positions
 
 
 def _moving(names: MechanismNames) -> dict[str, Kind]:
@@ -47,7 +47,7 @@ def _bend(
     # of a straight path only rounding is left of the cross product
     cross = replaced(np.where(np.abs(cross) <= _STRAIGHT * still * bent, 0.0, cross), cross)
     reach = 1.0 if names.by == "rad" else np.nanmax(np.abs(place.v), initial=0.0)
-    return place.v, place.d1, cross, still > _STILL * reach * bent
+    return place.v, place.d1, cross, still > REST * reach * bent
 
 
 def _curvature(names: MechanismNames, solved: Solved, point: str) -> Jet:

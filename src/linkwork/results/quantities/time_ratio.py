@@ -14,7 +14,14 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.results.quantities.definition import MotionQuantity, MotionRows, cubic
+from linkwork.results.quantities.definition import (
+    MotionQuantity,
+    MotionRows,
+    RowSlopes,
+    cubic,
+    cubic_weight_slopes,
+    cubic_weights,
+)
 
 __all__ = ["TIME_RATIO"]
 
@@ -25,18 +32,50 @@ def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     up = rows.ascending()
     if up is None or not up.turn or len(up.input) < 3:
         return np.full(rows.value.shape[:-1], np.nan)
-    # argmax takes NaN for the largest value; such motions are left out below
-    filled = np.where(np.isfinite(up.value), up.value, 0.0)
-    highest = _turning(up, filled.argmax(axis=-1), 1.0)
-    lowest = _turning(up, filled.argmin(axis=-1), -1.0)
+    highest, lowest = (up.input[at] + step * part for at, step, part in _extremes(up))
     part = np.mod(highest - lowest, up.turn)
     ratio = np.maximum(part, up.turn - part) / np.minimum(part, up.turn - part)  # eq. (63)
     found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
 
 
-def _turning(rows: MotionRows, row: Array, side: float) -> Array:
-    """The input at the extreme next to a row (…,), where the derivative is zero."""
+def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
+    """The derivatives of eq. (63): the extremes move as zeros of the derivative do."""
+    up, count = rows.ascending(), rows.value.shape[-1]
+    value, first, second = np.zeros(count), np.zeros(count), np.zeros(count)
+    if up is None or not np.isfinite(_ratio(rows, ())):
+        return RowSlopes(value=np.full(count, np.nan))
+    places = [up.input[at] + step * part for at, step, part in _extremes(up)]
+    slow = np.mod(places[0] - places[1], up.turn)
+    quick = up.turn - slow
+    # of two equal strokes either may be the slow one after a change
+    by_part = np.nan if slow == quick else (
+        up.turn / quick**2 if slow > quick else -up.turn / slow**2)  # fmt: skip
+    for side, (at, step, part) in zip((1.0, -1.0), _extremes(up), strict=True):
+        pair = [int(at), (int(at) + 1) % (count - 1)]
+        ends, bends = cubic_weights(float(part))
+        # eq. (127): du = -dq'/q'', on the cubic of q' whose slope is that of its weights
+        steps = cubic_weight_slopes(float(part))
+        bend = sum(
+            ends_by * up.first[k] + bends_by * step * up.second[k]
+            for k, ends_by, bends_by in zip(pair, *steps, strict=True)
+        )
+        for k, end, slope in zip(pair, ends, bends, strict=True):
+            first[k] -= side * by_part * step * end / bend
+            second[k] -= side * by_part * step * slope * step / bend
+    return RowSlopes(value=value, first=first, second=second).in_order_of(rows)
+
+
+def _extremes(rows: MotionRows) -> tuple[tuple[Array, Array, Array], ...]:
+    """Row, step and part of the step of the largest and the smallest value, (…,) each."""
+    # argmax takes NaN for the largest value; such motions are left out
+    filled = np.where(np.isfinite(rows.value), rows.value, 0.0)
+    highest = _turning(rows, filled.argmax(axis=-1), 1.0)
+    return highest, _turning(rows, filled.argmin(axis=-1), -1.0)
+
+
+def _turning(rows: MotionRows, row: Array, side: float) -> tuple[Array, Array, Array]:
+    """The extreme next to a row (…,), where the derivative is zero: row, step, part of the step."""
     last = len(rows.input) - 1  # the same position as row 0
 
     def at(values: Array, index: Array) -> Array:
@@ -52,8 +91,7 @@ def _turning(rows: MotionRows, row: Array, side: float) -> Array:
         slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
         ahead = side * cubic(middle, ends, slopes) > 0.0
         low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
-    found: Array = rows.input[np.mod(begin, last)] + step * high
-    return found
+    return np.mod(begin, last), step, high
 
 
 TIME_RATIO = (
@@ -61,6 +99,7 @@ TIME_RATIO = (
         word="time_ratio",
         about="time of the slow stroke over that of the quick one",
         evaluate=_ratio,
+        slopes=_slopes,
         needs=2,
         measures="number",
     ),

@@ -11,9 +11,12 @@ __all__ = [
     "CircuitFound",
     "CircuitsFound",
     "Exported",
+    "FormOffered",
     "LimitFound",
     "QuantitiesListed",
     "QuantityListed",
+    "SimulationEvent",
+    "SimulationFound",
     "Working",
 ]
 
@@ -93,6 +96,43 @@ class Exported:
     media_type: str
     content: str
     notices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulationEvent:
+    """What happens in a row of a simulation, at a time [s]."""
+
+    row: int
+    t: float
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormOffered:
+    """A form of the page that mends something: ``start`` of a simulation, ``masses``, ``motor``,
+    ``stops``, ``input``, ``text`` of the file; and the label of a button that leads to it.
+    """
+
+    form: str
+    label: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulationFound:
+    """A simulation: how it ended, its events, and its page.
+
+    ``complete``: it reached the last time. ``forms``: where to mend what ended or refused it, which
+    then has no ``page``.
+    """
+
+    message: str
+    complete: bool
+    rows: int
+    certified: int
+    energy: str
+    events: tuple[SimulationEvent, ...]
+    forms: tuple[FormOffered, ...]
+    page: PageData | None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -94,6 +94,8 @@ def _derivatives(group: Group, needs: int) -> int:
 
 @reply.register
 def _(request: ask.Export, about: About) -> Events:
+    if request.simulated and request.format != "csv":
+        raise InputError(f"a simulation is written as csv, not as {request.format}")
     try:
         file = exported_file(
             request.format,
@@ -106,7 +108,7 @@ def _(request: ask.Export, about: About) -> Events:
         )
     except GivenUpError:
         raise InputError(f"the {request.format} file was ended by a change: ask again") from None
-    return [telling.exported(file, about.file)]
+    return [telling.exported(file, about.file, "-simulation" if request.simulated else "")]
 
 
 @reply.register

@@ -140,7 +140,7 @@ class BrowserDesk:
             self._pause()
             self._receive()
             self._looked = time.monotonic()
-        return self._waiting.has_edit
+        return self._waiting.ends_work
 
     def _send(self, events: list[Event], number: int | None = None) -> None:
         for event in events:

@@ -15,6 +15,7 @@ from linkwork.viewer.live.alternative_starts import closing_input
 from linkwork.viewer.live.answers import GivenUpError, check_quantities
 from linkwork.viewer.live.motion_picture import MotionPicture, paths_on
 from linkwork.viewer.live.queries import answered, nearest_closure
+from linkwork.viewer.live.simulated import not_simulated, simulate, simulation_found
 from linkwork.viewer.live.solvable import Solvable
 from linkwork.viewer.live.subject import Subject
 
@@ -38,6 +39,8 @@ class Cycle:
     subject : Subject
     motion : Motion or None
         The latest motion, approximate during a drag.
+    simulated : Motion or None
+        The latest simulation of the current mechanism.
     owed : bool
         Whether a cycle was cancelled and no other has been sent since.
     hurried : callable
@@ -64,6 +67,7 @@ class Cycle:
     def take(self, subject: Subject) -> None:
         """Continue with a changed subject."""
         self.subject = subject
+        self.simulated: Motion | None = None
         self._solution: Events = []  # of the current mechanism, once solved
 
     def events(self, *, live: bool = False) -> Events:
@@ -122,6 +126,34 @@ class Cycle:
             return self.events()
         self._solution = [self._pictured(event, self.motion) for event in self._solution]
         return self._solution
+
+    def simulate(self, request: ask.Simulate) -> Events:
+        """The simulation that is asked for, or why there is none.
+
+        Raises
+        ------
+        InputError
+            If it was cancelled.
+        """
+        try:
+            self.simulated = simulate(request, self.subject, self.go_on)
+        except GivenUpError:
+            raise InputError("the simulation was cancelled: simulate again") from None
+        except InputError as error:
+            return [not_simulated(error, self.subject)]
+        self._in_time = MotionPicture()
+        return [self._simulation(self.simulated)]
+
+    def simulated_quantities(self, names: tuple[str, ...]) -> Events:
+        """The simulation with quantities besides the usual ones."""
+        if self.simulated is None:
+            return []
+        check_quantities(self.simulated, names)
+        return [self._simulation(self.simulated, names)]
+
+    def _simulation(self, motion: Motion, names: tuple[str, ...] = ()) -> tell.SimulationFound:
+        page = self._in_time.page(motion, asked=names)
+        return simulation_found(motion, page, self.subject)
 
     def driven_motion(self, *, proved: bool) -> Motion | None:
         """The latest motion of a mechanism with inputs, or, if asked, its ``proved`` motion.

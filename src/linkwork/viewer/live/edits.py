@@ -14,6 +14,7 @@ from linkwork.textfile.renaming import names_in_file, rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.unit_change import change_units
 from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live.force_entries import entry_title, put_force_entry
 from linkwork.viewer.live.mass_entries import drop_lost_loads, put_mass
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before, held_places, move_points, rounded
@@ -198,6 +199,12 @@ def _(edit: ask.SetMass, text: TextEdits, before: Before) -> Followed:
 
 
 @applied.register
+def _(edit: ask.SetEntry, text: TextEdits, before: Before) -> Followed:
+    put_force_entry(edit, text, before.description)
+    return Followed()
+
+
+@applied.register
 def _(edit: ask.AddPart, text: TextEdits, before: Before) -> Followed:
     units = TypedUnits.of(before.description)
     text.append(edit.table, part_of(edit.table, edit.typed, units))
@@ -310,6 +317,8 @@ def edit_title(edit: ask.Edit) -> str:
             return f"mass of {edit.link}"
         case ask.SetPart():
             return f"{edit.name}: {edit.key}"
+        case ask.SetEntry():
+            return entry_title(edit)
         case ask.ChangeUnits():
             units = " and ".join(filter(None, (edit.length, edit.angle)))
             return f"{'convert to' if edit.convert else 'relabel as'} {units}"

@@ -12,19 +12,24 @@ from linkwork.viewer.live.answer_events import (
     CircuitFound,
     CircuitsFound,
     Exported,
+    FormOffered,
     LimitFound,
     QuantitiesListed,
     QuantityListed,
+    SimulationEvent,
+    SimulationFound,
     Working,
 )
 from linkwork.viewer.live.file_state import (
     ChangeableNumber,
     Drive,
     DrivenInput,
+    EntryShown,
     FileState,
     Lack,
     Link,
     PaletteField,
+    PaletteForm,
     PalettePart,
     PartShown,
     Pick,
@@ -44,10 +49,12 @@ __all__ = [
     "ConfigurationsFound",
     "Drive",
     "DrivenInput",
+    "EntryShown",
     "Event",
     "Exported",
     "FileChanged",
     "FileState",
+    "FormOffered",
     "Lack",
     "LimitFound",
     "Link",
@@ -57,6 +64,7 @@ __all__ = [
     "NewtonShown",
     "OpenEnd",
     "PaletteField",
+    "PaletteForm",
     "PalettePart",
     "PaletteShown",
     "PartShown",
@@ -70,6 +78,8 @@ __all__ = [
     "Refused",
     "Remedy",
     "Saved",
+    "SimulationEvent",
+    "SimulationFound",
     "SketchShown",
     "StartOffered",
     "Unknown",
@@ -80,9 +90,12 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True)
 class PaletteShown:
-    """All kinds of parts that can be added, in the order of the tables of a file."""
+    """All kinds of parts that can be added, in the order of the tables of a file, and the forms of
+    loads that are no parts.
+    """
 
     parts: tuple[PalettePart, ...]
+    forms: tuple[PaletteForm, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -291,6 +304,7 @@ Event = (
     | CircuitsFound
     | QuantitiesListed
     | Exported
+    | SimulationFound
     | Working
     | NewtonShown
     | PointMoved

@@ -10,11 +10,13 @@ __all__ = [
     "ChangeableNumber",
     "Drive",
     "DrivenInput",
+    "EntryShown",
     "FileState",
     "Lack",
     "Link",
     "MassShown",
     "PaletteField",
+    "PaletteForm",
     "PalettePart",
     "PartShown",
     "Pick",
@@ -92,12 +94,26 @@ class MassShown:
 
 
 @dataclass(frozen=True, kw_only=True)
+class EntryShown:
+    """Gravity, friction of a joint, a motor or stops as they would be typed.
+
+    ``takes``: the fields that it may have; ``there``: whether the file has it.
+    """
+
+    table: str
+    of: str
+    takes: tuple[str, ...]
+    there: bool
+    typed: dict[str, str | tuple[str, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
 class PaletteField:
     """A field of a form: a key of a table, its description and kind of entry.
 
-    ``entry``: ``text``, ``number``, ``flag``, ``choice`` among ``words``; the name of a
-    ``point``, ``link`` or ``slider``; several ``points`` or ``links``; ``numbers`` in one line;
-    ``lines`` of numbers, or of words in the order of ``named``.
+    ``entry``: ``text``, ``number``, ``flag``, ``choice`` among ``words``; ``measured``: a number
+    with or without a unit; the name of a ``point``, ``link`` or ``slider``; several ``points`` or
+    ``links``; ``numbers`` in one line; ``lines`` of numbers, or of words in the order of ``named``.
     """
 
     name: str
@@ -131,6 +147,16 @@ class PalettePart:
     doc: str
     fields: tuple[PaletteField, ...]
     picks: tuple[Pick, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaletteForm:
+    """A form of loads that are no parts, with the table that it fills."""
+
+    table: str
+    title: str
+    doc: str
+    fields: tuple[PaletteField, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,6 +225,8 @@ class FileState:
     part_entries: tuple[PartShown, ...]  # noqa: V107
     masses: tuple[MassShown, ...]
     mass_unit: str  # noqa: V107
+    force_unit: str
+    force_entries: tuple[EntryShown, ...]  # noqa: V107
     drives: tuple[Drive, ...]
     traceable: tuple[str, ...]
     traced: tuple[str, ...]

@@ -81,7 +81,7 @@ def _plain(number: float | str) -> float | str:
 
 
 def drop_lost_loads(text: TextEdits, *names: str) -> None:
-    """Remove masses, friction and loads of links, points and parts that were removed."""
+    """Remove masses, friction, loads and stops of links, points and parts that were removed."""
     lost = set(map(canonical, names))
     for table in ("masses", "friction"):
         for key in text.keys((table,)):
@@ -90,3 +90,6 @@ def drop_lost_loads(text: TextEdits, *names: str) -> None:
     for k, row in reversed(list(text.entries("loads"))):
         if any(canonical(str(row[key])) in lost for key in ("point", "link", "with") if key in row):
             text.remove(("loads", k))
+    for k, row in reversed(list(text.entries("stops"))):
+        if canonical(str(row.get("of", "")).split(".")[0]) in lost:
+            text.remove(("stops", k))

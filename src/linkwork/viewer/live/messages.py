@@ -29,6 +29,7 @@ _LARGEST_ID = 2**53  # largest exact integer in JavaScript
 _LONGEST_TEXT = 1_000  # characters of a name or formula
 _LONGEST_FILE = 1_000_000
 _MOST_ENTRIES = 1_000  # of a list or table
+_REQUESTS = frozenset(REQUESTS)
 
 
 class MessageError(InputError):
@@ -75,9 +76,9 @@ def encoded(event: Event, answers: int | None = None) -> str:
 
 def _own_fields(message: Any) -> dict[str, Any]:
     """The fields of a dataclass, not copied: a cycle has thousands of numbers."""
-    own = {name: getattr(message, name) for name in message.__dataclass_fields__}
+    own = vars(message)
     # a remedy has the requests that the page sends back
-    return {"kind": kind_of(type(message)), **own} if type(message) in REQUESTS else own
+    return {"kind": kind_of(type(message)), **own} if type(message) in _REQUESTS else own
 
 
 def _refuse(message: str) -> NoReturn:

@@ -7,12 +7,22 @@ of a file can be added; the file reader checks the result.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.file_keys import Flag, Formula, Key, ListOf, Number, Tables, Text
+from linkwork.foundation.file_keys import (
+    Flag,
+    Formula,
+    Key,
+    ListOf,
+    Measured,
+    Number,
+    Speed,
+    Tables,
+    Text,
+)
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import ANGLES, LENGTHS
 from linkwork.mechanism.part.index import PARTS
@@ -22,7 +32,7 @@ from linkwork.viewer.live.part.index import picks_of
 from linkwork.viewer.live.part_requests import Typed
 from linkwork.viewer.live.typed_units import TypedUnits
 
-__all__ = ["PALETTE", "Typed", "part_name", "part_of"]
+__all__ = ["PALETTE", "Typed", "field_of", "part_name", "part_of", "shown_entry", "typed_entries"]
 
 
 def part_of(
@@ -42,14 +52,47 @@ def part_of(
     """
     if table not in PARTS:
         raise UnknownNameError(f'there are no parts "{table}" {choices("parts", PARTS, table)}')
-    keys = {key.name: key for key in PARTS[table].keys}
+    return typed_entries(f"[[{table}]]", PARTS[table].keys, typed, units, row)
+
+
+def typed_entries(
+    table: str,
+    keys: Iterable[Key],
+    typed: Mapping[str, Typed],
+    units: TypedUnits,
+    row: Mapping[str, object],
+) -> dict[str, object]:
+    """The entries of a table with these keys from user input; ``row``: its other fields.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        If a key does not exist, or an entry does not match its key.
+    """
+    known = {key.name: key for key in keys}
     for name in typed:
-        if name not in keys:
+        if name not in known:
             raise UnknownNameError(
-                f'"{name}" is not a key of [[{table}]] {choices("keys", keys, name)}'
+                f'"{name}" is not a key of {table} {choices("keys", known, name)}'
             )
     reader = _Reader(units, {**row, **typed})
-    return {name: reader.entry(keys[name], entry) for name, entry in typed.items() if entry}
+    return {name: reader.entry(known[name], entry) for name, entry in typed.items() if entry}
+
+
+def shown_entry(key: Key, entry: object) -> Typed:
+    """An entry as it would be typed: the inverse of a form."""
+    match key.kind, entry:
+        case Flag(), _:
+            return "true" if entry else "false"
+        case ListOf(Text()), tuple():
+            return tuple(map(str, entry))
+        case ListOf(ListOf()), tuple():
+            return tuple(", ".join(map(str, row)) for row in entry)
+        case ListOf(), tuple():
+            return (", ".join(map(str, entry)),)
+        case Tables(keys), tuple():
+            return tuple(", ".join(str(getattr(row, k.attribute)) for k in keys) for row in entry)
+    return str(entry)
 
 
 def part_name(row: Mapping[str, object]) -> str:
@@ -62,7 +105,8 @@ def part_name(row: Mapping[str, object]) -> str:
     return str(row.get("name", ""))
 
 
-def _field(key: Key) -> PaletteField:
+def field_of(key: Key) -> PaletteField:
+    """The field of a form for a key."""
     words: tuple[str, ...] = ()
     named: tuple[str, ...] = ()
     match key.kind:
@@ -70,13 +114,15 @@ def _field(key: Key) -> PaletteField:
             entry = "choice" if words else of or "text"
         case Number():
             entry = "number"
+        case Measured() | Speed():
+            entry = "measured"
         case Formula():
             entry = "text"
         case Flag():
             entry = "flag"
         case ListOf(Text(), noun):
             entry = f"{noun}s"
-        case ListOf(Number()):
+        case ListOf(Number() | Speed()):
             entry = "numbers"
         case ListOf():
             entry, named = "lines", ("x", "y")
@@ -95,7 +141,7 @@ PALETTE: tuple[PalettePart, ...] = tuple(
         table=table,
         title=kind.title,
         doc=kind.doc,
-        fields=tuple(map(_field, kind.keys)),
+        fields=tuple(map(field_of, kind.keys)),
         picks=picks_of(table),
     )
     for table, kind in PARTS.items()
@@ -114,6 +160,8 @@ class _Reader:
         match key.kind:
             case ListOf(Text()):
                 return list(_lines(key, typed))
+            case ListOf(Speed()):
+                return [self._speed(word) for word in " ".join(_lines(key, typed)).split(",")]
             case ListOf(Number() as kind):
                 line = " ".join(_lines(key, typed))
                 return [self._number(key, kind, word) for word in self._words(line)]
@@ -129,6 +177,8 @@ class _Reader:
         match key.kind:
             case Number() as kind:
                 return self._number(key, kind, typed)
+            case Speed() | Measured():
+                return self._speed(typed)
             case Flag():
                 if typed not in ("true", "false"):
                     _refuse(key, f'must be true or false, got "{typed}"')
@@ -162,13 +212,25 @@ class _Reader:
         """A number, or otherwise a formula."""
         plain = word.strip().replace("\u2212", "-")
         given = self.units.number(plain, measured_by(kind, self.row), key.name)
-        try:
-            value = float(given)
-        except ValueError:
-            return plain
-        if not math.isfinite(value):
-            return plain  # the file reader reports the problem
-        return int(value) if value.is_integer() and abs(value) < 1e15 else value
+        return _plain(given, plain)
+
+    def _speed(self, word: str) -> float | int | str:
+        """A number, or text with a unit that the file reads."""
+        plain = word.strip().replace("\u2212", "-")
+        given = self.units.speed(plain)
+        assert given is not None
+        return _plain(given, str(given))
+
+
+def _plain(given: float | str, text: str) -> float | int | str:
+    """A number, whole without decimals; what is none, or not finite, stays text."""
+    try:
+        value = float(given)
+    except ValueError:
+        return text
+    if not math.isfinite(value):
+        return text  # the file reader reports the problem
+    return int(value) if value.is_integer() and abs(value) < 1e15 else value
 
 
 def _lines(key: Key, typed: Typed) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
-from linkwork.foundation.file_keys import Flag, Key, ListOf, Tables, Text
+from linkwork.foundation.file_keys import ListOf, Text
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.part.index import PARTS
@@ -14,7 +14,7 @@ from linkwork.mechanism.part.part import Part
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.viewer.live import requests as ask
 from linkwork.viewer.live.file_state import PartShown
-from linkwork.viewer.live.palette import Typed, part_name, part_of
+from linkwork.viewer.live.palette import part_name, part_of, shown_entry
 from linkwork.viewer.live.typed_units import TypedUnits
 
 __all__ = ["alone_with", "part_row", "parts_shown", "put_entry"]
@@ -32,10 +32,10 @@ _INSTEAD = (
 
 def parts_shown(draft: Draft) -> Iterator[PartShown]:
     """All parts of a draft, in the order of the tables of a file."""
-    for (table, _), part in draft.keyed_parts():
+    for (table, _), part in draft.keyed_parts:
         usual = {field.name: field.default for field in fields(part)}
         typed = {
-            key.name: _typed(key, entry)
+            key.name: shown_entry(key, entry)
             for key in part.keys
             if (entry := getattr(part, key.attribute)) is not None
             and (key.name in _NAMING or entry != usual[key.attribute])
@@ -58,22 +58,6 @@ def _named(part: Part, noun: str) -> Iterator[str]:
                 yield entry
             case ListOf(Text(), own) if own == noun and entry is not None:
                 yield from entry
-
-
-def _typed(key: Key, entry: object) -> Typed:
-    """An entry as it would be typed: the inverse of a form."""
-    match key.kind, entry:
-        case Flag(), _:
-            return "true" if entry else "false"
-        case ListOf(Text()), tuple():
-            return tuple(map(str, entry))
-        case ListOf(ListOf()), tuple():
-            return tuple(", ".join(map(str, row)) for row in entry)
-        case ListOf(), tuple():
-            return (", ".join(map(str, entry)),)
-        case Tables(keys), tuple():
-            return tuple(", ".join(str(getattr(row, k.attribute)) for k in keys) for row in entry)
-    return str(entry)
 
 
 def part_row(text: TextEdits, name: str) -> tuple[str, int]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["AddPart", "DrawPart", "Picked", "RemovePart", "SetMass", "SetPart", "Typed"]
+__all__ = [
+    "AddPart", "DrawPart", "Picked", "RemovePart", "SetEntry", "SetMass", "SetPart", "Typed",
+]  # fmt: skip
 
 #: User input of a field: one entry or several; a row of numbers or of a table is one line,
 #: "10, 20".
@@ -83,3 +85,17 @@ class SetMass:
     x: float | str | None = None
     y: float | str | None = None
     inertia: float | str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetEntry:
+    """Set or remove an entry that is no part, with all its keys: ``gravity``; ``friction`` ``of`` a
+    joint; the ``motor`` and flywheel of an input; ``stops``, by number, or "" for new ones.
+
+    ``typed``: user input as of :class:`AddPart`.
+    """
+
+    table: str
+    of: str
+    typed: dict[str, str | tuple[str, ...]]
+    remove: bool = False

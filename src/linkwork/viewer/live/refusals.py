@@ -13,7 +13,7 @@ Refusing = Callable[[Problem], bool]
 
 #: Edits that change numbers or choices, not what there is.
 _OF_NUMBERS = (
-    ask.SetNumber, ask.SetPart, ask.MovePoint, ask.MovePoints, ask.SetInput,
+    ask.SetNumber, ask.SetPart, ask.SetEntry, ask.MovePoint, ask.MovePoints, ask.SetInput,
     ask.ChooseConfiguration, ask.TracePoint, ask.ChangeUnits, ask.AddOutput,
 )  # fmt: skip
 

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.motion_requests import Cancel, ShowQuantities, Simulate
 from linkwork.viewer.live.part_requests import (
     AddPart,
     DrawPart,
     Picked,
     RemovePart,
+    SetEntry,
     SetMass,
     SetPart,
 )
@@ -27,6 +29,7 @@ __all__ = [
     "AddPart",
     "AddPoint",
     "AssembleAt",
+    "Cancel",
     "ChangeUnits",
     "ChooseConfiguration",
     "DrawPart",
@@ -54,6 +57,7 @@ __all__ = [
     "Request",
     "ReverseLink",
     "Save",
+    "SetEntry",
     "SetGround",
     "SetInput",
     "SetMass",
@@ -62,6 +66,7 @@ __all__ = [
     "SetSheet",
     "SetText",
     "ShowQuantities",
+    "Simulate",
     "SolveAt",
     "Together",
     "TracePoint",
@@ -213,6 +218,7 @@ Edit = (
     | MovePoints
     | SetInput
     | SetMass
+    | SetEntry
     | AddPoint
     | RemovePoint
     | AddLink
@@ -289,27 +295,22 @@ class ListCircuits:
 
 @dataclass(frozen=True, kw_only=True)
 class ListQuantities:
-    """List all quantities that can be plotted."""
+    """List all quantities that can be plotted; with ``simulated`` those of the simulation."""
 
-
-@dataclass(frozen=True, kw_only=True)
-class ShowQuantities:
-    """The quantities, rates and numbers of the motion that the page needs besides the usual ones;
-    replaces those of the request before.
-    """
-
-    names: tuple[str, ...]
+    simulated: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class Export:
     """A file for the visitor: ``toml``, ``svg``, ``csv``, ``xlsx``, ``html``, ``gif``, ``webp`` or
     ``mp4``. A picture shows a row of the motion, by default the first with a position.
+    ``simulated``: the table of the simulation, a ``csv``.
     """
 
     format: str
     row: int | None = None
     dark: bool = False
+    simulated: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -380,6 +381,8 @@ Request = (
     | SetSheet
     | SolveAt
     | ShowQuantities
+    | Simulate
+    | Cancel
     | ListConfigurations
     | NewtonSteps
     | Question

@@ -23,6 +23,7 @@ from linkwork.results.nearest_assembly import LinkEnd, NearestAssembly
 from linkwork.results.position import Position
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.exported_file import ExportedFile
+from linkwork.viewer.live.force_entries import entries_shown
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mass_entries import masses_shown
 from linkwork.viewer.live.part_entries import parts_shown
@@ -72,10 +73,10 @@ def limit_found(limit: Limit, name: str, unit: str) -> tell.LimitFound:
     )
 
 
-def exported(file: ExportedFile, source: str) -> tell.Exported:
-    """A file named like the mechanism file ``source``."""
+def exported(file: ExportedFile, source: str, word: str = "") -> tell.Exported:
+    """A file named like the mechanism file ``source``, with a further word."""
     return tell.Exported(
-        name=f"{PurePath(source).stem}.{file.suffix}",
+        name=f"{PurePath(source).stem}{word}.{file.suffix}",
         media_type=file.media_type,
         content=base64.b64encode(file.content).decode(),
         notices=file.notices,
@@ -350,6 +351,8 @@ def file_state(
         part_entries=parts,
         masses=tuple(masses_shown(description)),
         mass_unit=getattr(description, "mass", ""),
+        force_unit=getattr(description, "force", ""),
+        force_entries=tuple(entries_shown(description)),
         drives=_drives_of(sheet, description),
         traceable=tuple(getattr(description, "points", ())),
         traced=description.trace,

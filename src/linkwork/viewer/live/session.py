@@ -67,7 +67,7 @@ class Desk:
 
     def _hurried(self) -> bool:
         with self._changed:
-            return self._closing or self._waiting.has_edit
+            return self._closing or self._waiting.ends_work
 
     def _work(self) -> None:
         while True:

@@ -45,6 +45,18 @@ class Solvable(Protocol):
     def approximate_sweep(self, neighbour: Motion | None = None) -> Motion:
         """The cycle near that of a neighbouring design, fast and without proofs."""
 
+    def simulate(
+        self,
+        until: float,
+        *,
+        step: float | None = None,
+        at: At = None,
+        start_speed: float | str = 0,
+        change_points: str = "stop",
+        progress: Callable[[float], None] | None = None,
+    ) -> Motion:
+        """The motion in time; ``progress`` may raise an error to cancel it."""
+
     def configurations(self, at: At = None) -> Configurations:
         """All assembly configurations."""
 

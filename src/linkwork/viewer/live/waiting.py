@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.events import Event, Refused, Working
-from linkwork.viewer.live.requests import EDITS, Request
+from linkwork.viewer.live.requests import EDITS, Cancel, Request
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["Tell", "Waiting", "WorkSigns", "answer", "answers_of"]
@@ -35,9 +35,9 @@ class Waiting:
         return len(self._requests)
 
     @property
-    def has_edit(self) -> bool:
-        """Whether a change of the file waits."""
-        return any(isinstance(request, EDITS) for request, _ in self._requests)
+    def ends_work(self) -> bool:
+        """Whether a change of the file or a cancellation waits."""
+        return any(isinstance(request, (*EDITS, Cancel)) for request, _ in self._requests)
 
     def add(self, request: Request | None, number: int | None) -> None:
         """Queue a request."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from linkwork.viewer.live.answers import About, reply
 from linkwork.viewer.live.cycle import Cycle
 from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Followed, applied, edit_title
+from linkwork.viewer.live.force_entries import FORMS
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk, new_file
 from linkwork.viewer.live.moving_points import Before
@@ -76,7 +78,7 @@ class Workbench:
     def opened(self) -> Events:
         """All events that a page needs at its start."""
         start: Events = [] if self._begun else [tell.StartOffered()]
-        return [tell.PaletteShown(parts=PALETTE), *start, *self._everything()]
+        return [tell.PaletteShown(parts=PALETTE, forms=FORMS), *start, *self._everything()]
 
     def handle(self, request: ask.Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
@@ -132,7 +134,9 @@ class Workbench:
         if isinstance(request, Query):
             return answered(request, self.cycle.subject.mechanism)
         if isinstance(request, ask.Question):
-            return reply(request, self._about(proved=isinstance(request, ask.Export)))
+            own = getattr(request, "simulated", False)
+            about = self._about(proved=isinstance(request, ask.Export) and not own)
+            return reply(request, replace(about, motion=self.cycle.simulated) if own else about)
         raise TypeError(f"{type(request).__name__} is not a request")
 
     def _edited(self, edit: ask.Edit) -> Events:
@@ -224,7 +228,17 @@ class Workbench:
 
     @_handle.register
     def _(self, request: ask.ShowQuantities) -> Events:
+        if request.simulated:
+            return self.cycle.simulated_quantities(request.names)
         return self.cycle.with_quantities(request.names)
+
+    @_handle.register
+    def _(self, request: ask.Simulate) -> Events:
+        return self.cycle.simulate(request)
+
+    @_handle.register
+    def _(self, request: ask.Cancel) -> Events:
+        return self.cycle.events() if self.cycle.owed else []  # what it ended was another work
 
     # The text and its results
 

@@ -1,8 +1,4 @@
-"""The motion of a mechanism with one input as that of one number: A s̈ + ½A' ṡ² = Q.
-
-A and ½A' follow from the masses and Q from the loads, all as functions of the leader's place s on
-a leg of the curve of positions; they are tabulated, so that no mechanism is solved afterwards.
-"""
+"""The loads, the motor and the flywheel of a simulated mechanism with one input."""
 
 from __future__ import annotations
 
@@ -13,8 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.dynamics.curve import Leg
-from linkwork.dynamics.panels import Panels, fit_panels
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
 from linkwork.forces.applied import AppliedLoads
@@ -31,7 +25,18 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
 
-__all__ = ["Forcing", "ReducedLeg", "Reduction", "State"]
+__all__ = ["Displaced", "Forcing", "Reduction", "State"]
+
+
+class Displaced(Geometry):
+    """Positions with derivatives by the leader, which counts as the one input."""
+
+    alone = True
+
+    @cached_property
+    def input_rates(self) -> Array:
+        """That of the leader with respect to itself."""
+        return np.ones(1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,6 +69,10 @@ class Reduction:
         self.description = description
         self.motor = description.inputs[0].motor
         self.switches: Mapping[Node, float] = FrozenDict()
+        #: Whether joints have friction.
+        self.rubs = isinstance(description, Linkage) and any(
+            description.numbers(own.mu) > 0.0 for own in description.friction.values()
+        )
 
     @cached_property
     def acting(self) -> tuple[Any, ...]:
@@ -131,15 +140,21 @@ class Reduction:
 
     def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
         """Rows (B, N) with derivatives by time, or by a leader."""
+        return Geometry(self.named, self._rows(v, first, second, t))
+
+    def displaced(self, v: Array, first: Array, second: Array) -> Displaced:
+        """Rows (B, N) with derivatives by a leader."""
+        return Displaced(self.named, self._rows(v, first, second, np.zeros(len(v))))
+
+    def _rows(self, v: Array, first: Array, second: Array, t: Array) -> RowValues:
         one = np.ones(len(v))
-        rows = RowValues(
+        return RowValues(
             self.named,
             np.column_stack([v, t]),
             np.column_stack([first, one]),
             np.column_stack([second, 0.0 * one]),
             np.ones(len(v), dtype=bool),
         )
-        return Geometry(self.named, rows)
 
     def loaded(self, moving: Geometry) -> AppliedLoads:
         """All loads but weights, which the masses bring."""
@@ -150,105 +165,3 @@ class Reduction:
         for load in self.acting:
             apply_load(load, applied)
         return applied
-
-
-class ReducedLeg:
-    """A leg with its tables."""
-
-    def __init__(self, reduction: Reduction, leg: Leg) -> None:
-        self.reduction, self.leg = reduction, leg
-        low, high = sorted((leg.begin, leg.end))
-        self.variables = reduction.model.compiled.solver.variables
-        scale = reduction.model.compiled.table.variable_scale
-        groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
-        groups = np.concatenate([groups, np.full(self.variables, groups[-1] + 1)])
-        least = np.concatenate([np.zeros(3), scale, np.zeros(self.variables)])
-        whole = fit_panels(self._tabulated, low, high, groups, least)
-        #: A, Q of weights, Q of loads of position, A'.
-        self.numbers: Panels = whole.part(slice(0, 3)).with_slope()
-        #: Variables and their first derivatives.
-        self.table: Panels = whole.part(slice(3, None))
-
-    def _tabulated(self, s: Array) -> Array:
-        """A, Q of weights, Q of loads of position, variables, first derivatives."""
-        order = np.argsort(s, kind="stable")
-        rows = self.leg.rows(s[order], False).take(np.argsort(order, kind="stable"))
-        displaced = self.reduction.geometry(rows.v, rows.first, rows.second, np.zeros(len(s)))
-        applied = AppliedLoads(displaced, 1.0)
-        zero = np.zeros(len(s))
-        with np.errstate(all="ignore"):
-            applied.weigh(self.reduction.description)
-            mass = 2.0 * sum(applied.kinetic, zero)
-            weight = sum((body.weight_rate for body in applied.masses), zero)
-        lead = self.reduction.model.compiled.solver.unknowns
-        q1 = rows.first[:, lead]
-        mass = mass + self.reduction.inertia * q1**2
-        load = zero
-        if self.reduction.of_position:
-            still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
-            load = self._pushes(State(moving=still, displaced=displaced))
-            if self.reduction.motor is not None:
-                load = load + self.reduction.motor_torque(zero) * q1
-        return np.column_stack([mass, weight, load, rows.v, rows.first])
-
-    def acceleration(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
-        """s̈ at B states; ``gain`` (N,): what variables have gained in laps."""
-        mass, weight, load, slope = self.numbers(s).T
-        force = weight + load
-        if not self.reduction.of_position:
-            force = force + self.generalised_force(s, speed, t, gain)
-        with np.errstate(all="ignore"):
-            # eq. (92): A' is the derivative of the polynomial for A, so that energy is kept
-            found: Array = (force - 0.5 * slope * speed**2) / mass
-        return found
-
-    def state(self, s: Array, speed: Array, t: Array, gain: Array) -> State:
-        """The rows of B states."""
-        row = self.table(s)
-        v, first = row[:, : self.variables] + gain, row[:, self.variables :]
-        unknown = np.full_like(v, np.nan)
-        moving = self.reduction.geometry(v, first * speed[:, None], unknown, t)
-        displaced = self.reduction.geometry(v, first, unknown, t)
-        return State(moving=moving, displaced=displaced)
-
-    def generalised_force(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
-        """Q of all loads but weights, (B,)."""
-        slope = self.input_slope(s)
-        total = np.zeros(len(s))
-        if self.reduction.pushed:
-            total = self._pushes(self.state(s, speed, t, gain))
-        if self.reduction.motor is not None:
-            total = total + self.reduction.motor_torque(slope * speed) * slope
-        return total
-
-    def input_slope(self, s: Array) -> Array:
-        """The derivative of the input by the leader, (B,)."""
-        return self.slopes(s)[:, self.reduction.model.compiled.solver.unknowns]
-
-    def slopes(self, s: Array) -> Array:
-        """The derivatives of all variables by the leader, (B, N)."""
-        return self.table(s)[:, self.variables :]
-
-    def _pushes(self, state: State) -> Array:
-        """Q of loads, springs and further forces, (B,)."""
-        applied = self.reduction.loaded(state.moving)
-        total = np.zeros(state.moving.rows)
-        for point, force, _ in applied.forces:
-            total = total + (force.conj() * state.displaced.place(point).d1).real
-        for link, torque in applied.torques:
-            total = total + torque * state.displaced.angle(link).d1
-        for forcing in self.reduction.forcing:
-            total = total + forcing(state)
-        return total
-
-    def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
-        """Left minus right side of all comparisons, (B, comparisons)."""
-        moving = self.state(s, speed, t, gain).moving
-        applied = AppliedLoads(moving, 1.0, switches=self.reduction.switches)
-        return np.stack(
-            [
-                applied.formula(each.left) - applied.formula(each.right)
-                for each in self.reduction.comparisons
-            ],
-            axis=1,
-        )

@@ -1,0 +1,1 @@
+"""Dimensions that do a task best: least squares from many starts."""

@@ -1,0 +1,146 @@
+"""Constraints on the dimensions of curve drawers, by the method of multipliers.
+
+A constraint h(x) ≤ 0 adds the residual max(0, h + s), eq. (155). After a round of steps its shift s
+becomes max(0, h + s), so that in the end h ≤ 0 holds and not only nearly.
+
+References
+----------
+M. J. D. Powell, A method for nonlinear constraints in minimization problems, in: Optimization,
+Academic Press 1969, 283-298.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.design.improvement.coupler_curves import CouplerCurves, FourBarCurves
+from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.foundation.arrays import Array, IndexArray
+
+__all__ = ["CurveConstraints"]
+
+_MARGIN = 1e-6  # sizes of the goal: by which constraints hold in the end
+_DEAD = np.radians(1.0)  # the least transmission angle of all: dead points are kept off
+
+
+class CurveConstraints:
+    """The constraints of a goal, for lanes of mechanisms of one kind."""
+
+    def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, lanes: int) -> None:
+        self.kind, self.goal = kind, goal
+        self._curves = kind(np.ones(1))
+        self._point_shift = np.zeros((lanes, len(goal.points)))
+        self._shift = np.zeros(
+            (lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1])
+        )
+
+    def residuals(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
+        """How far constraints are broken, (D, K), and by the parameters, (D, K, P)."""
+        h, by_x = self._constraints(x)
+        h = h + self._shift[lanes]  # eq. (155)
+        broken = h > 0.0
+        return np.where(broken, h, 0.0), np.where(broken[:, :, None], by_x, 0.0)
+
+    def at_points(
+        self, x: Array, angles: Array, lanes: IndexArray
+    ) -> tuple[Array, Array, Array] | None:
+        """How far the transmission angle is too small at points, (D, N), by the dimensions and by
+        the angles; ``None`` where the crank turns fully.
+        """
+        if self.goal.must_turn:
+            return None
+        cosine, by_x, by_angle = self._curves.cosines(x, angles)
+        sign = np.sign(cosine) * self.goal.size
+        h = np.abs(cosine) * self.goal.size - self._most + self._point_shift[lanes]
+        broken = h > 0.0
+        return (
+            np.where(broken, h, 0.0 * h),
+            np.where(broken[:, :, None], by_x * sign[:, :, None], 0.0),
+            np.where(broken, by_angle * sign, 0.0),
+        )
+
+    def update(self, x: Array, angles: Array, lanes: IndexArray) -> None:
+        """New shifts for lanes that are at x."""
+        self._shift[lanes] = np.maximum(0.0, self._constraints(x)[0] + self._shift[lanes])
+        points = self.at_points(x[:, : len(self.kind.names)], angles, lanes)
+        if points is not None:
+            self._point_shift[lanes] = np.nan_to_num(points[0])
+
+    @property
+    def _most(self) -> float:
+        least = max(self.goal.transmission, _DEAD) + _MARGIN
+        return float(np.cos(least)) * self.goal.size
+
+    def _constraints(self, x: Array) -> tuple[Array, Array]:
+        """h (D, K) and its derivatives, in lengths."""
+        goal, count = self.goal, len(self.kind.names)
+        found, slopes = [np.zeros((len(x), 0))], [np.zeros((len(x), 0, x.shape[1]))]
+        margin = _MARGIN * goal.size
+
+        def add(h: Array, by_x: Array) -> None:
+            wide = np.zeros((*h.shape, x.shape[1]))
+            wide[:, :, :count] = by_x
+            found.append(h + margin)
+            slopes.append(wide)
+
+        own = x[:, :count]
+        if goal.must_turn:
+            add(*self._curves.limits(own))
+            add(*self._transmission(own))
+        lengths, by_x = self._lengths(own)
+        if goal.shortest > 0.0:
+            add(goal.shortest - lengths, -by_x)
+        if np.isfinite(goal.longest):
+            add(lengths - goal.longest, by_x)
+        if np.isfinite(goal.ratio):
+            rows = np.arange(len(x))
+            longest, shortest = lengths.argmax(axis=1), lengths.argmin(axis=1)
+            h = lengths[rows, longest] - goal.ratio * lengths[rows, shortest]
+            slope = by_x[rows, longest] - goal.ratio * by_x[rows, shortest]
+            add(h[:, None], slope[:, None])
+        return np.concatenate(found, axis=1), np.concatenate(slopes, axis=1)
+
+    def _lengths(self, x: Array) -> tuple[Array, Array]:
+        """The lengths of links, of a four-bar the ground too, (D, L), and by x."""
+        index = list(self.kind.lengths)
+        lengths, by_x = x[:, index], np.zeros((len(x), len(index), x.shape[1]))
+        by_x[:, np.arange(len(index)), index] = 1.0
+        if self.kind is not FourBarCurves:
+            return lengths, by_x
+        ground = x[:, 2:4] - x[:, :2]
+        length = np.hypot(ground[:, 0], ground[:, 1])
+        slope = np.zeros((len(x), 1, x.shape[1]))
+        with np.errstate(all="ignore"):
+            along = np.nan_to_num(ground / length[:, None])
+        slope[:, 0, :2], slope[:, 0, 2:4] = -along, along
+        return np.column_stack([lengths, length]), np.concatenate([by_x, slope], axis=1)
+
+    def _transmission(self, x: Array) -> tuple[Array, Array]:
+        """|b² + c² - (g ± a)²| - 2 b c cos μ, divided by b + c, or a ± h - c cos μ, for a whole
+        turn of the crank.
+        """
+        cosine = np.cos(max(self.goal.transmission, _DEAD))
+        if self.kind is not FourBarCurves:
+            found, by_x = self._curves.limits(x)
+            by_x[:, :, 3] *= cosine
+            return found + (1.0 - cosine) * x[:, 3, None], by_x
+        ground = x[:, 2:4] - x[:, :2]
+        g = np.hypot(ground[:, 0], ground[:, 1])
+        a, c, b = x[:, 4], x[:, 5], x[:, 6]
+        both, slopes = [], []
+        with np.errstate(all="ignore"):
+            along = np.nan_to_num(ground / g[:, None])
+        for sense in (1.0, -1.0):
+            d = g + sense * a
+            inner = b**2 + c**2 - d**2
+            sign, size = np.sign(inner), b + c
+            h = (np.abs(inner) - 2.0 * b * c * cosine) / size
+            slope = np.zeros((len(x), x.shape[1]))
+            by_d = -2.0 * sign * d / size
+            slope[:, :2], slope[:, 2:4] = -by_d[:, None] * along, by_d[:, None] * along
+            slope[:, 4] = sense * by_d
+            slope[:, 5] = (2.0 * sign * c - 2.0 * b * cosine - h) / size
+            slope[:, 6] = (2.0 * sign * b - 2.0 * c * cosine - h) / size
+            both.append(h)
+            slopes.append(slope)
+        return np.stack(both, axis=1), np.stack(slopes, axis=1)

@@ -1,0 +1,200 @@
+"""Four-bars and slider-cranks whose coupler point follows a curve best, from many starts.
+
+All starts run as lanes; after some steps only the better ones go on, so that most of the time is
+spent on those that may become the best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.design.improvement.coupler_curves import CouplerCurves
+from linkwork.design.improvement.curve_constraints import CurveConstraints
+from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.design.improvement.curve_starts import CurveStarts, best_starts
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.sharing import share_out
+from linkwork.numerics.lane_least_squares import LaneFit, Residuals, Sequenced, minimise, starts_of
+
+__all__ = ["FittedCurves", "fit_curve"]
+
+_GAP = 1e-7  # between inputs of positions in order [rad]: far above rounding
+_DRAWS = 6  # for each start that is kept
+#: Lanes that go on, as shares of the starts, and the steps they do; after each the multipliers of
+#: constraints change.
+_STAGES = ((1.0, 12), (0.4, 30), (0.12, 120), *((0.04, 200),) * 4)
+_FEWEST = 12  # lanes of a stage
+_PART = 128  # lanes of one thread
+_SAME_DIMENSIONS = 0.01  # relative difference of dimensions
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedCurves:
+    """D mechanisms of one kind, best first.
+
+    Parameters
+    ----------
+    kind : type of CouplerCurves
+    x : (D, P)
+        Dimensions, without the common angle of the inputs.
+    angles : (D, N)
+        The crank's angles at the points [rad].
+    side : (D,)
+        The sign of the loop.
+    total : (D,)
+        The sum of squares of the distances from the points [length²].
+    starts : int
+        How many starts there were.
+    finished : bool
+        Whether all stages were done; an interrupted fit keeps the best so far.
+    """
+
+    kind: type[CouplerCurves]
+    x: Array
+    angles: Array
+    side: Array
+    total: Array
+    starts: int
+    finished: bool = True
+
+    def __len__(self) -> int:
+        return len(self.total)
+
+
+def fit_curve(
+    kind: type[CouplerCurves],
+    goal: CurveGoal,
+    starts: int,
+    rng: np.random.Generator,
+    progress: Callable[[float], None] | None = None,
+    threads: int = 1,
+) -> FittedCurves:
+    """The best mechanisms of one kind; the same for the same generator, whatever the threads."""
+    found = best_starts(kind, goal, _DRAWS * starts, starts, rng)
+    problem = _Problem(kind, goal, found)
+    fit = starts_of(problem.entries(found), problem.own(found))
+    numbers = np.arange(len(fit))
+    work = sum(share * steps for share, steps in _STAGES)
+    done = 0.0
+    for share, steps in _STAGES:
+        keep = np.argsort(fit.total, kind="stable")[: max(_FEWEST, round(share * starts))]
+        if done:
+            fit, numbers = fit.take(keep), numbers[keep]
+        fit = problem.minimised(fit, numbers, steps, threads)
+        done += share * steps
+        if progress is not None:
+            progress(done / work)
+        if fit.interrupted:
+            break
+    return problem.result(fit, numbers, starts)
+
+
+class _Problem:
+    """The residuals of a goal for lanes of starts."""
+
+    def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, found: CurveStarts) -> None:
+        self.kind, self.goal = kind, goal
+        self.curves, self.way = kind(found.side), found.way
+        self.box = goal.box(kind)
+        self.constraints = CurveConstraints(kind, goal, len(found.side))
+        self.sequenced = None
+        if goal.inputs is None and goal.ordered:
+            self.sequenced = Sequenced(gap=_GAP, span=FULL_TURN - _GAP)
+
+    def entries(self, found: CurveStarts) -> Array:
+        """Parameters of starts, (D, P)."""
+        if self.goal.inputs is None:
+            return found.x
+        turned = found.t - self.goal.inputs
+        return np.concatenate([found.x, turned.mean(axis=1, keepdims=True)], axis=1)
+
+    def own(self, found: CurveStarts) -> Array:
+        """Own variables of starts: crank angles, unless they are given."""
+        return found.t if self.goal.inputs is None else np.zeros((len(found.x), 0))
+
+    def angles(self, x: Array, t: Array, lanes: IndexArray) -> Array:
+        """The crank's angles at the points, (D, N)."""
+        if self.goal.inputs is None:
+            return np.asarray(self.way[lanes, None] * t)
+        return np.asarray(x[:, -1:] + self.goal.inputs)
+
+    def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
+        """Distances from the points, and how far constraints are broken."""
+        goal, count = self.goal, len(self.kind.names)
+        curves = self.curves.take(lanes)
+        angles = self.angles(x, t, lanes)
+        p, by_x, by_angle = curves.with_derivatives(x[:, :count], angles)
+        missed, by_t = _split(p - goal.points), _split(by_angle)
+        columns = np.stack([by_x.real, by_x.imag], axis=2)
+        more = self.constraints.at_points(x[:, :count], angles, lanes)
+        if more is not None:
+            missed = np.concatenate([missed, more[0][:, :, None]], axis=2)
+            columns = np.concatenate([columns, more[1][:, :, None, :]], axis=2)
+            by_t = np.concatenate([by_t, more[2][:, :, None]], axis=2)
+        shared, shared_by_x = self.constraints.residuals(x, lanes)
+        if goal.inputs is None:
+            return Residuals(
+                missed, columns, by_t * self.way[lanes, None, None], shared, shared_by_x
+            )
+        columns = np.concatenate([columns, by_t[:, :, :, None]], axis=3)
+        return Residuals(missed, columns, None, shared, shared_by_x)
+
+    def minimised(self, fit: LaneFit, numbers: IndexArray, steps: int, threads: int) -> LaneFit:
+        """Lanes after some steps."""
+        # parts of one size, so that results do not depend on the number of threads
+        parts = [np.arange(k, min(k + _PART, len(fit))) for k in range(0, len(fit), _PART)]
+        done: list[LaneFit] = [fit] * len(parts)
+
+        def work(k: int) -> None:
+            own = numbers[parts[k]]
+
+            def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
+                return self.evaluate(x, t, own[lanes])
+
+            done[k] = minimise(
+                evaluate, fit.take(parts[k]), self.box, steps, sequenced=self.sequenced
+            )
+
+        share_out(work, range(len(parts)), threads)
+        found = LaneFit.joined(done)
+        self.constraints.update(found.x, self.angles(found.x, found.t, numbers), numbers)
+        return found
+
+    def result(self, fit: LaneFit, numbers: IndexArray, starts: int) -> FittedCurves:
+        """Different mechanisms, best first."""
+        count = len(self.kind.names)
+        there = self.evaluate(fit.x, fit.t, numbers)
+        missed = there.rows[:, :, :2]
+        total = np.einsum("dnm,dnm->d", missed, missed)
+        order = [int(k) for k in np.argsort(total, kind="stable") if np.isfinite(total[k])]
+        scale = self.goal.size
+        chosen: list[int] = []
+        for k in order:
+            same = [
+                self.curves.side[numbers[j]] == self.curves.side[numbers[k]]
+                and np.abs(fit.x[j] - fit.x[k]).max()
+                <= _SAME_DIMENSIONS * (scale + np.abs(fit.x[k]).max())
+                for j in chosen
+            ]
+            if not any(same):
+                chosen.append(k)
+        index = np.array(chosen, dtype=int)
+        angles = self.angles(fit.x[index], fit.t[index], numbers[index])
+        return FittedCurves(
+            kind=self.kind,
+            x=fit.x[index][:, :count],
+            angles=angles,
+            side=self.curves.side[numbers[index]],
+            total=total[index],
+            starts=starts,
+            finished=not fit.interrupted,
+        )
+
+
+def _split(z: ComplexArray) -> Array:
+    """Complex numbers (D, N) as pairs (D, N, 2)."""
+    return np.stack([z.real, z.imag], axis=2)

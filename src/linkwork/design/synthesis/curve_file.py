@@ -1,0 +1,99 @@
+"""The curve of a task: points in a CSV file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.plain_numbers import as_told
+from linkwork.textfile.toml_text import bytes_of, text_of
+
+__all__ = ["Curve", "read_curve"]
+
+_COLUMNS = ("x", "y", "input")
+_FEWEST = 5
+_MOST = 2000  # points: beyond, a fit takes minutes and gains nothing
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """A curve in file units.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        In order of travel [length].
+    inputs : tuple of float
+        Inputs at the points; none: free timing [file's angle unit].
+    closed : str
+        closed, open or partial; "": by the distance of the ends.
+    file, text : str
+        The file, as the task names it, and its text.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    inputs: tuple[float, ...] = ()
+    closed: str = ""
+    file: str = ""
+    text: str = ""
+
+
+def read_curve(table: Mapping[str, Any], folder: Path | None) -> Curve:
+    """The curve of a table of a task.
+
+    Raises
+    ------
+    MechanismError
+        With the line of the file that is no point.
+    """
+    name = table["file"]
+    path = Path(name) if folder is None else folder / name
+    text = text_of(bytes_of(path, str(path)), str(path))
+    rows = _rows(text, str(path))
+    timed = table.get("timing", "free") == "as given"
+    if timed and any(len(row) < len(_COLUMNS) for _, row in rows):
+        line = next(line for line, row in rows if len(row) < len(_COLUMNS))
+        raise _problem(("curve", "timing"), f"needs a third column, input: line {line} has none")
+    if not _FEWEST <= len(rows) <= _MOST:
+        told = f'"{name}" has {len(rows)} points: a curve needs {_FEWEST} to {_MOST}'
+        raise _problem(("curve", "file"), told)
+    return Curve(
+        points=tuple((row[0], row[1]) for _, row in rows),
+        inputs=tuple(row[2] for _, row in rows) if timed else (),
+        closed=table.get("closed", ""),
+        file=name,
+        text=text,
+    )
+
+
+def _rows(text: str, name: str) -> list[tuple[int, list[float]]]:
+    """Rows of numbers with their lines; the first row may be a header, # begins a comment."""
+    found: list[tuple[int, list[float]]] = []
+    for line, cells in enumerate(csv.reader(io.StringIO(text)), start=1):
+        if not any(cell.strip() for cell in cells) or cells[0].lstrip().startswith("#"):
+            continue
+        try:
+            row = [float(cell) for cell in cells]
+        except ValueError:
+            if not found and [cell.strip().lower() for cell in cells] in (
+                list(_COLUMNS[:2]),
+                list(_COLUMNS),
+            ):
+                continue
+            told = f'line {line} of "{name}" holds {as_told(",".join(cells))}: numbers are wanted'
+            raise _problem(("curve", "file"), told) from None
+        if not 2 <= len(row) <= len(_COLUMNS) or not all(map(math.isfinite, row)):
+            told = f'line {line} of "{name}" is no point: give x, y and, if timed, input'
+            raise _problem(("curve", "file"), told)
+        found.append((line, row))
+    return found
+
+
+def _problem(key: tuple[str, ...], message: str) -> MechanismError:
+    return MechanismError([Problem(key=key, message=message)], "the task")

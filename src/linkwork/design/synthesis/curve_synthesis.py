@@ -1,0 +1,182 @@
+"""Path generation by least squares: mechanisms whose coupler point follows a curve best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from linkwork.design.improvement.coupler_curves import (
+    CouplerCurves,
+    FourBarCurves,
+    SliderCrankCurves,
+)
+from linkwork.design.improvement.curve_fit import FittedCurves, fit_curve
+from linkwork.design.improvement.curve_goal import INPUT, CurveGoal
+from linkwork.design.improvement.settings import Improvement
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
+from linkwork.foundation.sharing import cores
+
+__all__ = ["curve_goal_of", "solve_curve"]
+
+_STARTS = 1000
+_CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
+_ROUNDINGS = 16.0  # of a pivot from lengths and angles
+_SAFETY = 4.0  # more than the first order of the error of an intersection of circles
+_KINDS: dict[str, type[CouplerCurves]] = {
+    LoopKind.FOUR_BAR.value: FourBarCurves,
+    LoopKind.SLIDER_CRANK.value: SliderCrankCurves,
+}
+#: Names of a task's bounds, and of the dimensions they bound.
+_BOUNDED = {
+    "A0.x": "A0.x", "A0.y": "A0.y", "B0.x": "B0.x", "B0.y": "B0.y",
+    "A0 A": "crank", "A B": "coupler", "B0 B": "rocker", INPUT: INPUT,
+}  # fmt: skip
+
+
+def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> Found:
+    """The best four-bars and slider-cranks of a sample of starts; each a local minimum.
+
+    Raises
+    ------
+    MechanismError
+        For bounds of unknown dimensions.
+    """
+    goal = curve_goal_of(task, wishes)
+    settings = task.improvement or Improvement()
+    starts = settings.starts or _STARTS
+    kinds = [_KINDS[name] for name in _KINDS if name in task.mechanisms]
+    fitted: list[FittedCurves] = []
+    for k, kind in enumerate(kinds):
+        rng = np.random.default_rng([settings.seed, k])
+
+        def tell(fraction: float, done: int = k) -> None:
+            if progress is not None:
+                progress((done + fraction) / len(kinds))
+
+        fitted.append(fit_curve(kind, goal, starts, rng, tell, cores()))
+        if not fitted[-1].finished:
+            break
+    count = sum(map(len, fitted))
+    return Found(
+        candidates=tuple(_candidates(goal, part) for part in fitted if len(part)),
+        complex=count,
+        real=count,
+        proved=count,
+        completeness=Completeness.SAMPLED,
+        message=_message(goal, fitted, settings.seed),
+        drives=(Drive.A0,),
+        starts=sum(part.starts for part in fitted),
+        interrupted=not all(part.finished for part in fitted),
+    )
+
+
+def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
+    """The goal of a task in radians and complex points."""
+    points = np.array([complex(*position.point) for position in task.positions])
+    timed = task.positions[0].input is not None
+    inputs = [task.in_radians(p.input or 0.0) for p in task.positions] if timed else None
+    turns = wishes.range is not None and wishes.range.turn
+    return CurveGoal(
+        points=points,
+        inputs=None if inputs is None else np.array(inputs),
+        ordered=wishes.ordered,
+        closed=_is_closed(task, points),
+        turns_fully=turns,
+        transmission=wishes.transmission,
+        bounds=dict(_bounds(task, wishes)),
+        shortest=wishes.shortest,
+        longest=wishes.longest,
+        ratio=wishes.ratio,
+    )
+
+
+def _is_closed(task: Task, points: Array) -> bool:
+    if task.curve is not None and task.curve.closed:
+        return task.curve.closed == "closed"
+    steps = np.abs(np.diff(points))
+    return bool(abs(points[-1] - points[0]) <= _CLOSES * steps.max())
+
+
+def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Bounds from given pivots, the region of pivots and the settings, the narrowest last."""
+    if wishes.region.size:
+        for name in ("A0", "B0"):
+            yield f"{name}.x", (wishes.region.real.min(), wishes.region.real.max())
+            yield f"{name}.y", (wishes.region.imag.min(), wishes.region.imag.max())
+    for name, pivot in zip(("A0", "B0"), task.given.fixed_pivots, strict=False):
+        for axis, value in zip("xy", pivot, strict=True):
+            yield f"{name}.{axis}", (value, value)
+    given: Mapping[str, tuple[float, float]] = {}
+    if task.improvement is not None:
+        given = task.improvement.bounds
+        settings = task.improvement
+        others = {
+            "vary": settings.vary,
+            "goals": settings.goals,
+            "front": settings.front,
+            "point": settings.point,
+        }
+        for key, entry in others.items():
+            if entry:
+                told = 'belongs to task = "improve": leave it out'
+                raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
+    for name, (low, high) in given.items():
+        if name not in _BOUNDED:
+            known = ", ".join(f'"{own}"' for own in _BOUNDED)
+            problem = Problem(
+                key=("improve", "bounds", name), message=f"is no dimension: these are {known}"
+            )
+            raise MechanismError([problem], f'task "{task.name}"')
+        scale = task.angle.radians if name == INPUT else 1.0
+        yield _BOUNDED[name], (low * scale, high * scale)
+
+
+def _message(goal: CurveGoal, fitted: list[FittedCurves], seed: int) -> str:
+    starts = sum(part.starts for part in fitted)
+    kind = "a closed curve" if goal.closed else "a part of a curve"
+    timing = "given timing" if goal.inputs is not None else "free timing"
+    told = f"a sample: different local minima from {starts} starts with seed {seed}"
+    if not all(part.finished for part in fitted):
+        told = f"interrupted: the best so far of {starts} starts with seed {seed}"
+    return f"{told}; {kind}, {timing}"
+
+
+def _candidates(goal: CurveGoal, fitted: FittedCurves) -> Candidates:
+    curves, x = fitted.kind(fitted.side), fitted.x
+    loop = curves.points(x, fitted.angles)
+    a0 = x[:, 0] + 1j * x[:, 1]
+    if fitted.kind is FourBarCurves:
+        b0, direction = x[:, 2] + 1j * x[:, 3], np.zeros(len(x), dtype=complex)
+        sine = np.abs(
+            np.sin(np.angle((loop.moving_b - loop.moving_a) / (loop.moving_b - b0[:, None])))
+        )
+    else:
+        direction = np.exp(1j * x[:, 5])
+        b0 = a0 + 1j * direction * x[:, 4]
+        sine = np.abs(((loop.moving_b - loop.moving_a) / direction[:, None]).real) / x[:, 3, None]
+    far = np.abs(loop.moving_b - a0[:, None]).max(axis=1) + np.abs(b0 - a0) + np.abs(a0)
+    doubt = _ROUNDINGS * UNIT_ROUNDOFF * (far + np.abs(loop.guided).max(axis=1))
+    least = sine.min(axis=1)
+    with np.errstate(all="ignore"):
+        # the intersection of circles that move by ``doubt``, where it is far from a double one
+        error = np.where(doubt < 1e-3 * far * least**2, _SAFETY * doubt / least, math.inf)
+    return Candidates(
+        kind=LoopKind.FOUR_BAR if fitted.kind is FourBarCurves else LoopKind.SLIDER_CRANK,
+        fixed_a=a0,
+        fixed_b=b0,
+        direction=direction,
+        moving_a=loop.moving_a,
+        moving_b=loop.moving_b,
+        guided=loop.guided,
+        error=error,
+        miss=np.abs(loop.guided - goal.points).max(axis=1),
+    )

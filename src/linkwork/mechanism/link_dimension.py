@@ -1,0 +1,117 @@
+"""Distances and angles between the points of one link."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from linkwork.foundation.elementwise import cis, degrees, detached, is_steady, phase
+from linkwork.foundation.lanes import Rest
+
+__all__ = ["Distance", "Given", "VertexAngle"]
+
+
+@dataclass(frozen=True)
+class Distance:
+    """|ab| = length."""
+
+    a: str
+    b: str
+    length: float
+    table = "lengths"
+
+    @property
+    def key(self) -> str:
+        return f"{self.a} {self.b}"
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        return (self.a, self.b)
+
+    @property
+    def amount_text(self) -> str:
+        return f"{self.length:.12g}"
+
+    def error(self, z: Mapping[str, complex]) -> float:
+        """Relative disagreement with placed points."""
+        return (abs(z[self.b] - z[self.a]) - self.length) / self.length
+
+    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
+        error = self.error(z)
+        # one that agrees by chance would no longer if a number changed
+        return abs(error) <= tolerance and is_steady(error)
+
+    def shown(self, z: Mapping[str, complex]) -> str:
+        return f"|{self.a}{self.b}| = {abs(z[self.b] - z[self.a]):.12g}"
+
+    def gradients(self, z: Mapping[str, complex]) -> dict[str, complex]:
+        """The derivatives of the error by every point's x and, times i, by its y."""
+        span = z[self.b] - z[self.a]
+        size = abs(span)
+        slope = span / (size * self.length) if size else 0j
+        return {self.a: -slope, self.b: slope}
+
+    def narrow(self, rest: Rest) -> Distance:
+        return replace(self, length=rest.narrow(self.length))
+
+    def detached(self) -> Distance:
+        length = detached(self.length)
+        return self if length is self.length else replace(self, length=length)
+
+
+@dataclass(frozen=True)
+class VertexAngle:
+    """The angle [rad] at ``vertex``, counter-clockwise from the ray to ``a`` to that to ``b``."""
+
+    a: str
+    vertex: str
+    b: str
+    angle: float
+    table = "angles"
+
+    @property
+    def key(self) -> str:
+        return f"{self.a} {self.vertex} {self.b}"
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        return (self.a, self.vertex, self.b)
+
+    @property
+    def amount_text(self) -> str:
+        return f"{degrees(self.angle):.12g}°"
+
+    def error(self, z: Mapping[str, complex]) -> float:
+        """Disagreement with placed points [rad], within half a turn."""
+        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        # the difference as a rotation has no jump at half a turn
+        return phase(rays * cis(-self.angle)) if rays else math.inf
+
+    def agrees(self, z: Mapping[str, complex], tolerance: float) -> bool:
+        error = self.error(z)
+        # one that agrees by chance would no longer if a number changed
+        return abs(error) <= tolerance and is_steady(error)
+
+    def shown(self, z: Mapping[str, complex]) -> str:
+        rays = (z[self.b] - z[self.vertex]) * (z[self.a] - z[self.vertex]).conjugate()
+        return f"an angle of {degrees(phase(rays)):.12g}° at {self.vertex}"
+
+    def gradients(self, z: Mapping[str, complex]) -> dict[str, complex]:
+        """The derivatives of the error by every point's x and, times i, by its y."""
+        first, second = z[self.a] - z[self.vertex], z[self.b] - z[self.vertex]
+        if not (first and second):
+            return {point: complex(math.nan) for point in self.points}
+        # d arg r = Im(dr / r)
+        to_a, to_b = -1j / first.conjugate(), 1j / second.conjugate()
+        return {self.a: to_a, self.vertex: -(to_a + to_b), self.b: to_b}
+
+    def narrow(self, rest: Rest) -> VertexAngle:
+        return replace(self, angle=rest.narrow(self.angle))
+
+    def detached(self) -> VertexAngle:
+        angle = detached(self.angle)
+        return self if angle is self.angle else replace(self, angle=angle)
+
+
+Given = Distance | VertexAngle

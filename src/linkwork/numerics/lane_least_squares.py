@@ -1,0 +1,346 @@
+"""Bounded least squares of many starts at once, by Levenberg and Marquardt.
+
+A lane minimises |f(x, t)|² over parameters x (P,) in a box. The residuals come in N rows of m, and
+row k may have a variable t_k of its own, such as the input at which a curve comes nearest to a
+point. These variables are eliminated from every step, eq. (152), and may be kept in order.
+
+References
+----------
+D. W. Marquardt, An algorithm for least-squares estimation of nonlinear parameters, SIAM Journal 11
+(1963), doi:10.1137/0111030. G. H. Golub, V. Pereyra, Separable nonlinear least squares, Inverse
+Problems 19 (2003) R1, doi:10.1088/0266-5611/19/2/201.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.rounding import EPSILON
+
+__all__ = ["Box", "LaneFit", "Residuals", "Sequenced", "minimise", "starts_of"]
+
+_FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
+_LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
+_IDLE = 1e-13  # relative decrease of the sum of squares: rounding
+_MOST_IDLE = 3  # steps in a row
+_SINGULAR = 1e-13  # of the largest diagonal entry: keeps the matrix regular
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Residuals of D lanes with their derivatives; NaN where they do not exist.
+
+    Parameters
+    ----------
+    rows : (D, N, m)
+    by_x : (D, N, m, P)
+    by_t : (D, N, m), optional
+        Each row by its own variable; ``None`` without these variables.
+    shared : (D, K)
+        Further residuals, of the parameters alone.
+    shared_by_x : (D, K, P)
+    """
+
+    rows: Array
+    by_x: Array
+    by_t: Array | None
+    shared: Array
+    shared_by_x: Array
+
+    def take(self, which: BoolArray) -> Residuals:
+        """Those of some lanes."""
+        parts: list[Any] = [None if own is None else own[which] for own in self._parts]
+        return Residuals(*parts)
+
+    def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
+        """Those of another place in some lanes."""
+        parts: list[Any] = [
+            None if old is None or new is None else _either(which, new, old)
+            for old, new in zip(self._parts, other._parts, strict=True)
+        ]
+        return Residuals(*parts)
+
+    @property
+    def _parts(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, field.name) for field in fields(self))
+
+    @property
+    def total(self) -> Array:
+        """The sums of squares, (D,); infinite where residuals do not exist."""
+        flat = self.rows.reshape(len(self.rows), -1)
+        with np.errstate(all="ignore"):
+            total = np.einsum("dk,dk->d", flat, flat)
+            total += np.einsum("dk,dk->d", self.shared, self.shared)
+        return np.asarray(np.where(np.isfinite(total), total, np.inf))
+
+
+#: Residuals of parameters (D, P) and own variables (D, N) of the lanes with these numbers, (D,).
+Evaluate = Callable[[Array, Array, IndexArray], Residuals]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Box:
+    """Bounds of the parameters, (P,) each."""
+
+    least: Array
+    most: Array
+
+    def inside(self, x: Array) -> Array:
+        """The nearest parameters in the box."""
+        return np.asarray(np.clip(x, self.least, self.most))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sequenced:
+    """Own variables that rise from row to row by ``gap`` or more, and by less than ``span``."""
+
+    gap: float
+    span: float
+
+    def ordered(self, t: Array) -> Array:
+        """Variables (D, N) moved into order, each as little as those before it allow."""
+        steps = self.gap * np.arange(t.shape[1])
+        risen = np.maximum.accumulate(t - steps, axis=1) + steps
+        return np.asarray(np.minimum(risen, risen[:, :1] + self.span - (steps[-1] - steps)))
+
+    def contacts(self, t: Array) -> BoolArray:
+        """Whether a row is at the least distance from the row before it, (D, N)."""
+        touching = np.zeros(t.shape, dtype=bool)
+        touching[:, 1:] = np.diff(t, axis=1) <= self.gap * (1.0 + 1e-3)
+        return touching
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaneFit:
+    """Where D lanes are.
+
+    Parameters
+    ----------
+    x : (D, P)
+    t : (D, N)
+        Own variables of the rows.
+    total : (D,)
+        The sum of squares; infinite where residuals do not exist.
+    damping : (D,)
+    idle : (D,)
+        The number of steps in a row that gained nothing.
+    interrupted : bool
+        Whether the user stopped the steps.
+    """
+
+    x: Array
+    t: Array
+    total: Array
+    damping: Array
+    idle: IndexArray
+    interrupted: bool = False
+
+    def __len__(self) -> int:
+        return len(self.total)
+
+    @property
+    def done(self) -> BoolArray:
+        """Lanes that gain nothing more."""
+        return np.asarray(
+            (self.idle >= _MOST_IDLE)
+            | (self.damping > _LARGEST_DAMPING)
+            | ~np.isfinite(self.total)
+            | (self.total == 0.0)
+        )
+
+    def take(self, index: IndexArray | BoolArray) -> LaneFit:
+        """Some of the lanes, in the order of ``index``."""
+        return replace(self, **{name: getattr(self, name)[index] for name in _ARRAYS})
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Lanes of several parts in one."""
+        columns: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
+        }
+        return cls(interrupted=any(part.interrupted for part in parts), **columns)
+
+
+_ARRAYS = tuple(field.name for field in fields(LaneFit) if field.name != "interrupted")
+
+
+def starts_of(x: Array, t: Array) -> LaneFit:
+    """Lanes (D, P), (D, N) that have done no step yet."""
+    count = len(x)
+    return LaneFit(
+        x=x,
+        t=t,
+        total=np.full(count, np.inf),
+        damping=np.full(count, _FIRST_DAMPING),
+        idle=np.zeros(count, dtype=np.intp),
+    )
+
+
+def minimise(
+    evaluate: Evaluate,
+    fit: LaneFit,
+    box: Box,
+    steps: int,
+    *,
+    sequenced: Sequenced | None = None,
+) -> LaneFit:
+    """Lanes after some steps, or fewer where they gain nothing more.
+
+    Parameters
+    ----------
+    evaluate : function of (D, P), (D, N) and the numbers of lanes
+    fit : LaneFit
+    box : Box
+    steps : int
+    sequenced : Sequenced, optional
+        The order of the own variables.
+
+    Returns
+    -------
+    LaneFit
+        As many lanes, in the same order.
+
+    Notes
+    -----
+    An interruption (Ctrl-C) ends the steps; the lanes stay where they are then.
+    """
+    kept = [np.array(getattr(fit, name)) for name in _ARRAYS]
+    lanes = np.arange(len(fit))
+    x = box.inside(fit.x)
+    t = fit.t if sequenced is None else sequenced.ordered(fit.t)
+    now = evaluate(x, t, lanes)
+    # sums of another problem are of no use here
+    work = replace(fit, x=x, t=t, total=now.total, idle=np.zeros_like(fit.idle))
+    interrupted = False
+    try:
+        for _ in range(steps):
+            done = work.done
+            if done.any():
+                _keep(kept, lanes, work)
+                left = ~done
+                lanes, work, now = lanes[left], work.take(left), now.take(left)
+            if not len(lanes):
+                break
+            work, now = _step(evaluate, work, now, lanes, box, sequenced)
+    except KeyboardInterrupt:
+        interrupted = True
+    _keep(kept, lanes, work)
+    columns: dict[str, Any] = dict(zip(_ARRAYS, kept, strict=True))
+    found = LaneFit(**columns)
+    return replace(found, interrupted=interrupted or fit.interrupted)
+
+
+def _keep(kept: list[Array], lanes: IndexArray, work: LaneFit) -> None:
+    for whole, name in zip(kept, _ARRAYS, strict=True):
+        whole[lanes] = getattr(work, name)
+
+
+def _step(
+    evaluate: Evaluate,
+    work: LaneFit,
+    now: Residuals,
+    lanes: IndexArray,
+    box: Box,
+    sequenced: Sequenced | None,
+) -> tuple[LaneFit, Residuals]:
+    """One step of every lane; those that gain nothing by it stay and are damped more."""
+    dx, dt = _newton_step(work, now, box, sequenced)
+    x, t = box.inside(work.x + dx), work.t + dt
+    if sequenced is not None:
+        t = sequenced.ordered(t)
+    there = evaluate(x, t, lanes)
+    total = there.total
+    better = total < work.total
+    gained = work.total - total > _IDLE * work.total
+    idle = np.where(better & gained, 0, np.where(better, work.idle + 1, work.idle))
+    damping = np.where(
+        better, np.maximum(work.damping * _LESS, _SMALLEST_DAMPING), work.damping * _MORE
+    )
+    return (
+        replace(
+            work,
+            x=_either(better, x, work.x),
+            t=_either(better, t, work.t),
+            total=np.where(better, total, work.total),
+            damping=damping,
+            idle=idle,
+        ),
+        now.replaced(better, there),
+    )
+
+
+def _either(which: BoolArray, new: Array, old: Array) -> Array:
+    return np.asarray(np.where(which.reshape(-1, *[1] * (new.ndim - 1)), new, old))
+
+
+@np.errstate(all="ignore")  # lanes without residuals have no step
+def _newton_step(
+    work: LaneFit, now: Residuals, box: Box, sequenced: Sequenced | None
+) -> tuple[Array, Array]:
+    """Changes of x (D, P) and t (D, N)."""
+    count, parameters = work.x.shape
+    flat = now.by_x.reshape(count, -1, parameters)
+    residuals = now.rows.reshape(count, -1, 1)
+    transposed = flat.transpose(0, 2, 1)
+    normal, gradient = transposed @ flat, (transposed @ residuals)[:, :, 0]
+    if now.shared.shape[1]:
+        across = now.shared_by_x.transpose(0, 2, 1)
+        normal += across @ now.shared_by_x
+        gradient += (across @ now.shared[:, :, None])[:, :, 0]
+    scale = np.einsum("dpp->dp", normal)
+    if now.by_t is None:
+        dx = _solved(normal, gradient, scale, work, box)
+        return dx, np.zeros_like(work.t)
+    # eq. (152): the own variables of rows, or of rows that touch, are eliminated
+    own = np.einsum("dnm,dnm->dn", now.by_t, now.by_t)
+    slope = np.einsum("dnm,dnm->dn", now.by_t, now.rows)
+    mixed = np.einsum("dnm,dnmp->dnp", now.by_t, now.by_x)
+    curve = own * (1.0 + work.damping[:, None]) + EPSILON * (
+        own.max(axis=1, keepdims=True) + 1e-300
+    )
+    together = None if sequenced is None else _together(sequenced, work.t, slope / curve)
+    summed, slopes, mixtures = curve, slope, mixed
+    if together is not None:
+        summed = (together @ curve[:, :, None])[:, :, 0]
+        slopes = (together @ slope[:, :, None])[:, :, 0]
+        mixtures = together @ mixed
+    shares = mixtures / summed[:, :, None]
+    normal = normal - mixed.transpose(0, 2, 1) @ shares
+    gradient = gradient - (shares.transpose(0, 2, 1) @ slope[:, :, None])[:, :, 0]
+    dx = _solved(normal, gradient, scale, work, box)
+    dt = -(slopes + (mixtures @ dx[:, :, None])[:, :, 0]) / summed
+    return dx, dt
+
+
+def _together(sequenced: Sequenced, t: Array, pull: Array) -> Array | None:
+    """Which rows move as one, (D, N, N): those that touch and are pushed together."""
+    contact = sequenced.contacts(t)
+    # down the slope the later row would come before the earlier one
+    contact[:, 1:] &= pull[:, 1:] >= pull[:, :-1]
+    if not contact.any():
+        return None
+    group = np.cumsum(~contact, axis=1)
+    return np.asarray((group[:, :, None] == group[:, None, :]).astype(float))
+
+
+def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Box) -> Array:
+    """The damped step of x, which leaves parameters at their bounds that would pass them."""
+    held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
+    held |= box.least == box.most
+    largest = scale.max(axis=1, keepdims=True)
+    diagonal = work.damping[:, None] * scale + _SINGULAR * largest + 1e-300
+    parameters = normal.shape[1]
+    matrix = normal + diagonal[:, :, None] * np.eye(parameters)
+    if held.any():
+        free = ~held
+        matrix = matrix * (free[:, :, None] & free[:, None, :])
+        matrix += np.where(held, largest, 0.0)[:, :, None] * np.eye(parameters)
+        gradient = np.where(held, 0.0, gradient)
+    wrong = ~(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
+    matrix[wrong], right = np.eye(parameters), np.where(wrong[:, None], 0.0, -gradient)
+    return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])
