@@ -2,7 +2,7 @@
 
 Virtual work of forces in balance: Q δx = P δu, so that Q/P = du/dx. Where the part is at rest to
 rounding while the input moves, as at the dead centre of a press, it is infinite and has no
-derivatives; at dead points of the input, where no derivative with respect to the input exists, it is NaN.
+derivatives; at dead points of the input, where no such derivative exists, it is NaN.
 
 References
 ----------
