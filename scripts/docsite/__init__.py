@@ -1,0 +1,1 @@
+"""The documentation site: its generated pages, its directives, its checks."""

@@ -1,0 +1,79 @@
+"""Builds the site: scripts/docs [OUT] [--app FOLDER]."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from scripts.docsite.live_pages import moving_examples, write_library_pages
+from scripts.docsite.text_files import write_whole
+
+ROOT = Path(__file__).resolve().parents[2]
+_PICTURE = re.compile(r'<img src="(images/gallery/([^"]+)\.svg)" alt="([^"]*)">')
+#: Links of pages to files and folders that are not pages of the site.
+_OUTSIDE = {
+    "](decisions/)": "](decisions/0001-loops-follow-the-blocks.md)",
+    "[benchmarks/peers/requirements.txt](../benchmarks/peers/requirements.txt)": (
+        "`benchmarks/peers/requirements.txt`"
+    ),
+    "[examples/notebook.ipynb](../examples/notebook.ipynb)": "`examples/notebook.ipynb`",
+}
+
+
+def main() -> int:
+    """Build the site; returns the exit status."""
+    parser = argparse.ArgumentParser(prog="scripts/docs", description=__doc__)
+    parser.add_argument("out", nargs="?", type=Path, default=ROOT / "build" / "site")
+    parser.add_argument("--app", type=Path, help="a folder that `linkwork web` wrote")
+    asked = parser.parse_args()
+    out = asked.out.resolve()
+    if asked.app is not None and not (asked.app / "index.html").is_file():
+        parser.error(f"{asked.app} has no index.html: write it with `linkwork web {asked.app}`")
+    moving = moving_examples()
+    write_library_pages(out, moving)
+    if asked.app is not None:
+        shutil.copytree(asked.app, out / "app", dirs_exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        source, doctrees = Path(scratch) / "source", Path(scratch) / "doctrees"
+        shutil.copytree(ROOT / "docs", source)
+        _adapt(source, set(moving), asked.app is not None)
+        for builder, to in (("html", out), ("text", Path(scratch) / "text")):
+            done = _sphinx(builder, source, doctrees, to, asked.app is not None)
+            if done:
+                return done
+        write_whole(Path(scratch) / "text", doctrees, out)
+    sys.stdout.write(f"Wrote {out / 'index.html'}.\n")
+    return 0
+
+
+def _sphinx(builder: str, source: Path, doctrees: Path, to: Path, app: bool) -> int:
+    """Run Sphinx; a warning, and a reference without a target, is an error."""
+    strict = [sys.executable, "-m", "sphinx", "-n", "-W", "--keep-going", "-q", "-j", "2"]
+    settings = ["-D", f"linkwork_app={int(app)}", "-b", builder, "-d", str(doctrees)]
+    command = [*strict, *settings, str(source), str(to)]
+    return subprocess.run(command, cwd=ROOT, check=False).returncode
+
+
+def _adapt(source: Path, moving: set[str], app: bool) -> None:
+    """Lead links of the copied pages to the site, pictures of the gallery to moving pages."""
+
+    def picture(found: re.Match[str]) -> str:
+        path, name, alt = found.groups()
+        to = f"app/index.html#example={name}" if app else f"_live/{name}.html"
+        target = [f":target: {to}"] if name in moving else []
+        return "\n".join(["```{image} " + path, f":alt: {alt}", *target, "```"])
+
+    for page in source.rglob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        for before, after in _OUTSIDE.items():
+            text = text.replace(before, after)
+        page.write_text(_PICTURE.sub(picture, text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
