@@ -7,7 +7,7 @@ import { QuickDrawing, type Drawn } from "./quick_drawing";
 import { isArrow, reversal } from "./reversal";
 import { pathOf, put, strokesOf, svg } from "./svg";
 import { toneClass } from "./theme";
-import { boxOf, viewOf, zoomed, type View } from "./view_box";
+import { boxOf, symbolWidth, viewOf, zoomed, type View } from "./view_box";
 
 /** The frame of a deforming shape. */
 const OWN_COURSE = -2;
@@ -95,6 +95,12 @@ export class Drawing {
   get window(): View {
     const { width, height } = this.size;
     return this.chosen ?? viewOf(this.view, width, height);
+  }
+
+  /** The width by which symbols are sized. */
+  get symbolWidth(): number {
+    const { width, height } = this.size;
+    return symbolWidth(this.window, width, height);
   }
 
   /** Keep a part of the plane visible; null: the whole drawing. */

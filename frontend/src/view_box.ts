@@ -25,3 +25,11 @@ export function zoomed(view: View, factor: number, [x, y]: readonly [number, num
   const share = width / view.width;
   return { x: x + (view.x - x) * share, y: y + (view.y - y) * share, width };
 }
+
+/** How much wider than high a view may be before its height decides the size of symbols. */
+const WIDEST = 4 / 3;
+
+/** The width of a view, or what its height allows: the view that fits symbols of this size is smaller. */
+export function symbolWidth({ width }: View, w: number, h: number): number {
+  return Math.min(width, (WIDEST * width * h) / Math.max(w, 1));
+}

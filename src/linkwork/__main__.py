@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from importlib import import_module
 
@@ -18,6 +19,16 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.stderr.write("\nInterrupted.\n")
         sys.exit(_INTERRUPTED)
+    finally:
+        _finish()
+
+
+def _finish() -> None:
+    """The exit code stays what it is, whenever Ctrl-C was pressed or is pressed from now on."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # An interrupt of text that is executed, as in the making of a dataclass, has CPython end the
+    # process by the signal even if it is caught; the next text that is executed revokes that.
+    exec("")
 
 
 if __name__ == "__main__":

@@ -38,8 +38,10 @@ def force_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
         fine = motion.found & (motion.condition <= _MOST_CONDITION)
         fine &= np.isfinite(np.asarray(found["power"]))
         powers = [np.asarray(found[name])[fine] for name in ("power", "load_power", "energy_rate")]
+        rubs = "friction_power" in found.values
+        lost = np.asarray(found["friction_power"])[fine] if rubs else 0.0
         apart = np.asarray(found["disagreement"])[fine]
-        left = np.abs(powers[0] + powers[1] - powers[2])
+        left = np.abs(powers[0] + powers[1] - powers[2] - lost)
         most = np.max(np.abs(powers), axis=0, initial=0.0)
         counts["motions"] += 1
         counts["rows"] += int(fine.sum())

@@ -178,7 +178,8 @@ def _compare(
     references = np.where(exact, stated, references)
     errors = np.where(exact, 0.0, errors)
     scale = _scale(rows, here, own, references, sizes)
-    apart = np.abs(own - references) / scale
+    apart = np.abs(own - references)
+    apart = np.divide(apart, scale, out=apart, where=apart != 0.0)  # forces may all be 0
     decided = errors <= _DECIDED * scale
     for place in np.ndindex(own.shape):
         q, k, b = place

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import pickle
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -10,6 +12,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.motion import circuit_list
+from linkwork.motion.circuit import walks
+from linkwork.motion.circuit.seeding import Seeding
+from linkwork.numerics.continuation import curve_proof
 from tests.oracles.four_bar import FourBar
 from tests.thinned import thinned
 
@@ -212,3 +218,58 @@ def test_a_crank_alone_has_one_circuit() -> None:
     [circuit] = crank.circuits()
     assert circuit.certified
     assert circuit.smallest_singular_value == np.inf
+
+
+def test_motions_and_weakest_positions_are_computed_when_first_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    calls: list[str] = []
+    for name in ("motion_of_rows", "weakest_place"):
+        own = getattr(circuit_list, name)
+
+        def counted(*arguments: Any, name: str = name, own: Any = own) -> Any:
+            calls.append(name)
+            return own(*arguments)
+
+        monkeypatch.setattr(circuit_list, name, counted)
+    circuits = lw.example("four-bar").circuits()
+    assert repr(circuits)
+    assert not calls
+    assert circuits[0].smallest_singular_value > 0.0
+    assert circuits[0].weakest == circuits[0].weakest
+    assert circuits[0].motion.certified.all()
+    assert circuits[0].range("rocker") == circuits[0].range("rocker")
+    assert calls == ["weakest_place", "motion_of_rows"]
+    copy = pickle.loads(pickle.dumps(circuits))
+    assert copy[1].weakest == circuits[1].weakest
+
+
+@pytest.mark.parametrize("name", ["rapier-drive-limited", "stephenson-far-crank"])
+def test_curves_of_bold_steps_without_a_proof_are_followed_again(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    expected = lw.example(name).circuits().to_dict()
+    proofs, bold = curve_proof.prove_curves, []
+
+    def refused(*arguments: Any, **options: Any) -> Any:
+        found = proofs(*arguments, **options)
+        bold.extend(found)
+        return [replace(proof, legs=~proof.legs) for proof in found]
+
+    monkeypatch.setattr(walks, "prove_curves", refused)
+    seeds, look = [], Seeding._look
+
+    def counted(self: Seeding, progress: Any) -> None:
+        seeds.append(1)
+        look(self, progress)
+
+    monkeypatch.setattr(Seeding, "_look", counted)
+    found = lw.example(name).circuits().to_dict()
+    assert len(seeds) == 2
+    assert bold
+    for one, other in zip(expected["circuits"], found["circuits"], strict=True):
+        assert one["certified"]
+        assert other["certified"]
+        for key in ("name", "end", "turns", "turning"):
+            assert one[key] == other[key]
+        assert one["input_range"] == pytest.approx(other["input_range"], abs=1e-12)

@@ -87,6 +87,37 @@ def test_an_interrupt_while_the_program_is_imported_is_quiet(environment: dict[s
     assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
 
 
+def test_an_interrupt_of_executed_text_has_the_exit_code_too(
+    environment: dict[str, str], tmp_path: Path
+) -> None:
+    """Dataclasses are made so while modules are imported; CPython would end by the signal."""
+    program = (
+        "import sys\n"
+        "class Interrupted:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'numpy': exec('raise KeyboardInterrupt')\n"
+        "sys.meta_path.insert(0, Interrupted())\n"
+        "from linkwork.__main__ import main\n"
+        "main()\n"
+    )
+    (tmp_path / "interrupted.py").write_text(program)
+    words = [sys.executable, "-m", "interrupted"]
+    ended = subprocess.run(words, env=environment, cwd=tmp_path, capture_output=True)
+    assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
+
+
+def test_an_interrupt_at_the_very_end_changes_nothing(environment: dict[str, str]) -> None:
+    program = (
+        "import atexit, os, signal, sys\n"
+        "atexit.register(os.kill, os.getpid(), signal.SIGINT)\n"
+        "sys.argv = ['linkwork', '--version']\n"
+        "from linkwork.__main__ import main\n"
+        "main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    assert (ended.returncode, ended.stderr) == (0, b"")
+
+
 def _wait_until_it_reads(pid: int) -> None:
     """Until the process sleeps in a read of its standard input."""
     channel = Path(f"/proc/{pid}/wchan")
@@ -167,9 +198,9 @@ def test_progress_is_shown_on_a_terminal_after_a_second_only(
     start: Start, folder: Path, environment: dict[str, str]
 ) -> None:
     terminal = environment | {"TERM": "xterm"}
-    # 400 turns of a motion that does not repeat itself
+    # 1,000 turns of a motion that does not repeat itself
     (folder / "never.toml").write_text(NEVER, encoding="utf-8")
-    slow = ["sweep", "never.toml", "--from", "0", "--to", "144000", "--step", "300"]
+    slow = ["sweep", "never.toml", "--from", "0", "--to", "360000", "--step", "300"]
     shown = _in_terminal(slow, terminal)
     assert b"sweeping  [" in shown
     assert b"sweeping  [" not in shown.split(b"\x1b[?25h")[-1]  # the bar is gone at the end

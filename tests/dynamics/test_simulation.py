@@ -256,6 +256,34 @@ def test_a_load_that_holds_back_stops_the_motion() -> None:
     assert motion["d"][-1] == pytest.approx(3.2, abs=1e-9)
 
 
+def test_a_switch_that_begins_at_rest_is_met() -> None:
+    """The press starts at its upper dead point, where the rate in its load is 0."""
+    press = lw.example("crank-press")
+    for until in (0.5, 0.55):
+        motion = press.simulate(until=until, start_speed="60 rad/s")
+        # its energy suffices for a part of the way into the work, where it rests
+        energy = motion["kinetic_energy"] + motion["stored_energy"]
+        taken = energy[0] - energy[-1]
+        assert taken == pytest.approx(20000 * (160 - motion["height"][-1]), rel=1e-9)
+        assert "held by a load that switches there" in motion.message
+
+
+def test_a_load_against_the_rate_holds_from_the_start() -> None:
+    """A bar at rest under its weight of 4.9 N·m, held by a brake that is a load."""
+    torque = "-6*(bar.velocity > 0) + 6*(bar.velocity < 0)"
+    given = {**PENDULUM, "masses": {"bar": lw.Mass(mass=1, shape="rod")}}
+    motion = lw.linkage(**given, loads=[lw.Load(link="bar", torque=torque)]).simulate(1)
+    assert "at rest since t = 0 s" in motion.message
+    assert np.ptp(motion["bar"]) < 1e-12
+
+
+def test_a_load_that_switches_at_rest_acts_at_once() -> None:
+    """A block of 2 kg under 10 N less 4 N that begin with its motion."""
+    load = lw.Load(point="B", link="block", force=("-10 + 4*(d.velocity < 0)", 0))
+    motion = lw.linkage(**SLIDER, loads=[load]).simulate(1, step=1)
+    assert motion["d"][-1] == pytest.approx(3 - 1.5, abs=1e-12)
+
+
 SYSTEMS: dict[str, tuple[dict[str, str], float, float, float]] = {
     "mm": ({"length": "mm", "mass": "kg", "force": "N"}, 1000.0, 1.0, 1.0),
     "m": ({"length": "m", "mass": "kg", "force": "N"}, 1.0, 1.0, 1.0),

@@ -367,6 +367,18 @@ def test_pendulum_is_at_its_exact_places() -> None:
     same((motion["A.x"] + 1j * motion["A.y"])[[1, 5, 10]], exact, 1)
 
 
+@law("double-pendulum")
+def test_double_pendulum_keeps_its_energy_and_equation_of_momentum() -> None:
+    """Energy, and d/dt of the moment of momentum about O = moment of the weights."""
+    motion = lw.example("double-pendulum").simulate(1, step=0.05)
+    energy = motion["kinetic_energy"] + motion["stored_energy"]
+    same(energy, np.full_like(energy, energy[0]), 10)
+    places = (motion[f"{point}.x"] + 1j * motion[f"{point}.y"] for point in "AB")
+    bends = (motion[f"{point}.x.d2"] + 1j * motion[f"{point}.y.d2"] for point in "AB")
+    gained = sum((np.conj(z) * a).imag for z, a in zip(places, bends, strict=True))
+    same(gained, -9.81 * (motion["A.x"] + motion["B.x"]), 10)
+
+
 @law("door-closer")
 def test_door_closer_falls_as_two_exponentials() -> None:
     """I θ'' + c θ' + k (θ - θ_free) = 0 up to the frame: θ = θ_free + Σ a e^(λ t)."""

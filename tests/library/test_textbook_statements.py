@@ -38,6 +38,7 @@ TEXTBOOK = {
     "stephenson-far-crank": (1, 1, "Stephenson chain", "Stephenson III", 3),
     "jansen-leg": (1, 1, "eight-link chain, 3 multiple pins", "", 2),
     "peaucellier": (1, 1, "eight-link chain, 4 multiple pins", "", 2),
+    "double-pendulum": (2, 2, "open three-link chain", "", None),
     "double-butterfly": (1, 1, "eight-link chain no. 5 of 16 (4 ternary links)", "", 3),
     "five-bar-robot": (2, 2, "five-bar chain", "", 2),
     "three-rpr": (3, 3, "eight-link chain with 3 degrees of freedom, 3 prismatic joints", "", 3),
@@ -67,6 +68,9 @@ TEXTBOOK = {
         "its loop ground, K1, K2, K3: crank-rocker (GCRR): Grashof", 2,
     ),
     "balanced-lamp": (1, 1, "open two-link chain", "", 1),
+    "door-closer": (1, 1, "open two-link chain", "", 1),
+    "pendulum": (1, 1, "open two-link chain", "", 1),
+    "compressor": (1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns", 2),
     "beam-engine": (
         1, 1, "eight-link chain, 1 multiple pin",
         "its loop ground, crank, connecting_rod, beam: crank-rocker (GCRR): Grashof", 2,

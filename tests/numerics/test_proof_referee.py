@@ -28,7 +28,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     node_at,
     rows_on_track,
 )
-from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
+from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path, prove_paths
 from linkwork.numerics.proof.kantorovich import Bounds, weighted_radii
 from linkwork.numerics.proof.position_proof import (
     Proof,
@@ -455,6 +455,28 @@ def test_steps_beyond_one_that_is_refused_are_left_alone(monkeypatch: pytest.Mon
         np.testing.assert_array_equal(found.connected_to(anchor), every.connected_to(anchor))
         assert every.pieces[beyond].min() > 1
         assert (found.pieces[beyond] == 1).all()
+
+
+@pytest.mark.parametrize("piece", [1024, 20])
+def test_paths_proved_together_have_the_proofs_of_each(
+    piece: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where one of them jumps to the other branch, and where one begins as another ends."""
+    monkeypatch.setattr(path_proof, "_PIECE", piece)
+    theta = np.radians(np.arange(0.0, 361.0, 30.0))
+    solver, v = four_bar_at(ROCKER, theta, 1)
+    other = four_bar_at(ROCKER, theta, -1)[1]
+    jumping = np.concatenate([v[:7], other[7:]])
+    paths = [beads_of(solver, rows) for rows in (v[:5], v[4:], jumping, other, v[:1])]
+    anchors = [0, len(theta) - 5, 0, 3, 0]
+    found = prove_paths(solver, PATH, paths, anchors=anchors, most=10_000)
+    for points, anchor, proof in zip(paths, anchors, found, strict=True):
+        alone = prove_path(solver, PATH, points, anchor=anchor)
+        np.testing.assert_array_equal(proof.connected, alone.connected)
+        np.testing.assert_array_equal(proof.position.holds, alone.position.holds)
+        np.testing.assert_array_equal(proof.connected_to(anchor), alone.connected_to(anchor))
+    assert [bool(proof.connected.all()) for proof in found] == [True, True, False, True, True]
+    assert found[2].connected_to(0).sum() == 7
 
 
 def test_the_proofs_of_a_long_path_are_those_of_its_pieces() -> None:

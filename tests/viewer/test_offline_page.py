@@ -297,7 +297,8 @@ def test_names_of_arrows_do_not_stand_on_each_other(open_page: Open) -> None:
 def test_forces_are_shown_at_once(open_page: Open, jansen: lw.Motion) -> None:
     page = open_page({"motion": jansen}, forces=[Force(at="F", x=30.0, y=60.0, unit="N")])
     found = re.fullmatch(
-        r"Force scale: ([\d.]+) mm = ([\d.]+) N", page.locator(".lw-legend").inner_text()
+        r"Force scale: ([\d.]+) mm = ([\d.]+) N\ndashed: below [\d.]+ N, not to scale",
+        page.locator(".lw-legend").inner_text(),
     )
     assert found is not None
     arrow = _arrow(page, "forces", 0)

@@ -386,15 +386,15 @@ export class LivePage {
   /** Symbols of a sketch have the size of the view. */
   private viewed(): void {
     if (!this.editor.edited || this.page === null) return;
-    const { width } = this.page.places.drawing.window;
+    const { symbolWidth: width } = this.page.places.drawing;
     if (Math.abs(Math.log(width / this.width)) < RESIZED) return;
     clearTimeout(this.resizing);
     this.resizing = setTimeout(() => this.sheet(), 150);
   }
 
-  /** Tell the width of the sheet, by which symbols are sized. */
+  /** Tell the width by which symbols are sized. */
   private sheet(): void {
-    const { width } = this.page!.places.drawing.window;
+    const { symbolWidth: width } = this.page!.places.drawing;
     this.width = width;
     this.connection.ask({ kind: "set_sheet", width, edited: this.editor.edited });
   }

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from linkwork import design
 from linkwork.api.dynamic import DynamicMechanism
 from linkwork.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    from linkwork.design.improvement.improving import ImprovedDesign
     from linkwork.foundation.arrays import Array
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
@@ -105,6 +106,61 @@ class DesignedMechanism(DynamicMechanism):
         """
         found = self.sensitivity(of, at, by=by, configuration=configuration, motion=motion)
         return {name: found[name] for name in found.derivatives}
+
+    def improve(
+        self,
+        goal: Mapping[str, Any] | Sequence[Mapping[str, Any]],
+        *,
+        vary: Sequence[str] = (),
+        bounds: Mapping[str, tuple[float, float]] | None = None,
+        starts: int = 16,
+        spread: float = 0.05,
+        seed: int = 1,
+        progress: Callable[[float], None] | None = None,
+    ) -> tuple[ImprovedDesign, ...]:
+        """Designs that meet goals best, by least squares from many starts.
+
+        Parameters
+        ----------
+        goal : Mapping, or sequence of Mapping
+            Timed points ``{"point": "F", "points": [(x, y), …], "inputs": […]}``; a quantity at
+            inputs ``{"of": "rocker", "at": […], "values": […]}``; a quantity, or a number of the
+            motion, with ``target``, ``least`` or ``most``; each with ``weight``. File units.
+        vary : sequence of str
+            Numbers that vary; by default lengths, angles, offsets, dimensions and fixed pivots.
+        bounds : Mapping[str, (number, number)], optional
+            By default lengths change by a factor of four at most.
+        starts, spread, seed : int, number, int
+            Starts about the mechanism as it is, their relative spread, and their seed; the first
+            one is the mechanism itself.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Returns
+        -------
+        tuple of ImprovedDesign
+            Different local minima: those with all rows proved first, then by their misses. Ctrl-C
+            keeps the best so far.
+
+        Raises
+        ------
+        InputError, MechanismError, UnknownNameError
+            For a goal that contradicts itself, is not known, or whose derivatives are not known.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> bar = lw.example("four-bar")
+        >>> goal = {"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}
+        >>> best = bar.improve(goal, vary=["A B", "O4 B"], starts=4)[0]
+        >>> best.sound
+        True
+        """
+        wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
+        settings = design.Improvement(
+            vary=tuple(vary), bounds=bounds or {}, starts=starts, spread=spread, seed=seed
+        )
+        return design.improved_designs(self.model, wanted, settings, progress)
 
     def tolerance(
         self,

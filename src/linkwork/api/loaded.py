@@ -103,7 +103,7 @@ class LoadedMechanism(SolvableMechanism):
         *,
         step: float | None = None,
         at: float | Mapping[str, float] | None = None,
-        start_speed: Number = 0,
+        start_speed: Number | Mapping[str, Number] = 0,
         change_points: str = "stop",
         certify: bool = True,
         progress: Callable[[float], None] | None = None,
@@ -111,8 +111,9 @@ class LoadedMechanism(SolvableMechanism):
         """The motion in time under masses, loads, springs, a motor and stops; see
         :mod:`linkwork.dynamics`.
 
-        The input is free: it starts at ``at`` with ``start_speed``. Friction of joints takes the
-        energy ``friction_work`` of the motion, and can hold the mechanism at rest.
+        All inputs are free: they start at ``at`` with ``start_speed``. Friction of joints takes the
+        energy ``friction_work`` of the motion, and can hold the mechanism at rest; with several
+        inputs it is refused.
 
         Parameters
         ----------
@@ -122,8 +123,9 @@ class LoadedMechanism(SolvableMechanism):
             Between rows [s]; by default 400 rows. Events add rows: stops, switched loads.
         at : number or Mapping[str, number], optional
             The input value at the start, in file units; by default that of the guess.
-        start_speed : str or number
-            Of the input: ``"60 rad/s"``; a number is in file units per second.
+        start_speed : str, number or Mapping[str, str or number]
+            Of the input: ``"60 rad/s"``; a number is in file units per second. Of several inputs
+            by name; those that are not named begin at rest.
         change_points : str
             ``stop`` at a change point, or go ``straight`` on.
         certify : bool

@@ -26,6 +26,7 @@ from linkwork.cli.terminal import print_json, print_lines, progress
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
+from linkwork.mechanism.dimensions import Number
 from linkwork.results.motion import Motion
 
 __all__ = ["simulate"]
@@ -37,7 +38,11 @@ __all__ = ["simulate"]
 @click.option("--step", type=float, metavar="SECONDS", help="Between rows; default 400 rows.")
 @at_option
 @click.option(
-    "--start-speed", metavar="SPEED", default="0", help='Of the input: "60 rad/s"; default 0.'
+    "--start-speed",
+    "start_speeds",
+    metavar="[INPUT=]SPEED",
+    multiple=True,
+    help='Of the input: "60 rad/s", default 0; of several "left=60 rad/s", once for each.',
 )
 @change_points_option
 @click.option("--equilibria", is_flag=True, help="List the positions of rest, and no motion.")
@@ -55,7 +60,7 @@ def simulate(
     until: float | None,
     step: float | None,
     at: tuple[str, ...],
-    start_speed: str,
+    start_speeds: tuple[str, ...],
     change_points: str,
     equilibria: bool,
     names: tuple[str, ...],
@@ -67,7 +72,7 @@ def simulate(
 ) -> None:
     """Compute the motion in time under masses, loads, springs and a motor.
 
-    The input is free: it starts at the sketch, or at --at, with --start-speed.
+    The inputs are free: they start at the sketch, or at --at, with --start-speed.
     Rows are added where loads switch and where stops are hit.
 
     \b
@@ -90,7 +95,7 @@ def simulate(
         return
     if until is None:
         raise InputError("--until is missing: the last time in seconds")
-    speed = number_or_formula(start_speed)
+    speed = _start_speed(start_speeds)
     with progress("simulating") as tell:
         motion = mechanism.simulate(
             until,
@@ -114,10 +119,29 @@ def simulate(
     if as_json:
         print_json(motion_data(motion, table))
     elif csv != "-":
-        page = simulation_lines(motion, names)
+        page = simulation_lines(motion, _inputs(mechanism), names)
         print_lines([*page, *(["", *written] if written else [])])
     if not motion.found.all():
         context.exit(1)
+
+
+def _start_speed(given: tuple[str, ...]) -> Number | dict[str, Number]:
+    """The start speed of the only input, or those of several by name."""
+    named = [text.partition("=") for text in given]
+    if not any(equals for _, equals, _ in named):
+        if len(given) > 1:
+            raise InputError("--start-speed of several inputs: name each, --start-speed left=2")
+        return number_or_formula(given[0]) if given else 0
+    found: dict[str, Number] = {}
+    for name, equals, value in named:
+        if not equals or name.strip() in found:
+            raise InputError(f"--start-speed {name}: name each input once, --start-speed left=2")
+        found[name.strip()] = number_or_formula(value.strip())
+    return found
+
+
+def _inputs(mechanism: Mechanism) -> list[str]:
+    return [each.column for each in mechanism.description.inputs]
 
 
 def _list_equilibria(
@@ -131,7 +155,7 @@ def _list_equilibria(
 
 
 def _plotted(mechanism: Mechanism, motion: Motion, names: tuple[str, ...], path: str) -> str:
-    shown = names or (mechanism.description.inputs[0].column + ".velocity",)
+    shown = names or tuple(f"{name}.velocity" for name in _inputs(mechanism))
     with progress("drawing"):
         picture.write(motion_plot(motion, shown), path)
     return f"Wrote {path}: {', '.join(shown)} over time."

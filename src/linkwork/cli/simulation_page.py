@@ -21,20 +21,17 @@ __all__ = ["equilibria_lines", "motion_data", "simulation_lines"]
 _ROUNDING = 1e-11  # of the energy: what the balance leaves open
 
 
-def simulation_lines(motion: Motion, names: Sequence[str] = ()) -> list[str]:
-    """How a simulation ended, its events and the ranges of its quantities."""
+def simulation_lines(motion: Motion, inputs: Sequence[str], names: Sequence[str] = ()) -> list[str]:
+    """How a simulation ended, its events and the ranges of its quantities, or of all variables and
+    the rates of the inputs.
+    """
     whole = bool(motion.found.all())
     message = motion.message[:1].upper() + motion.message[1:]
     lines = [*title_lines(motion.mechanism), *sentence(good if whole else bad, message)]
     lines += fields(list(_facts(motion)))
-    listed = list(names) or [*motion.unknowns, *(f"{n}.velocity" for n in _driven(motion))]
+    listed = list(names) or [*motion.unknowns, *(f"{n}.velocity" for n in inputs)]
     ranges = range_lines(motion, listed)
     return [*lines, "", *ranges] if ranges else lines
-
-
-def _driven(motion: Motion) -> Iterator[str]:
-    """The former input: the last variable of the mechanism."""
-    yield from list(motion.unknowns)[-1:]
 
 
 def _facts(motion: Motion) -> Iterator[tuple[str, str]]:

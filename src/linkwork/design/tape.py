@@ -39,10 +39,15 @@ class Tape(Consensus):
 
     Shapes of values broadcast; an operation never adds rows up, so that every row keeps derivatives
     of its own.
+
+    Parameters
+    ----------
+    count : int
+        Rows whose equations are written together; more than one have numbers of their own.
     """
 
-    def __init__(self) -> None:
-        super().__init__(1, widest=True)
+    def __init__(self, count: int = 1) -> None:
+        super().__init__(count, widest=True)
         self._parents: list[tuple[int, ...]] = []
         self._partials: list[tuple[Partial, ...]] = []
         self._real: list[bool] = []
@@ -50,9 +55,9 @@ class Tape(Consensus):
         #: Whether equations are being written, in which |x| only serves to show x without a sign.
         self.writing = False
 
-    def number(self, value: float) -> float:
-        """A number by which results are differentiated."""
-        found = self._node(np.array([value]), (), ())
+    def number(self, value: float | Array) -> float:
+        """A number by which results are differentiated; (count,) if rows have their own."""
+        found = self._node(np.atleast_1d(value), (), ())
         self.inputs.append(found.node)
         return cast(float, found)
 
@@ -78,6 +83,11 @@ class Tape(Consensus):
         # one node for a whole sum keeps the tape short
         nodes = [x.node for _, x in taped]
         return self._node(np.asarray(values), nodes, [(factor, None) for factor, _ in taped])
+
+    def decidable(self, truths: AnyArray) -> Any:
+        """Truths that rows agree on while their equations are written."""
+        together = self.writing and not self.is_shared and truths.dtype == bool
+        return Truths(truths, self) if together else truths
 
     # Arithmetic
 
@@ -105,7 +115,9 @@ class Tape(Consensus):
 
     def pick(self, truths: Truths, yes: complex, no: complex) -> Any:
         """One of two plain numbers."""
-        return yes if truths.values[0] else no
+        if self.is_shared:
+            return yes if truths.values[0] else no
+        return np.where(truths.values, yes, no)
 
     # A number that must not vary may still be written with numbers that do: 2 f / f
 
@@ -117,7 +129,14 @@ class Tape(Consensus):
 
     def value_of(self, number: Any) -> Any:
         """The value of a number."""
+        if not self.is_shared:
+            raise NotElementwise
         return number.values[0].item()
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether all rows have the same numbers."""
+        return len(self.agreeing) == 1
 
     def detached(self, number: Any) -> Any:
         """The value of a number, a constant."""
@@ -135,6 +154,8 @@ class Tape(Consensus):
         self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
     ) -> Sequence[Any] | None:
         """The solution for a right side with derivatives and a matrix without."""
+        if not self.is_shared:
+            raise NotElementwise
         a = np.array(matrix, dtype=float)
         b = np.array([self.detached(x) for x in right], dtype=float)
         if not (np.isfinite(a).all() and np.isfinite(b).all()):
@@ -155,7 +176,7 @@ class Tape(Consensus):
             return reduce(partial(self.apply, _OF_TWO[function]), given)
         bare = [x.values if isinstance(x, TapedNumber) else x for x in given]
         if function in PLAIN:
-            return function(*bare)
+            return self.decidable(function(*bare))
         rule = one_sided if function is np.abs and self.writing else RULES.get(function)
         if rule is None:
             raise NotElementwise
@@ -301,8 +322,8 @@ class TapedNumber(Lanes):
         return np.shape(self.values)
 
     def holds(self, truths: AnyArray) -> Any:
-        """Whether something holds, as a plain array."""
-        return truths
+        """Whether something holds: a plain array, or truths to be decided."""
+        return self.arithmetic.decidable(truths)
 
     def _compared(self, other: object, function: Callable[..., Any]) -> Any:
         return self.arithmetic.apply(function, self, other)
@@ -326,4 +347,8 @@ class TapedNumber(Lanes):
         return self._compared(other, np.greater_equal)
 
     def __bool__(self) -> bool:
-        return bool(self.values[0] != 0.0)
+        if self.arithmetic.is_shared:
+            return bool(self.values[0] != 0.0)
+        return self.arithmetic.decide(
+            np.broadcast_to(self.values != 0.0, self.arithmetic.agreeing.shape)
+        )

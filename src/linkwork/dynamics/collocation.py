@@ -18,18 +18,28 @@ from numpy.polynomial import legendre
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.rounding import EPSILON
 
-__all__ = ["Step", "try_step"]
+__all__ = [
+    "AT_PLACE",
+    "AT_SPEED",
+    "FIT",
+    "PLACE",
+    "POINTS",
+    "SPEED",
+    "C",
+    "Step",
+    "try_step",
+]
 
-_POINTS = 12
+POINTS = 12
 _MOST_ROUNDS = 12
 _SETTLED = 1e-15  # of the accelerations: a change that is rounding
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
 _ROUNDING, _GROWTH = 1e-9, 1.5  # of the accelerations: more is none; of steps with it
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
 
-_x, _w = legendre.leggauss(_POINTS)
-_FIT = np.linalg.inv(legendre.legvander(_x, _POINTS - 1))
-_C = 0.5 * (_x + 1.0)
+_x, _w = legendre.leggauss(POINTS)
+FIT = np.linalg.inv(legendre.legvander(_x, POINTS - 1))
+C = 0.5 * (_x + 1.0)
 
 
 def _integrals(once: AnyArray) -> Array:
@@ -37,10 +47,10 @@ def _integrals(once: AnyArray) -> Array:
     return np.stack([0.5 * legendre.legint(column, lbnd=-1) for column in once.T], axis=1)
 
 
-_SPEED = _integrals(_FIT)  # (n + 1, n)
-_PLACE = _integrals(_SPEED)  # (n + 2, n)
-_AT_SPEED = legendre.legvander(_x, _POINTS) @ _SPEED
-_AT_PLACE = legendre.legvander(_x, _POINTS + 1) @ _PLACE
+SPEED = _integrals(FIT)  # (n + 1, n)
+PLACE = _integrals(SPEED)  # (n + 2, n)
+AT_SPEED = legendre.legvander(_x, POINTS) @ SPEED
+AT_PLACE = legendre.legvander(_x, POINTS + 1) @ PLACE
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,31 +63,36 @@ class Step:
     speed: float
     accelerations: Array
 
+    @property
+    def start(self) -> tuple[float, float]:
+        """The state at its beginning."""
+        return self.s, self.speed
+
     @cached_property
     def _coefficients(self) -> Array:
         """Of the place beyond that at constant speed, the gained speed, the acceleration."""
-        found = np.zeros((_POINTS + 2, 3))
-        found[:, 0] = self.h**2 * (_PLACE @ self.accelerations)
-        found[:-1, 1] = self.h * (_SPEED @ self.accelerations)
-        found[:-2, 2] = _FIT @ self.accelerations
+        found = np.zeros((POINTS + 2, 3))
+        found[:, 0] = self.h**2 * (PLACE @ self.accelerations)
+        found[:-1, 1] = self.h * (SPEED @ self.accelerations)
+        found[:-2, 2] = FIT @ self.accelerations
         return found
 
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at times (B,) within the step."""
         x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
-        moved, gained, bend = (legendre.legvander(x, _POINTS + 1) @ self._coefficients).T
+        moved, gained, bend = (legendre.legvander(x, POINTS + 1) @ self._coefficients).T
         place: Array = self.s + 0.5 * (x + 1.0) * self.h * self.speed + moved
         return place, self.speed + gained, bend
 
     @property
     def nodes(self) -> Array:
         """The times of its points, (n,)."""
-        return self.t + self.h * _C
+        return self.t + self.h * C
 
     def integral(self, values: Array, t: Array) -> Array:
         """The integral of a function with values at the points (n,), up to times (B,)."""
         x = 2.0 * (np.asarray(t) - self.t) / self.h - 1.0
-        found: Array = legendre.legvander(x, _POINTS) @ (self.h * (_SPEED @ values))
+        found: Array = legendre.legvander(x, POINTS) @ (self.h * (SPEED @ values))
         return found
 
 
@@ -92,13 +107,13 @@ def try_step(
     """A step of the length ``h``, ``None`` if it does not succeed, the length to try next, and its
     last coefficients relative to the accelerations; ``rougher``: those of the longer step before.
     """
-    times = t + h * _C
+    times = t + h * C
     guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
-    a = np.full(_POINTS, float(guess[0]))
+    a = np.full(POINTS, float(guess[0]))
     jacobian = None
     for round_ in range(_MOST_ROUNDS):
-        w = speed + h * (_AT_SPEED @ a)
-        place = s + h * _C * speed + h**2 * (_AT_PLACE @ a)
+        w = speed + h * (AT_SPEED @ a)
+        place = s + h * C * speed + h**2 * (AT_PLACE @ a)
         if jacobian is None or round_ == _MOST_ROUNDS // 2:
             found, jacobian = _linearise(acceleration, place, w, times, h)
         else:
@@ -108,18 +123,18 @@ def try_step(
         change = np.linalg.solve(jacobian, found - a)
         a = a + change
         size = np.abs(a).max() + abs(speed) / abs(h)
-        if np.abs(change).max() <= _SETTLED * _POINTS * size:
+        if np.abs(change).max() <= _SETTLED * POINTS * size:
             break
     else:
         if np.abs(change).max() > 1e-10 * size:
             return None, 0.5 * h, math.inf
-    tail, largest = float(np.abs((_FIT @ a)[-2:]).max()), float(np.abs(a).max())
+    tail, largest = float(np.abs((FIT @ a)[-2:]).max()), float(np.abs(a).max())
     scale = max(abs(speed), abs(h) * largest)
     rough = tail / largest if largest > 0.0 else 0.0
     error = abs(h) * tail / scale if scale > 0.0 else 0.0
     factor = _LARGEST
     if error > 0.0:
-        factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / _POINTS))
+        factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS))
     # where large forces balance, what a shorter step does not reduce is their rounding
     noise = rough < _ROUNDING and rough > 0.5 * rougher
     if error > 30.0 * _TOLERANCE and not noise:
@@ -148,8 +163,6 @@ def _linearise(
     ).reshape(3, -1)
     by_place, by_speed = (many[1] - many[0]) / ds, (many[2] - many[0]) / dw
     jacobian = (
-        np.eye(_POINTS)
-        - by_place[:, None] * (h**2 * _AT_PLACE)
-        - by_speed[:, None] * (h * _AT_SPEED)
+        np.eye(POINTS) - by_place[:, None] * (h**2 * AT_PLACE) - by_speed[:, None] * (h * AT_SPEED)
     )
     return many[0], jacobian

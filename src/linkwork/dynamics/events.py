@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -55,6 +56,25 @@ class Event:
 Margins = Callable[[Array, Array, Array], Array]
 
 
+class Between(Protocol):
+    """A step of one number or several, with the states between its ends."""
+
+    @property
+    def t(self) -> float:
+        """Its beginning."""
+
+    @property
+    def h(self) -> float:
+        """Its length."""
+
+    @property
+    def start(self) -> tuple[float, float] | tuple[Array, Array]:
+        """The state at its beginning."""
+
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
+        """States and accelerations at times (B,)."""
+
+
 def margins_on(
     leg: ReducedLeg, bounds: Sequence[Bound], rubbing: Rubbing | None, gain: Array
 ) -> Margins:
@@ -89,13 +109,16 @@ def shorter_step(step: Step, low: float, high: float) -> float | None:
     return max(within, 0.5 * float(times[k] - step.t))
 
 
-def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> Event | None:
+def first_event(step: Between, end: float, margins: Margins, comparisons: int) -> Event | None:
     """The first sign change of margins (B, K) on a step up to the time ``end``.
 
     All but the last ``comparisons`` margins count only where they become negative.
     """
     times = np.linspace(step.t, end, _LOOKS + 1)
-    values = margins(*step.at(times)[:2], times)
+    s, speed, _ = step.at(times)
+    # the polynomials meet their beginning only to rounding, which must hide no switch at rest
+    s[0], speed[0] = step.start
+    values = margins(s, speed, times)
     falling = np.arange(values.shape[1]) < values.shape[1] - comparisons
     changes = (values[1:] > 0.0) != (values[:-1] > 0.0)
     changes &= ~falling | (values[:-1] > 0.0)
@@ -113,13 +136,14 @@ def first_event(step: Step, end: float, margins: Margins, comparisons: int) -> E
 
 
 def _located(
-    step: Step, margins: Margins, number: int, times: Array, values: Array
+    step: Between, margins: Margins, number: int, times: Array, values: Array
 ) -> tuple[float, float]:
     """Just before and just after the sign change between two times."""
     (low, high), (below, above) = times.tolist(), values.tolist()
     for _ in range(_ROUNDS):
         width = high - low
-        if width <= 4.0 * np.spacing(max(abs(low), abs(high))):
+        # at t = 0 the step gives the scale
+        if width <= 4.0 * np.spacing(max(abs(low), abs(high), step.h)):
             break
         guess = low + width * below / (below - above)
         # around the place on the straight line, and in the middle if that is of no use

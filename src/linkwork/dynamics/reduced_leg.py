@@ -175,13 +175,7 @@ class ReducedLeg:
         return total
 
     def margins(self, s: Array, speed: Array, t: Array, gain: Array) -> Array:
-        """Left minus right side of all comparisons, (B, comparisons)."""
+        """The margins of all comparisons, (B, comparisons)."""
         moving = self.state(s, speed, t, gain).moving
         applied = AppliedLoads(moving, 1.0, switches=self.reduction.switches)
-        return np.stack(
-            [
-                applied.formula(each.left) - applied.formula(each.right)
-                for each in self.reduction.comparisons
-            ],
-            axis=1,
-        )
+        return np.stack(self.reduction.margins(applied), axis=1)

@@ -39,6 +39,9 @@ class Displaced(Geometry):
         return np.ones(1)
 
 
+_RISING = ("<", ">=")  # comparisons whose margin is the right side minus the left one
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
     """B states on a leg: rows with their rates in time, and the displacements by the leader."""
@@ -137,6 +140,24 @@ class Reduction:
         own = self.description
         kind = "link" if self.model.equations.inputs[0].kind == "angle" else "slider"
         return self.motor.curve(kind, own.numbers, own.length)
+
+    def margins(self, applied: AppliedLoads) -> list[Array]:
+        """Of all comparisons, (B,) each: positive where "<" or ">" is true, "<=" or ">=" is not.
+
+        So 0 is on its right side.
+        """
+        formula = applied.formula
+        return [
+            (formula(each.left) - formula(each.right)) * (-1.0 if each.operator in _RISING else 1.0)
+            for each in self.comparisons
+        ]
+
+    def switch(self, margins: Sequence[float]) -> None:
+        """Let every comparison have the value that belongs to its margin."""
+        values: dict[Node, float] = {}
+        for each, margin in zip(self.comparisons, margins, strict=True):
+            values[each] = float((margin > 0.0) == (each.operator in ("<", ">")))
+        self.switches = FrozenDict(values)
 
     def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
         """Rows (B, N) with derivatives by time, or by a leader."""

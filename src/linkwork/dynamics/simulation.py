@@ -1,4 +1,4 @@
-"""Simulation: the motion in time of a mechanism with one input, from its start under its loads."""
+"""Simulation: the motion in time of a mechanism from its start under its loads."""
 
 from __future__ import annotations
 
@@ -8,19 +8,18 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.dynamics.curve import PositionCurve, curve_of
-from linkwork.dynamics.events import Bound
+from linkwork.dynamics.input_simulation import simulate_inputs
 from linkwork.dynamics.reduction import Forcing, Reduction
 from linkwork.dynamics.sample import Sample
+from linkwork.dynamics.simulated import bounds_of, check_loaded, model_name, start_speeds
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem
+from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told, finite_number
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
 from linkwork.foundation.value_types import check_flags
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.loaded import LoadedBodies
-from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
@@ -41,7 +40,7 @@ def simulate(
     until: float,
     step: float | None = None,
     at: float | Mapping[str, float] | None = None,
-    start_speed: Number = 0,
+    start_speed: Number | Mapping[str, Number] = 0,
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
     certify: bool = True,
     forcing: Sequence[Forcing] = (),
@@ -57,8 +56,9 @@ def simulate(
         Between rows [s]; by default 400 rows.
     at : number, optional
         The input value at the start, in file units; by default that of the guess.
-    start_speed : str or number
-        Of the input: ``"60 rad/s"``; a number is in file units per second.
+    start_speed : str, number or Mapping[str, str or number]
+        Of the input: ``"60 rad/s"``; a number is in file units per second. Of several by name;
+        those that are not named begin at rest.
     change_points : str
         ``stop`` at change points, or go ``straight`` on.
     certify : bool
@@ -71,19 +71,26 @@ def simulate(
     Raises
     ------
     InputError
-        If nothing has mass, the mechanism has not one input, or a law drives it.
+        If nothing has mass, the mechanism has no input, a law drives it, or it has several inputs
+        and friction.
     """
     check_flags(progress, certify=certify)
     times = _times(until, step)
     policy = ChangePointPolicy.of(change_points)
     if policy is ChangePointPolicy.TURN:
         raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
-    speed = _start_speed(model, start_speed)
+    if len(model.description.inputs) > 1:
+        check_loaded(model)
+        return simulate_inputs(
+            model, times=times, at=at, start_speed=start_speed, policy=policy, certify=certify,
+            forced=bool(forcing), progress=progress,
+        )  # fmt: skip
+    speed = float(start_speeds(model, start_speed)[0])
     reduction, curve = start_of(model, at, policy, certify, forcing)
     travel = Travel(
         curve=curve,
         reduction=reduction,
-        bounds=_bounds(reduction.named),
+        bounds=bounds_of(reduction.named),
         times=times,
         progress=progress,
     )
@@ -109,18 +116,11 @@ def start_of(
 
 
 def _check(model: Model) -> None:
-    description = model.description
-    name = f"“{description.name}”".replace("“", '"').replace("”", '"')
-    if not isinstance(description, LoadedBodies):
-        raise InputError(f"{name} has plain equations: only links have masses")
-    if description.timed:
-        raise InputError(f"a law drives {name}: leave it out to simulate")
+    description = check_loaded(model)
     if len(description.inputs) != 1:
         raise InputError(
-            f"{name} has {len(description.inputs)} inputs: a simulation needs one degree of freedom"
+            f"{model_name(model)} has {len(description.inputs)} inputs: equilibria need one"
         )
-    if not description.masses and description.inputs[0].inertia is None:
-        raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
 
 
 def _times(until: float, step: float | None) -> Array:
@@ -135,46 +135,6 @@ def _times(until: float, step: float | None) -> Array:
     count = int(np.floor(until / step + 1e-9))
     times = step * np.arange(1.0, count + 1)
     return times if abs(times[-1] - until) < 1e-9 * step else np.append(times, until)
-
-
-def _start_speed(model: Model, given: Number) -> float:
-    description = model.description
-    if not description.inputs:
-        return 0.0
-    kind = description.inputs[0].drives[0]
-    try:
-        own = speed_per_second(given, kind, description.numbers, description.length)
-    except ExpressionError as error:
-        raise InputError(f"start speed: {error.message}") from None
-    return own * float(model.input_scale[0])
-
-
-def _bounds(named: Model) -> list[Bound]:
-    description = named.description
-    assert isinstance(description, LoadedBodies)
-    found, problems = [], []
-    numbers = description.numbers
-    for k, stop in enumerate(description.stops):
-        own = named.motion_quantities
-        try:
-            asked = own.find(stop.of)
-        except InputError as error:
-            problems.append(Problem(key=("stops", k, "of"), message=str(error)))
-            continue
-        for value, side in ((stop.start, 1.0), (stop.stop, -1.0)):
-            if value is not None:
-                found.append(
-                    Bound(
-                        stop=stop,
-                        asked=asked,
-                        value=numbers(value),
-                        side=side,
-                        restitution=numbers(stop.restitution),
-                    )
-                )
-    if problems:
-        raise MechanismError(problems, f'mechanism "{description.name}"')
-    return found
 
 
 def _check_inside(travel: Travel) -> None:

@@ -16,7 +16,6 @@ from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.dynamics.reduction import Reduction
 from linkwork.dynamics.sample import Sample
 from linkwork.dynamics.stiction import release, starting_directions
-from linkwork.expression.tree import Node
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
 
@@ -205,13 +204,7 @@ class Travel:
             return
         s, speed, t = (np.array([x]) for x in (self.s, self.speed, self.t))
         self.reduction.switches = FrozenDict()
-        margins = self.leg.margins(s, speed, t, self.gain)[0]
-        values: dict[Node, float] = {}
-        for each, margin in zip(self.reduction.comparisons, margins, strict=True):
-            over = margin >= 0.0 if each.operator == ">=" else margin > 0.0
-            under = margin <= 0.0 if each.operator == "<=" else margin < 0.0
-            values[each] = float(over if each.operator.startswith(">") else under)
-        self.reduction.switches = FrozenDict(values)
+        self.reduction.switch(self.leg.margins(s, speed, t, self.gain)[0].tolist())
 
     def _check_chatter(self) -> None:
         self.recent = [t for t in self.recent if t > self.t - _CHATTER * self.until] + [self.t]
@@ -219,9 +212,10 @@ class Travel:
             return
         self.ended = "a comparison in a load switches without end there"
         fastest = max(abs(sample.speed) for sample in self.samples)
-        if "t" not in self.reduction.names and abs(self.speed) < _AT_REST * fastest:
-            # pushed back as soon as it moves either way: it stays
-            self.ended, self.held = "", self.recent[0]
+        slow = max(_AT_REST * fastest, abs(self._now()) * _CHATTER * self.until)
+        if "t" not in self.reduction.names and abs(self.speed) < slow:
+            # pushed back either way, also at a speed that the loads give in that time: it stays
+            self.ended, self.held = "", self.recent[0] * (self.recent[0] > _SHORTEST * self.until)
             self.holder = "a load that switches there"
             chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
             self.samples = [k for k in self.samples if k not in chatter]

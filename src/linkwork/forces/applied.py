@@ -30,8 +30,8 @@ __all__ = ["AppliedLoads", "Body", "time_of"]
 class Body:
     """A mass in motion: its weight and inertia as a force and a torque, (B,) each.
 
-    ``centre`` in the link's frame, ``place`` at rest on ground; the rates are those of its weight's
-    work and of its kinetic energy.
+    ``centre`` in the link's frame, ``place`` at rest on ground; ``mass`` and ``inertia`` in the
+    unit of force; the rates are those of its weight's work and of its kinetic energy.
     """
 
     link: str
@@ -39,6 +39,8 @@ class Body:
     place: ComplexArray
     force: ComplexArray
     torque: Array
+    mass: float
+    inertia: float | Array
     weight_rate: Array
     kinetic_rate: Array
 
@@ -156,6 +158,8 @@ class AppliedLoads:
                 # weight and inertia of eq. (71) as one load
                 force=as_complex(mass * (fall - bend)),
                 torque=-inertia * turned,
+                mass=mass,
+                inertia=inertia,
                 weight_rate=falling,
                 kinetic_rate=mass * (velocity.conj() * bend).real + inertia * spin * turned,
             )

@@ -12,6 +12,7 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
+from linkwork.foundation.deferred import Deferred
 from linkwork.foundation.disjoint_sets import DisjointSets
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.foundation.names import canonical
@@ -22,6 +23,7 @@ from linkwork.foundation.value_types import check_flags
 from linkwork.motion import failure as why
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
 from linkwork.motion.circuit.seeding import Seeding
+from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.circuit.weakest import weakest_place
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
@@ -83,7 +85,7 @@ class _Circuits:
         self.model, self.certify = model, certify
         self.drive = Drive.through(model, model.start_inputs, rate, lead)
         self.leads = self.drive.leads
-        self.explorer = Explorer(self.leads, certify, _FINE)
+        self.explorer = Explorer(Walks(self.leads, certify), _FINE)
         self.seeding = Seeding(self.drive, self.explorer)
 
     def result(self) -> Circuits:
@@ -136,22 +138,26 @@ class _Circuits:
     def _fits(self, arc: Arc) -> bool:
         """Whether redundant links fit all along an arc."""
         equations = self.model.equations
-        return all((misfit(equations, branch.v) <= FITS).all() for branch in arc.branches)
+        if not equations.redundant:
+            return True
+        branches = self.explorer.solved_branches(arc)
+        return all((misfit(equations, branch.v) <= FITS).all() for branch in branches)
 
     def _circuit(self, name: str, group: _Group) -> Circuit:
-        p, scale = self.leads.parameter, self.drive.unit
+        scale = self.drive.unit
         pieces = [(arc, branch) for arc in group.arcs for branch in arc.branches]
         branches = [branch for _, branch in pieces]
         named = tuple(
             self._branch(f"{name} branch {number}", arc, branch)
             for number, (arc, branch) in enumerate(pieces, start=1)
         )
-        ranges = np.array([branch.range(p) for branch in branches]) / scale
+        ranges = np.array([branch.range(self.leads.parameter) for branch in branches]) / scale
         turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
         end = _end_of(group)
-        motion = self._motion(branches, named)
         limits = [limit.v for limit in turns] + [limit.v for limit in group.crossings]
-        singular, weakest = (0.0, limits[0]) if limits else weakest_place(self.leads, branches)
+        solved = Deferred(
+            lambda: [b for arc in group.arcs for b in self.explorer.solved_branches(arc)]
+        )
         around = self._around(group) if end.closed else None
         return Circuit(
             name=name,
@@ -168,10 +174,16 @@ class _Circuits:
             change_points=tuple(
                 change_point_limit(self.drive, crossing) for crossing in group.crossings
             ),
-            smallest_singular_value=singular,
-            weakest=float(weakest[p] / scale),
-            motion=motion,
+            weakness=Deferred(lambda: self._weakness(limits, solved.value)),
+            course=Deferred(lambda: self._motion(solved.value, named)),
         )
+
+    def _weakness(
+        self, limits: Sequence[Array], branches: Sequence[CurveBranch]
+    ) -> tuple[float, float]:
+        """The smallest singular value, and the input there in file units."""
+        singular, v = (0.0, limits[0]) if limits else weakest_place(self.leads, branches)
+        return singular, float(v[self.leads.parameter] / self.drive.unit)
 
     def _branch(self, name: str, arc: Arc, branch: CurveBranch) -> Branch:
         low, high = branch.range(self.leads.parameter)

@@ -12,7 +12,12 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.status import Status
-from linkwork.numerics.continuation.branch_tracking import Track, TrackOptions, rows_on_track
+from linkwork.numerics.continuation.branch_tracking import (
+    Track,
+    TrackOptions,
+    interpolate,
+    rows_on_track,
+)
 from linkwork.numerics.continuation.crossed_step import cut_at_crossing
 from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.continuation.curve_tracing import (
@@ -25,7 +30,16 @@ from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.continuation.turning_point import TurningPoint, turning_points
 from linkwork.results.motion import LimitKind
 
-__all__ = ["CurveBranch", "TracedCurve", "branches_of", "trace_with_proof"]
+__all__ = [
+    "CurveBranch",
+    "TracedCurve",
+    "branches_of",
+    "confirmed",
+    "trace_boldly",
+    "trace_with_proof",
+]
+
+_CAREFUL = CurveOptions(track=TrackOptions())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,28 +62,53 @@ def trace_with_proof(
     leads: Parametrizations, start: Array, heading: float | Array, certify: bool
 ) -> TracedCurve:
     """Trace a curve with bold steps; with careful ones if these are not proved or not to be."""
-    best: TracedCurve | None = None
-    own = leads.with_parameter(leads.parameter)
-    proves = certify and own is not None and own.provable
-    careful = CurveOptions(track=TrackOptions())
-    for care in (CurveOptions(), careful) if proves else (careful,):
-        curve = trace(leads, start, heading, care)
+    found = trace_boldly(leads, start, heading, certify)
+    if not certify or not found.curve.legs:
+        return found
+    return confirmed(leads, start, heading, found, prove_curve(leads, found.curve))
+
+
+def trace_boldly(
+    leads: Parametrizations, start: Array, heading: float | Array, certify: bool
+) -> TracedCurve:
+    """A curve whose proof is still to be made; with careful steps if there will be none."""
+    bold = certify and _provable(leads)
+    curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL)
+    return TracedCurve(curve=curve, proof=None, turns=tuple(turning_points(leads, curve)))
+
+
+def confirmed(
+    leads: Parametrizations,
+    start: Array,
+    heading: float | Array,
+    found: TracedCurve,
+    proof: ProvenCurve,
+) -> TracedCurve:
+    """A curve with its proof; where bold steps are not proved, traced again with careful ones."""
+    best = careful = replace(found, proof=proof)
+    if best.certified:
+        return best
+    if _provable(leads):
+        curve = trace(leads, start, heading, _CAREFUL)
+        careful = TracedCurve(curve=curve, proof=None, turns=())
         if not curve.legs:
-            return TracedCurve(curve=curve, proof=None, turns=())
-        proof = prove_curve(leads, curve) if certify else None
-        found = TracedCurve(curve=curve, proof=proof, turns=())
-        if best is None or found.certified:
-            best = found
-        if best.certified:
-            break
-        if proof is not None and proof.broken is not None and care is careful:
-            # a step across a change point cannot be proved; the way up to that can
-            cut = cut_at_crossing(leads, curve, *proof.broken)
-            if cut is not None:
-                found = TracedCurve(curve=cut, proof=prove_curve(leads, cut), turns=())
-                best = found if found.certified else best
-    assert best is not None
+            return careful
+        careful = replace(careful, proof=prove_curve(leads, curve))
+        best = careful if careful.certified else best
+    if careful.proof is not None and careful.proof.broken is not None and not careful.certified:
+        # a step across a change point cannot be proved; the way up to that can
+        cut = cut_at_crossing(leads, careful.curve, *careful.proof.broken)
+        if cut is not None:
+            shorter = TracedCurve(curve=cut, proof=prove_curve(leads, cut), turns=())
+            best = shorter if shorter.certified else best
+    if best.curve is found.curve:
+        return best
     return replace(best, turns=tuple(turning_points(leads, best.curve)))
+
+
+def _provable(leads: Parametrizations) -> bool:
+    own = leads.with_parameter(leads.parameter)
+    return own is not None and own.provable
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,44 +152,50 @@ class CurveBranch:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Sample:
+class _Samples:
+    """Positions (K, N) with one leader, the parameter's speed there to the fastest, (K,), and the
+    kind of limit that they are, if any.
+    """
+
     v: Array
-    ratio: float  # of the parameter's speed to the fastest
+    ratio: Array
     leader: Parametrization
     limit: str = ""
 
 
-def branches_of(leads: Parametrizations, found: TracedCurve, fine: int = 1) -> list[CurveBranch]:
+def branches_of(
+    leads: Parametrizations, found: TracedCurve, fine: int = 1, *, solved: bool = True
+) -> list[CurveBranch]:
     """The branches in the order of travel; of a closed curve the first one is whole.
 
     Parameters
     ----------
     fine : int
         Positions per step of the curve.
+    solved : bool
+        Whether those between nodes are solved, too, or interpolated.
     """
-    pieces: list[list[_Sample]] = [[]]
+    pieces: list[list[_Samples]] = [[]]
     ends: list[TurningPoint] = []
     proved = [True]
-    waiting = list(found.turns)
     for number, leg in enumerate(found.curve.legs):
-        t, v, ratio = _samples(leads, leg, fine)
-        sign = 1.0 if t[-1] >= t[0] else -1.0
-        for k in range(len(t) + 1):  # behind the last position, too
-            here = sign * t[k] if k < len(t) else np.inf
-            while waiting and waiting[0].leg == number and sign * waiting[0].node.t < here:
-                turn = waiting.pop(0)
-                at = _Sample(v=turn.v, ratio=0.0, leader=leg.led, limit=LimitKind.DEAD_POINT.word)
-                pieces[-1].append(at)
-                ends.append(turn)
-                pieces.append([at])
-                proved.append(found.certified)
-            if k < len(t):
-                pieces[-1].append(_Sample(v=v[k], ratio=float(ratio[k]), leader=leg.led))
+        t, here = _samples(leads, leg, fine, solved)
+        sign, begin = 1.0 if t[-1] >= t[0] else -1.0, 0
+        for turn in found.turns:
+            if turn.leg != number:
+                continue
+            stop = int(np.searchsorted(sign * t, sign * turn.node.t, side="right"))
+            at = _limit(turn.v, leg.led, LimitKind.DEAD_POINT)
+            pieces[-1] += [_slice(here, begin, stop), at]
+            begin = stop
+            ends.append(turn)
+            pieces.append([at])
+            proved.append(found.certified)
+        pieces[-1].append(_slice(here, begin, len(t)))
     crossing = found.curve.crossing
     if crossing is not None and found.curve.legs:
         led = found.curve.legs[-1].led
-        word = LimitKind.CHANGE_POINT.word
-        pieces[-1].append(_Sample(v=led.whole(crossing.v), ratio=0.0, leader=led, limit=word))
+        pieces[-1].append(_limit(led.whole(crossing.v), led, LimitKind.CHANGE_POINT))
     begins: list[TurningPoint | None] = [None, *ends]
     finishes: list[TurningPoint | None] = [*ends, None]
     branches = [
@@ -169,43 +214,57 @@ def branches_of(leads: Parametrizations, found: TracedCurve, fine: int = 1) -> l
     return branches
 
 
-def _samples(leads: Parametrizations, leg: Leg, fine: int) -> tuple[Array, Array, Array]:
-    """Positions along a leg: the leader's values, (K, N), the parameter's speed to the fastest."""
-    nodes = leg.nodes
+def _limit(v: Array, led: Parametrization, kind: LimitKind) -> _Samples:
+    return _Samples(v=v[None, :], ratio=np.zeros(1), leader=led, limit=kind.word)
+
+
+def _slice(samples: _Samples, begin: int, end: int) -> _Samples:
+    return replace(samples, v=samples.v[begin:end], ratio=samples.ratio[begin:end])
+
+
+def _samples(leads: Parametrizations, leg: Leg, fine: int, solved: bool) -> tuple[Array, _Samples]:
+    """Positions along a leg and the leader's values there, (K,)."""
+    nodes, led = leg.nodes, leg.led
     t = np.array([node.t for node in nodes])
-    if fine > 1 and len(t) > 1:
-        steps = np.linspace(0.0, 1.0, fine + 1)[:-1]
-        t = np.append((t[:-1, None] + np.diff(t)[:, None] * steps).ravel(), t[-1])
-    sign = 1.0 if t[-1] >= t[0] else -1.0
-    ordered = nodes if sign > 0 else nodes[::-1]
-    track = Track(nodes=tuple(ordered), start=0)
-    led = leg.led
-    if fine > 1 and len(t) > 1:
+    if fine == 1 or len(t) == 1:
+        return t, _Samples(v=leg.v, ratio=_ratio(leads, leg.first), leader=led)
+    steps = np.linspace(0.0, 1.0, fine + 1)[:-1]
+    t = np.append((t[:-1, None] + np.diff(t)[:, None] * steps).ravel(), t[-1])
+    track = Track(nodes=nodes if t[-1] >= t[0] else nodes[::-1], start=0)
+    if solved:
         rows = rows_on_track(led.solver, led.path, track, t)
         good = rows.status == Status.CONVERGED.code
-        t, v, first = t[good], led.whole(rows.v[good]), led.whole(rows.first[good])
-    else:
-        v, first = leg.v, leg.first
+        v, ratio = led.whole(rows.v[good]), _ratio(leads, led.whole(rows.first[good]))
+        return t[good], _Samples(v=v, ratio=ratio, leader=led)
+    v, ratio = led.whole(interpolate(track, t)[0]), np.zeros(len(t))
+    v[::fine], ratio[::fine] = leg.v, _ratio(leads, leg.first)
+    return t, _Samples(v=v, ratio=ratio, leader=led)
+
+
+def _ratio(leads: Parametrizations, first: Array) -> Array:
+    """The parameter's speed to the fastest, (K,), from rates (K, N)."""
     speed = np.abs(first) / leads.scale
-    return t, v, speed[:, leads.parameter] / speed.max(axis=1)
+    ratio: Array = speed[:, leads.parameter] / speed.max(axis=1)
+    return ratio
 
 
 def _branch(
     parameter: int,
-    samples: Sequence[_Sample],
+    samples: Sequence[_Samples],
     begin: TurningPoint | None,
     end: TurningPoint | None,
     proved: bool,
 ) -> CurveBranch:
-    best = max(samples, key=lambda sample: sample.ratio)
-    v = np.stack([sample.v for sample in samples])
+    v = np.concatenate([part.v for part in samples])
+    best = max(samples, key=lambda part: part.ratio.max(initial=-1.0))
+    at = int(best.ratio.argmax())
     return CurveBranch(
         side=float(np.sign(v[-1, parameter] - v[0, parameter])) or 1.0,
         v=v,
-        limits=tuple(sample.limit for sample in samples),
-        anchor=best.v,
+        limits=tuple(part.limit for part in samples for _ in part.v),
+        anchor=best.v[at],
         leader=best.leader,
-        ratio=best.ratio,
+        ratio=float(best.ratio[at]),
         begin=begin,
         end=end,
         proved=proved,

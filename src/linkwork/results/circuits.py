@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.deferred import Deferred
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.presenting import presenter
@@ -86,14 +87,10 @@ class Circuit:
         In the order of travel.
     dead_points, change_points : tuple of Limit
         Where the input reverses, and where curves cross.
-    smallest_singular_value : float
-        σ_min of diag(1/s) J diag(w) along the circuit, to rounding; 0 at dead points and change
-        points. J is the Jacobian with respect to all unknowns at a fixed input, s a length of each
-        loop, w 1 rad or a length for each unknown.
-    weakest : float
-        The input value at which that singular value is smallest [file units].
-    motion : Motion
-        Positions along the circuit in the order of travel, branch by branch.
+    weakness : Deferred of (float, float)
+        ``smallest_singular_value`` and ``weakest``, computed when one of them is first read.
+    course : Deferred of Motion
+        ``motion``, computed when it is first read.
 
     Examples
     --------
@@ -114,9 +111,28 @@ class Circuit:
     branches: tuple[Branch, ...]
     dead_points: tuple[Limit, ...] = ()
     change_points: tuple[Limit, ...] = ()
-    smallest_singular_value: float
-    weakest: float
-    motion: Motion
+    weakness: Deferred[tuple[float, float]] = field(repr=False)
+    course: Deferred[Motion] = field(repr=False)
+
+    @property
+    def smallest_singular_value(self) -> float:
+        """σ_min of diag(1/s) J diag(w) along the circuit, to rounding; 0 at dead points and change
+        points.
+
+        J is the Jacobian with respect to all unknowns at a fixed input, s a length of each loop, w
+        1 rad or a length for each unknown.
+        """
+        return self.weakness.value[0]
+
+    @property
+    def weakest(self) -> float:
+        """The input value at which that singular value is smallest [file units]."""
+        return self.weakness.value[1]
+
+    @property
+    def motion(self) -> Motion:
+        """Positions along the circuit in the order of travel, branch by branch."""
+        return self.course.value
 
     @property
     def closed(self) -> bool:

@@ -88,3 +88,19 @@ def test_a_photograph_is_scaled_and_stays_in_the_browser(open_sheet: Callable[..
     page.get_by_role("button", name="Photograph behind the drawing").click()
     page.get_by_role("button", name="Remove", exact=True).click()
     assert image.count() == 0
+
+
+@pytest.mark.extended
+def test_a_flat_view_of_a_sketch_does_not_grow(open_sheet: Callable[..., Sheet]) -> None:
+    sheet = open_sheet()
+    sheet.drag((-60, -20), (20, 20))
+    width = "svg => svg.viewBox.baseVal.width"
+    drawing = sheet.page.locator(".lw-drawing")
+    for name, height in {"height": "20px", "min-height": "0"}.items():
+        drawing.evaluate(f"svg => svg.style.setProperty('{name}', '{height}', 'important')")
+    widths = []
+    for _ in range(4):  # symbols are sized by the view, and the view by the symbols
+        sheet.key("f")
+        sheet.page.wait_for_timeout(400)
+        widths.append(drawing.evaluate(width))
+    assert max(widths) < 1e3, widths

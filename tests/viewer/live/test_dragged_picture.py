@@ -78,7 +78,8 @@ def _canvas(page: Any) -> int:
 @pytest.mark.parametrize(
     ("example", "length"),
     [
-        ("jansen-leg", "O A"),
+        ("four-bar", None),
+        pytest.param("jansen-leg", "O A", marks=pytest.mark.extended),
         pytest.param("crank-press", "O A", marks=pytest.mark.extended),
         pytest.param("cam-roller-follower", None, marks=pytest.mark.extended),
     ],

@@ -180,10 +180,8 @@ def test_a_worker_cancels_between_two_steps() -> None:
     assert '"answers":1' in events[-1]
 
 
-def test_a_simulation_plays_in_its_own_time(
-    serve: Callable[[Workbench], Any], watched: Callable[..., Any], swing: Workbench
-) -> None:
-    server = serve(swing)
+def _simulated(server: Any, watched: Callable[..., Any]) -> Any:
+    """A page that shows a simulation."""
     page = watched((f"http://127.0.0.1:{server.port}/",), reduced_motion="no-preference")
     page.goto(server.address)
     page.wait_for_selector(".lw[data-row]")
@@ -192,6 +190,26 @@ def test_a_simulation_plays_in_its_own_time(
     page.get_by_label("Start speed").fill("10 deg/s")
     page.get_by_label("Until").press("Enter")
     page.wait_for_selector('.lw-simulate [data-complete="true"]')
+    return page
+
+
+def test_events_of_a_simulation_lead_to_their_rows(
+    serve: Callable[[Workbench], Any], watched: Callable[..., Any], swing: Workbench
+) -> None:
+    page = _simulated(serve(swing), watched)
+    own = lw.loads(PENDULUM).simulate(1.5, start_speed="10 deg/s")
+    hits = [row for row, word in enumerate(own.limit) if word]
+    assert page.locator(".lw-marks span").count() == len(hits)
+    page.locator(".lw-events button").first.click()
+    assert "stop of bar" in page.locator(".lw-readout").inner_text()
+    assert int(page.locator(".lw").get_attribute("data-row")) == hits[0]
+
+
+@pytest.mark.extended
+def test_a_simulation_plays_in_its_own_time(
+    serve: Callable[[Workbench], Any], watched: Callable[..., Any], swing: Workbench
+) -> None:
+    page = _simulated(serve(swing), watched)
     own = lw.loads(PENDULUM).simulate(1.5, start_speed="10 deg/s")
     hits = [row for row, word in enumerate(own.limit) if word]
 
@@ -203,10 +221,7 @@ def test_a_simulation_plays_in_its_own_time(
     page.wait_for_timeout(300)
     # a slow page leaves time out, but none plays faster
     assert 0.0 < clock() - began < 0.1 * (time.monotonic() - passed) + 0.02
-    assert page.locator(".lw-marks span").count() == len(hits)
     page.locator(".lw-events button").first.click()
-    assert "stop of bar" in page.locator(".lw-readout").inner_text()
-    assert int(page.locator(".lw").get_attribute("data-row")) == hits[0]
     chart = page.locator(".lw-chart").last
     assert chart.get_by_label("Quantity to plot").input_value() == "bar"
     assert chart.get_by_label("Rate").input_value() == "velocity"

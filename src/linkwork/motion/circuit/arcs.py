@@ -15,7 +15,8 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.foundation.status import Status
-from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of, trace_with_proof
+from linkwork.motion.circuit.walks import Walks
+from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -39,7 +40,7 @@ class Arc:
 
     ``up``: the walk that began forwards; ``down``: the one backwards, if the first did not close.
     ``crossings``: numbers of the change points at its ends. ``branches``: in the order start's own,
-    onwards, backwards.
+    onwards, backwards; their positions between the nodes of the curve are interpolated.
     """
 
     up: TracedCurve
@@ -64,19 +65,32 @@ class Explorer:
 
     Parameters
     ----------
-    leads : Parametrizations
-    certify : bool
-        Prove every curve.
+    walks : Walks
     fine : int
         Positions per step that branches keep.
     """
 
-    def __init__(self, leads: Parametrizations, certify: bool, fine: int) -> None:
-        self.leads, self.certify, self.fine = leads, certify, fine
+    def __init__(self, walks: Walks, fine: int) -> None:
+        self.walks, self.leads, self.fine = walks, walks.leads, fine
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget everything but the walks."""
         self.arcs: list[Arc] = []
         self.crossings: list[Crossing] = []
         self._covered: set[tuple[int, int, float]] = set()
         self._passed: list[tuple[Array, int]] = []
+
+    def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
+        """The branches of an arc, all their positions solved."""
+        return tuple(_branches(self.leads, arc.up, arc.down, self.fine, solved=True))
+
+    def settle(self) -> bool:
+        """Prove all arcs; false if one was replaced, so that others may follow from it."""
+        remain = self.walks.settle()
+        if remain:
+            self.arcs = [_with_proofs(arc, self.walks) for arc in self.arcs]
+        return remain
 
     def visit(self, seed: Array) -> int:
         """The number of the arc through a position at which the parameter can lead.
@@ -127,7 +141,7 @@ class Explorer:
             down=down,
             end=reason,
             crossings=tuple(ends),
-            branches=tuple(_branches(self.leads, up, down, self.fine)),
+            branches=tuple(_branches(self.leads, up, down, self.fine, solved=False)),
         )
         if _rests(self.leads, arc):
             arc = replace(arc, end=CircuitEnd.INPUT_CONSTANT)
@@ -139,7 +153,7 @@ class Explorer:
 
     def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = trace_with_proof(self.leads, start, heading, self.certify)
+        walk = self.walks.walk(start, heading)
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
@@ -184,6 +198,17 @@ class Explorer:
         return number
 
 
+def _with_proofs(arc: Arc, walks: Walks) -> Arc:
+    proved = replace(
+        arc,
+        up=walks.with_proof(arc.up),
+        down=None if arc.down is None else walks.with_proof(arc.down),
+    )
+    # the first branch needs no way to it
+    others = [replace(branch, proved=proved.certified) for branch in arc.branches[1:]]
+    return replace(proved, branches=(*arc.branches[:1], *others))
+
+
 def _unit(direction: Array) -> Array:
     unit: Array = direction / np.linalg.norm(direction)
     return unit
@@ -213,11 +238,15 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
 
 
 def _branches(
-    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, fine: int
+    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, fine: int, *, solved: bool
 ) -> list[CurveBranch]:
     """The branches of an arc; the first one is joined from both walks."""
-    onward = branches_of(leads, up, fine) if up.curve.legs else []
-    back = branches_of(leads, down, fine) if down is not None and down.curve.legs else []
+    onward, back = (
+        branches_of(leads, walk, fine, solved=solved)
+        if walk is not None and walk.curve.legs
+        else []
+        for walk in (up, down)
+    )
     if not onward or not back:
         return onward or back
     first, first_back = onward[0], back[0]

@@ -36,27 +36,46 @@ class Seeding:
         self.dead: DeadPointInputs | None = None
         self.seeded = self.unclear = 0
         self.start: Start | None = None
+        self._lists: dict[float, Assemblies] = {}
+        self._told = 0.0
 
     def look(self, progress: Callable[[float], None] | None) -> None:
-        """Seed with the guess, the configurations at its input, and those between dead points."""
+        """Seed with the guess, the configurations at its input, and those between dead points.
+
+        A second time if a proof has replaced a curve: what follows from it may be different.
+        """
+        self._look(progress)
+        if not self.explorer.settle():
+            self.explorer.restart()
+            self._look(progress)
+
+    def _look(self, progress: Callable[[float], None] | None) -> None:
         model = self.model
-        start = first_position(model, model.start_inputs, NewtonOptions())
+        self.names, self.seeded, self.unclear = [], 0, 0
+        start = self.start or first_position(model, model.start_inputs, NewtonOptions())
         self.start = start
         # at a dead point the input cannot lead; the circuit is found from other inputs
         if start.status.ok and self._regular(start.v, TrackOptions().largest_condition):
             self.explorer.visit(start.v)
         value = float(model.start_inputs[self.drive.lead])
-        found = positions_at(model, self.drive.path.at(value))
+        found = self._positions_at(value)
         if found.completeness is Completeness.NOT_LISTED:
             return
         self.names = list(zip(found.v, found.names, strict=True))
         sure = self._visit_circuits(found)
-        self.dead = dead_point_inputs(model, self.drive.path, self.drive.lead)
+        self.dead = self.dead or dead_point_inputs(model, self.drive.path, self.drive.lead)
         intervals = self._intervals(value, sure)
         for k, interval in enumerate(intervals):
             self._look_into(interval)
+            self._told = max(self._told, (k + 1) / len(intervals))
             if progress is not None:
-                progress((k + 1) / len(intervals))
+                progress(self._told)
+
+    def _positions_at(self, value: float) -> Assemblies:
+        """All configurations at a value of the leading input."""
+        if value not in self._lists:
+            self._lists[value] = positions_at(self.model, self.drive.path.at(value))
+        return self._lists[value]
 
     def _intervals(self, value: float, sure: bool) -> list[Interval]:
         """Where to look; a ``value`` whose list is ``sure`` represents its interval."""
@@ -74,10 +93,7 @@ class Seeding:
 
     def _look_into(self, interval: Interval) -> None:
         """List the configurations at one value of an interval, at another where that fails."""
-        if not any(
-            self._visit_circuits(positions_at(self.model, self.drive.path.at(value)))
-            for value in interval
-        ):
+        if not any(self._visit_circuits(self._positions_at(value)) for value in interval):
             self.unclear += 1
 
     def _visit_circuits(self, found: Assemblies) -> bool:

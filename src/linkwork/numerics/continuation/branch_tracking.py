@@ -30,6 +30,7 @@ __all__ = [
     "Track",
     "TrackOptions",
     "follow",
+    "interpolate",
     "quintic",
     "rows_on_track",
 ]
@@ -301,7 +302,7 @@ def rows_on_track(solver: BlockSolver, path: InputPath, track: Track, t: Array) 
     Starts from quintic interpolation between the track's nodes. A row that ends elsewhere than
     predicted, or with another sign of det J, is followed again from its node step by step.
     """
-    guess, left = _interpolate(track, t)
+    guess, left = interpolate(track, t)
     guess[:, solver.unknowns :] = path.at(t)
     found = solver.solve(guess, unlimited(solver.options, 12, solver.options.solution_tolerance))
     v, status = found.v.copy(), found.status.copy()
@@ -332,7 +333,7 @@ def _nearest(track: Track, left: int, t: float) -> Node:
     return min(track.nodes[left], track.nodes[right], key=lambda node: abs(node.t - t))
 
 
-def _interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
+def interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     """Quintic Hermite values at t (B, N) and the index of the node at the left of each."""
     nodes = rows_of_nodes(track.nodes)
     times = nodes.t

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.rounding import REGULAR_CONDITION, UNIT_ROUNDOFF
+from linkwork.numerics.continuation.branch_tracking import rows_of_nodes
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -15,11 +17,10 @@ from linkwork.numerics.continuation.local_parametrization import (
     apart,
     whole_turns,
 )
-from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path
+from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path, prove_paths
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
-from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "same_solution"]
+__all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "prove_curves", "same_solution"]
 
 _MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 _MOST_EXACT = 400  # of those with residuals that are rounded once, which take far longer
@@ -45,25 +46,46 @@ class ProvenCurve:
 
 
 def prove_curve(leads: Parametrizations, curve: Curve, most: int = _MOST_STEPS) -> ProvenCurve:
-    """Prove every step of a curve; of very many steps only the ``most`` first ones."""
+    """Prove every step of a curve; of very many steps only about ``most``."""
+    return prove_curves(leads, [curve], most)[0]
+
+
+def prove_curves(
+    leads: Parametrizations,
+    curves: Sequence[Curve],
+    most: int = _MOST_STEPS,
+    halvings: int | None = None,
+) -> list[ProvenCurve]:
+    """Prove curves together: few large arrays take far less time than many small ones.
+
+    ``halvings`` of one step, at most; the usual number by default.
+    """
+    provable = [all(leg.led.provable for leg in curve.legs) for curve in curves]
+    legs = [leg for curve, good in zip(curves, provable, strict=True) if good for leg in curve.legs]
+    proofs = dict(zip(map(id, legs), _prove_legs(legs, most * len(curves), halvings), strict=True))
+    return [
+        _prove(leads, curve, [proofs[id(leg)] for leg in curve.legs] if good else [])
+        for curve, good in zip(curves, provable, strict=True)
+    ]
+
+
+def _prove(leads: Parametrizations, curve: Curve, proofs: Sequence[ProvenPath]) -> ProvenCurve:
+    """A curve with the proofs of its legs, if these can be proved: junctions and the closure."""
     legs = np.zeros(len(curve.legs), dtype=bool)
     junctions = np.zeros(max(len(curve.legs) - 1, 0), dtype=bool)
     steps, broken = 0, None
-    if all(leg.led.provable for leg in curve.legs):
-        for k, leg in enumerate(curve.legs):
-            proof = _proof_of(leg, max(most - steps, 0))
-            # from its first position, which the previous leg has proved
-            joined = proof.connected_to(0)
-            legs[k] = joined.all()
-            if broken is None and not legs[k]:
-                broken = (k, int(np.argmin(joined)) - 1)
-            steps += int(proof.pieces.sum())
-            if steps > most or proof.given_up.any():
-                break
-        for k, (leg, following) in enumerate(zip(curve.legs, curve.legs[1:], strict=False)):
-            last = leg.v[-1]
-            junctions[k] = same_solution(leg.led, following.led, last)
-            junctions[k] &= np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
+    for k, proof in enumerate(proofs):
+        # from its first position, which the previous leg has proved
+        joined = _joined(curve.legs[k], proof)
+        legs[k] = joined.all()
+        if broken is None and not legs[k]:
+            broken = (k, int(np.argmin(joined)) - 1)
+        steps += int(proof.pieces.sum())
+    for k in range(len(proofs) - 1):
+        leg, following = curve.legs[k : k + 2]
+        last = leg.v[-1]
+        junctions[k] = np.array_equal(last, following.v[0]) and _goes_on(leads, leg, following)
+        junctions[k] &= same_solution(leg.led, following.led, last)
     own = leads.with_parameter(leads.parameter)
     closed = False
     if curve.end.closed and own is not None and own.provable:
@@ -87,34 +109,45 @@ def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:
 
 def leg_is_proved(leg: Leg) -> bool:
     """Whether every position and every step of a leg is proved."""
-    return bool(_proof_of(leg, _MOST_STEPS).connected_to(0).all())
+    return bool(_joined(leg, _prove_legs([leg], _MOST_STEPS)[0]).all())
 
 
-def _proof_of(leg: Leg, most: int) -> ProvenPath:
-    """Every position and step of a leg, from its first node; with exact residuals where branches
-    nearly cross.
+def _joined(leg: Leg, proof: ProvenPath) -> BoolArray:
+    """Which nodes of a leg are joined to its first one, in its order, (K,)."""
+    falls = leg.nodes[-1].t < leg.nodes[0].t
+    return proof.connected_to(len(leg.nodes) - 1)[::-1] if falls else proof.connected_to(0)
+
+
+def _prove_legs(legs: Sequence[Leg], most: int, halvings: int | None = None) -> list[ProvenPath]:
+    """Every position and step of legs, joined to their first nodes, in the order of rising t; with
+    exact residuals where branches nearly cross.
     """
-    proof = _proof(leg, most, exact=False)
-    nearly = any(node.nearness > REGULAR_CONDITION for node in leg.nodes)
-    if nearly and not proof.connected_to(0).all():
-        return _proof(leg, min(most, _MOST_EXACT), exact=True)
-    return proof
-
-
-def _proof(leg: Leg, most: int, exact: bool) -> ProvenPath:
-    nodes = leg.nodes
-    # a leg may be traced downwards; proofs take rising values, so t and odd derivatives change sign
-    sign = np.sign(nodes[-1].t - nodes[0].t) or 1.0
-    points = SolvedRows(
-        t=sign * np.array([node.t for node in nodes]),
-        v=np.stack([node.v for node in nodes]),
-        first=sign * np.stack([node.first for node in nodes]),
-        second=np.stack([node.second for node in nodes]),
-        input_radius=np.zeros((len(nodes), 1)),
-    )
-    path = leg.led.path
-    backwards = type(path)(origin=path.origin, rate=sign * path.rate)
-    return prove_path(leg.led.solver, backwards, points, anchor=0, most=most, exact=exact)
+    found: list[ProvenPath | None] = [None] * len(legs)
+    groups: dict[int, list[int]] = {}
+    for k, leg in enumerate(legs):
+        groups.setdefault(id(leg.led), []).append(k)
+    for members in groups.values():
+        led = legs[members[0]].led
+        rows, anchors = [], []
+        for k in members:
+            nodes = legs[k].nodes
+            # a leg may be traced downwards; proofs take rising values
+            falls = nodes[-1].t < nodes[0].t
+            points = rows_of_nodes(nodes[::-1] if falls else nodes)
+            rows.append(points.with_columns(input_radius=np.zeros((len(nodes), 1))))
+            anchors.append(len(nodes) - 1 if falls else 0)
+        proofs = prove_paths(
+            led.solver, led.path, rows, anchors=anchors, most=most, halvings=halvings
+        )
+        for k, points, anchor, proof in zip(members, rows, anchors, proofs, strict=True):
+            nearly = any(node.nearness > REGULAR_CONDITION for node in legs[k].nodes)
+            if nearly and not proof.connected_to(anchor).all():
+                few = min(most, _MOST_EXACT)
+                proof = prove_path(
+                    led.solver, led.path, points, anchor=anchor, most=few, exact=True
+                )
+            found[k] = proof
+    return [proof for proof in found if proof is not None]
 
 
 def same_solution(one: Parametrization, other: Parametrization, v: Array) -> bool:

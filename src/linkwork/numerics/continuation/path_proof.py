@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,13 +15,14 @@ from linkwork.numerics.continuation.step_halving import (
     Halving,
     OpenSteps,
     Prover,
+    Strand,
     prove_steps,
     take_expansions,
 )
 from linkwork.numerics.proof.position_proof import Proof, prove
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["ProvenPath", "prove_path"]
+__all__ = ["ProvenPath", "prove_path", "prove_paths"]
 
 _MOST = 30_000  # positions solved in between for the proof of one path
 _MOST_EACH = 8  # and this many more for each of its own positions
@@ -105,14 +106,15 @@ def prove_path(
     for k, begin in enumerate(begins, start=1):
         part = points.take(slice(begin, begin + _PIECE + 1))
         inside = None if anchor is None else min(max(anchor - begin, 0), len(part.t) - 1)
-        found[begin] = _piece(prover, part, inside, allowance)
+        strand = Strand(begin=0, end=len(part.t), anchor=inside)
+        found[begin] = _piece(prover, part, [strand], allowance)
         if progress is not None:
             progress(k / len(begins))
     pieces = [found[begin] for begin in sorted(begins)]
     if len(pieces) == 1:
         return pieces[0]
     # neighbouring pieces share one position
-    proofs = [pieces[0].position, *[_behind_first(piece.position) for piece in pieces[1:]]]
+    proofs = [pieces[0].position, *[_part(piece.position, slice(1, None)) for piece in pieces[1:]]]
     return ProvenPath(
         position=Proof(
             holds=np.concatenate([p.holds for p in proofs]),
@@ -126,21 +128,72 @@ def prove_path(
     )
 
 
-def _behind_first(p: Proof) -> Proof:
+def prove_paths(
+    solver: BlockSolver,
+    path: InputPath,
+    paths: Sequence[SolvedRows],
+    *,
+    anchors: Sequence[int],
+    most: int,
+    halvings: int | None = None,
+) -> list[ProvenPath]:
+    """:func:`prove_path` of several paths together, each with an anchor of its own.
+
+    ``halvings`` of one step, at most; the usual number by default.
+    """
+    prover, allowance = Prover(solver, path, False), Allowance(most)
+    prover = prover if halvings is None else replace(prover, halvings=halvings)
+    found: list[ProvenPath] = []
+    for some in _groups([len(points.t) for points in paths]):
+        strands, begin = [], 0
+        for k in some:
+            end = begin + len(paths[k].t)
+            strands.append(Strand(begin=begin, end=end, anchor=begin + anchors[k]))
+            begin = end
+        points = SolvedRows.concatenate([paths[k] for k in some])
+        whole = _piece(prover, points, strands, allowance)
+        for strand in strands:
+            steps = slice(strand.begin, strand.end - 1)
+            found.append(
+                ProvenPath(
+                    position=_part(whole.position, slice(strand.begin, strand.end)),
+                    connected=whole.connected[steps],
+                    pieces=whole.pieces[steps],
+                    given_up=whole.given_up[steps],
+                )
+            )
+    return found
+
+
+def _groups(sizes: Sequence[int]) -> list[list[int]]:
+    """Consecutive numbers in groups whose sizes fit the cache."""
+    found: list[list[int]] = []
+    room = 0
+    for k, size in enumerate(sizes):
+        if size > room:
+            found.append([])
+            room = _PIECE
+        found[-1].append(k)
+        room -= size
+    return found
+
+
+def _part(p: Proof, rows: slice) -> Proof:
     return Proof(
-        holds=p.holds[1:],
-        existence_radius=p.existence_radius[1:],
-        uniqueness_radius=p.uniqueness_radius[1:],
-        error_bound=p.error_bound[1:],
+        holds=p.holds[rows],
+        existence_radius=p.existence_radius[rows],
+        uniqueness_radius=p.uniqueness_radius[rows],
+        error_bound=p.error_bound[rows],
     )
 
 
 def _piece(
     prover: Prover,
     points: SolvedRows,
-    anchor: int | None,
+    strands: Sequence[Strand],
     allowance: Allowance,
 ) -> ProvenPath:
+    """Strands one after the other; what lies between two of them is no step."""
     solver, places = prover.solver, prover.expansions(points.v)
     position = prove(solver, points.v, points.input_radius, places)
     steps = len(points.t) - 1
@@ -148,13 +201,16 @@ def _piece(
     pieces = np.ones(steps, dtype=np.int64)
     if not steps:
         return ProvenPath(position=position, connected=nothing, pieces=pieces, given_up=nothing)
+    own = np.ones(steps, dtype=bool)
+    own[[strand.begin - 1 for strand in strands[1:]]] = False
     left, right = points.take(slice(None, -1)), points.take(slice(1, None))
     near = np.maximum(position.error_bound[1:], position.error_bound[:-1])
     connected, apart = prove_steps(
         solver, left, right, near, take_expansions(places, slice(None, -1))
     )
-    connected &= position.holds[1:] & position.holds[:-1]
-    open_ = np.flatnonzero(~connected & position.holds[1:] & position.holds[:-1])
+    hold = position.holds[1:] & position.holds[:-1] & own
+    connected &= hold
+    open_ = np.flatnonzero(~connected & hold)
     if len(open_):
         # a step towards a change point is often proved from its far end only
         back = take_expansions(places, open_ + 1)
@@ -163,8 +219,8 @@ def _piece(
         open_ = open_[~connected[open_]]
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
-    work = Halving(prover, steps, anchor, position.holds)
-    work.lose(np.flatnonzero(apart))
+    work = Halving(prover, strands, position.holds)
+    work.lose(np.flatnonzero(apart & own))
     queue = OpenSteps(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_)
     queue = work.of_use(queue)
     ends = (take_expansions(places, queue.owner), take_expansions(places, queue.owner + 1))

@@ -23,9 +23,17 @@ from linkwork.numerics.proof.position_proof import (
 )
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["Allowance", "Halving", "OpenSteps", "Prover", "prove_steps", "take_expansions"]
+__all__ = [
+    "Allowance",
+    "Halving",
+    "OpenSteps",
+    "Prover",
+    "Strand",
+    "prove_steps",
+    "take_expansions",
+]
 
-_ROUNDS = 45  # halvings of one step before it counts as not proved
+_HALVINGS = 45  # of one step, at most
 _LANES = 1024  # steps halved together
 _HALFWAY = np.array([0.5])
 _SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
@@ -46,11 +54,15 @@ class Allowance:
 
 @dataclass(frozen=True)
 class Prover:
-    """The equations of a path; ``exact``: with residuals that are rounded once."""
+    """The equations of a path; ``exact``: with residuals that are rounded once.
+
+    ``halvings`` of one step before it counts as not proved.
+    """
 
     solver: BlockSolver
     path: InputPath
     exact: bool
+    halvings: int = _HALVINGS
 
     def expansions(self, v: Array, linear: Sequence[Linearised] | None = None) -> list[Place]:
         """What proofs need of positions (B, N)."""
@@ -134,15 +146,28 @@ class OpenSteps:
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Strand:
+    """Points ``begin`` to ``end``, without that one, of one curve among those of others.
+
+    ``anchor``: the point that the others have to be joined to, if there is one.
+    """
+
+    begin: int
+    end: int
+    anchor: int | None
+
+
 class Halving:
-    """Steps of a path (K,) halved as often as their proof needs.
+    """Steps of strands (K,) halved as often as their proof needs.
 
     ``proved``, ``given_up`` (K,): their outcome. ``pieces`` (K,): how many positions were
     solved in between.
     """
 
-    def __init__(self, prover: Prover, steps: int, anchor: int | None, holds: BoolArray) -> None:
-        self.prover, self.anchor = prover, anchor
+    def __init__(self, prover: Prover, strands: Sequence[Strand], holds: BoolArray) -> None:
+        steps = len(holds) - 1
+        self.prover, self.strands = prover, strands
         self.proved = np.ones(steps, dtype=bool)
         self.given_up = np.zeros(steps, dtype=bool)
         self.pieces = np.zeros(steps, dtype=np.int64)
@@ -224,18 +249,23 @@ class Halving:
         return queue.take(undivided).with_(rest)
 
     def of_use(self, queue: OpenSteps) -> OpenSteps:
-        """The steps that may still be proved, nearest to the anchor first."""
-        hopeful = self.proved[queue.owner]
-        if self.anchor is None:
-            return queue if hopeful.all() else queue.take(np.flatnonzero(hopeful))
-        below, above = queue.owner < self.anchor, queue.owner >= self.anchor
-        lowest = max(self.cut[self.cut < self.anchor], default=-1)
-        highest = min(self.cut[self.cut >= self.anchor], default=len(self.proved))
-        moot = (below & (queue.owner < lowest)) | (above & (queue.owner > highest))
-        self.proved[queue.owner[moot]] = False
-        keep = np.flatnonzero(hopeful & ~moot)
-        away = np.abs(queue.owner[keep] + 0.5 - self.anchor)
-        return queue.take(keep[np.argsort(away, kind="stable")])
+        """The steps that may still be proved, nearest to their anchors first."""
+        owner = queue.owner
+        hopeful = self.proved[owner]
+        away = np.zeros(len(owner))
+        for strand in self.strands:
+            if strand.anchor is None:
+                continue
+            here = (owner >= strand.begin) & (owner < strand.end - 1)
+            cut = self.cut[(self.cut >= strand.begin) & (self.cut < strand.end - 1)]
+            lowest = cut[cut < strand.anchor].max(initial=-1)
+            highest = cut[cut >= strand.anchor].min(initial=len(self.proved))
+            moot = here & ((owner < lowest) | (owner > highest))
+            self.proved[owner[moot]] = False
+            hopeful &= ~moot
+            away[here] = np.abs(owner[here] + 0.5 - strand.anchor)
+        keep = np.flatnonzero(hopeful)
+        return queue.take(keep[np.argsort(away[keep], kind="stable")])
 
     def _halve(self, lanes: OpenSteps) -> OpenSteps:
         """Halve some steps once more; return the halves that are not proved."""
@@ -247,7 +277,9 @@ class Halving:
         # no number is left between the ends
         good &= (lanes.left.t < middle.t) & (middle.t < lanes.right.t)
         # a step that has shrunk to nothing is not going to be proved
-        good &= (lanes.right.t - lanes.left.t) > self.width[lanes.owner] * 2.0**-_ROUNDS
+        good &= (lanes.right.t - lanes.left.t) > self.width[
+            lanes.owner
+        ] * 2.0**-self.prover.halvings
         self.lose(np.flatnonzero(np.bincount(lanes.owner[~good])))
         keep = np.flatnonzero(self.proved[lanes.owner])
         if not len(keep):

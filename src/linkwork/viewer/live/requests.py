@@ -266,6 +266,8 @@ class SetText:
 class SetSheet:
     """Set the width of the visible part of the plane [length], by which symbols are sized.
 
+    Of a flat view, the width that its height allows.
+
     ``edited``: the mechanism is changed in the drawing, which is then sent at its start.
     """
 

@@ -167,8 +167,10 @@ def _mending(description: Description, message: str) -> tuple[str, ...]:
     """The forms that mend what a message of a simulation says."""
     if not isinstance(description, LoadedBodies) or description.timed:
         return ("text",)
-    if not description.inputs or " inputs" in message:
+    if not description.inputs:
         return ("input",)
+    if "friction is simulated with one input" in message:
+        return ("text",)
     nothing = not description.masses and all(each.inertia is None for each in description.inputs)
     if nothing:
         return "masses", "motor"

@@ -1,0 +1,179 @@
+"""Positions of many designs at given inputs, followed from design to design.
+
+A lane keeps the unknowns of its last accepted design and their derivatives by its numbers; a new
+design starts from their prediction and Newton-Raphson. A position whose Jacobian has another sign
+than that of the first design is on another branch, and counts as none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.design.improvement.lane_rows import LaneRows, WrittenDesigns
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.leading_input import leading_input
+from linkwork.motion.model import Model
+
+__all__ = ["LanePositions", "SolvedLanes"]
+
+_NEWTON_STEPS = 8
+_CLOSED = 1e-13  # scaled residuals that count as solved, and steps that end
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LanePositions:
+    """D designs at N rows.
+
+    Parameters
+    ----------
+    rows : LaneRows
+        D N rows, design by design.
+    by_x, by_t : (D N, n, P), (D N, n)
+        Derivatives of the unknowns by the numbers and by the leading input.
+    numbers, inputs : sequence of int
+        Nodes of the tape.
+    shape : (int, int)
+    """
+
+    rows: LaneRows
+    by_x: Array
+    by_t: Array
+    found: BoolArray
+    numbers: Sequence[int]
+    inputs: Array
+    shape: tuple[int, int]
+
+    def values(self, results: Sequence[object]) -> tuple[Array, Array, Array]:
+        """Real results (D, N, m) on the tape, by numbers (D, N, m, P) and the input (D, N, m)."""
+        n = self.rows.count
+        value, slope = self.rows.slopes(results, [*self.numbers, *self.rows.nodes])
+        count = len(self.numbers)
+        by_q = slope[:, :, count : count + n]
+        # eq. (156)
+        by_x = slope[:, :, :count] + by_q @ self.by_x
+        by_t = slope[:, :, count + n :] @ self.inputs + (by_q @ self.by_t[:, :, None])[:, :, 0]
+        shape = *self.shape, len(results)
+        value = np.where(self.found[:, None], value, np.nan)
+        return value.reshape(shape), by_x.reshape(*shape, count), by_t.reshape(shape)
+
+
+class SolvedLanes:
+    """Lanes of one mechanism at N rows.
+
+    Parameters
+    ----------
+    model : Model
+    numbers : sequence of VariedNumber
+    x : (P,)
+        Their values in the mechanism, file units.
+    q : (N, n)
+        Unknowns of the mechanism at the rows.
+    t : (N,)
+        Leading input there [rad or length].
+    lanes : int
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        numbers: Sequence[VariedNumber],
+        x: Array,
+        q: Array,
+        t: Array,
+        lanes: int,
+    ) -> None:
+        self.model, self.numbers = model, tuple(numbers)
+        self.lead, self.rate = leading_input(model.rows)
+        rows, n = len(t), len(model.equations.unknowns)
+        # row by row: a row that does not close keeps the last design in which it did
+        self.x = np.broadcast_to(x, (lanes, rows, len(x))).copy()
+        self.t = np.broadcast_to(t, (lanes, rows)).copy()
+        self.q = np.broadcast_to(q, (lanes, rows, n)).copy()
+        self.by_x = np.zeros((lanes, rows, n, len(x)))
+        self.by_t = np.zeros((lanes, rows, n))
+        self.total = np.full(lanes, np.inf)
+        self._sign: Array | None = None
+        first = self.at(x[None, :], t[None, :], np.arange(1))
+        self._sign = self._last_sign
+        self.by_x[:] = first.by_x.reshape(1, rows, n, -1)
+        self.by_t[:] = first.by_t.reshape(1, rows, n)
+
+    def inputs(self, t: Array) -> Array:
+        """All inputs (…, p) for values of the leading one."""
+        first = self.model.rows[0]
+        return np.asarray(first + (t - first[self.lead])[..., None] * self.rate)
+
+    def at(self, x: Array, t: Array, lanes: IndexArray) -> LanePositions:
+        """The positions of designs (D, P) at inputs (D, N) of these lanes."""
+        count, rows = t.shape
+        change = np.einsum("dnkp,dnp->dnk", self.by_x[lanes], x[:, None] - self.x[lanes])
+        change += self.by_t[lanes] * (t - self.t[lanes])[:, :, None]
+        v = np.concatenate([self.q[lanes] + change, self.inputs(t)], axis=2)
+        v = v.reshape(count * rows, -1)
+        written = WrittenDesigns(self.model, self.numbers, np.repeat(x, rows, axis=0))
+        n = self.q.shape[2]
+        scale = self.model.compiled.table.equation_scale
+        weight = self.model.compiled.table.variable_scale[:n]
+        fine = written.fine.copy()
+        if not fine.any():
+            v = np.full_like(v, np.nan)
+        for _ in range(_NEWTON_STEPS):
+            solved = LaneRows(written, v)
+            f, slope = solved.equations_and_slopes(solved.nodes)
+            jacobian = slope[:, :, :n]
+            step = _solve(jacobian, f[:, :, None])[:, :, 0]
+            missed = np.abs(f / scale).max(axis=1)
+            moved = np.abs(step / weight).max(axis=1)
+            closed = (missed <= _CLOSED) | (moved <= _CLOSED)
+            if (closed | ~np.isfinite(missed)).all():
+                break
+            v = v.copy()
+            v[:, :n] -= np.where(np.isfinite(step), step, np.nan)
+        sign = np.linalg.slogdet(np.nan_to_num(jacobian))[0].reshape(count, rows)
+        self._last_sign = sign
+        fine &= closed
+        if self._sign is not None:
+            fine &= (sign == self._sign).ravel()
+        by = [*written.numbers, *solved.nodes[n:]]
+        by_all = -_solve(jacobian, solved.equations_and_slopes(by)[1])
+        rate = self.rate
+        return LanePositions(
+            rows=solved,
+            by_x=by_all[:, :, : len(written.numbers)],
+            by_t=by_all[:, :, len(written.numbers) :] @ rate,
+            found=fine,
+            numbers=written.numbers,
+            inputs=rate,
+            shape=(count, rows),
+        )
+
+    def keep(
+        self, found: LanePositions, x: Array, t: Array, lanes: IndexArray, total: Array
+    ) -> None:
+        """Remember designs that are better than the last ones of their lanes."""
+        better = total < self.total[lanes]
+        self.total[lanes[better]] = total[better]
+        which = np.nonzero(found.found.reshape(found.shape) & better[:, None])
+        to, n = (lanes[which[0]], which[1]), self.q.shape[2]
+        shape = *found.shape, n
+        self.x[to], self.t[to] = x[which[0]], t[which]
+        self.q[to] = found.rows.solution[:, :n].reshape(shape)[which]
+        self.by_x[to] = found.by_x.reshape(*shape, -1)[which]
+        self.by_t[to] = found.by_t.reshape(shape)[which]
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Solutions of systems, NaN where a matrix is singular or no number."""
+    wrong = ~(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2)))
+    matrix, right = matrix.copy(), right.copy()
+    matrix[wrong], right[wrong] = np.eye(matrix.shape[1]), np.nan
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        singular = np.linalg.matrix_rank(matrix) < matrix.shape[1]
+        matrix[singular], right[singular] = np.eye(matrix.shape[1]), np.nan
+        return np.asarray(np.linalg.solve(matrix, right))

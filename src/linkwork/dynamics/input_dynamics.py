@@ -1,0 +1,187 @@
+"""The accelerations of several inputs: M(q) q̈ + c(q, q̇) = Q(q, q̇, t).
+
+Positions are solved from the last proved one, along its tangents. Inputs are measured in radians
+and longest links, so that units change nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.dynamics.reduction import Reduction
+from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.virtual_work import efforts
+from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.certification import Certification
+from linkwork.foundation.status import CONVERGED
+from linkwork.foundation.units import force_of_inertia
+from linkwork.numerics.proof.position_proof import prove
+from linkwork.numerics.rows import SolvedRows
+
+__all__ = ["InputDynamics"]
+
+_FAR = 0.3  # weighted: a position that Newton-Raphson finds farther from its tangent is another
+
+
+class InputDynamics:
+    """A mechanism whose p inputs are free.
+
+    Parameters
+    ----------
+    reduction : Reduction
+        The loads.
+    start : (N,)
+        The first position, internal units.
+    """
+
+    def __init__(self, reduction: Reduction, start: Array) -> None:
+        self.reduction = reduction
+        model = reduction.model
+        self.solver = model.compiled.solver
+        kinds = [variable.kind for variable in model.equations.inputs]
+        length = model.equations.length_scale
+        #: The unit in which every input is measured here, (p,).
+        self.size = np.array([1.0 if kind == "angle" else length for kind in kinds])
+        self._at, self._slopes, self._signs = self._anchor(start)
+        own = reduction.description
+        unit = force_of_inertia(own.mass, own.length, own.force)
+        given = [each.inertia for each in own.inputs]
+        self._inertia = np.array([0.0 if x is None else own.numbers(x) * unit for x in given])
+        self._motors = [
+            None
+            if each.motor is None
+            else each.motor.curve("link" if kind == "angle" else "slider", own.numbers, own.length)
+            for each, kind in zip(own.inputs, kinds, strict=True)
+        ]
+
+    @property
+    def here(self) -> Array:
+        """The inputs at the last proved position, (p,)."""
+        found: Array = self._at[self.solver.unknowns :] / self.size
+        return found
+
+    @property
+    def nearness(self) -> float:
+        """How near the last proved position is to a singular one."""
+        return float(self.solver.rates(self._at[None], np.ones(len(self.size))).nearness[0])
+
+    def _anchor(self, v: Array) -> tuple[Array, Array, Array]:
+        """A position with its derivatives by all inputs, (N, p), and the signs of its blocks."""
+        units = [self.solver.rates(v[None], each) for each in np.eye(len(self.size))]
+        slopes = np.stack([each.first[0] for each in units], axis=1)
+        return v, slopes, self.solver.rates(v[None], np.ones(len(self.size))).orientation[0]
+
+    def settle(self, q: Array) -> bool:
+        """Go on from the position at the inputs ``q`` (p,), if it is proved."""
+        v, found = self.positions(q[None])
+        if not found[0]:
+            return False
+        if self._has_bound and not prove(self.solver, v, np.zeros((1, len(q)))).holds[0]:
+            return False
+        self._at, self._slopes, self._signs = self._anchor(v[0])
+        return True
+
+    @property
+    def _has_bound(self) -> bool:
+        return all(block.system.has_curvature_bound for block in self.solver.blocks)
+
+    def positions(self, q: Array) -> tuple[Array, BoolArray]:
+        """Positions (B, N) at inputs (B, p), and which of them were found on the same branch."""
+        own = q * self.size
+        guess = self._at + (own - self._at[self.solver.unknowns :]) @ self._slopes.T
+        guess[:, self.solver.unknowns :] = own
+        finite = np.isfinite(guess).all(axis=1)
+        guess = np.where(finite[:, None], guess, self._at)
+        solved = self.solver.solve(guess)
+        off = np.abs(solved.v - guess) / self.solver.variable_scale
+        found = finite & (solved.status == CONVERGED) & (off.max(axis=1, initial=0.0) < _FAR)
+        v = np.where(found[:, None], solved.v, self._at)
+        signs = self.solver.rates(v, np.ones(len(self.size))).orientation
+        return v, found & (signs == self._signs).all(axis=1)
+
+    def acceleration(self, q: Array, speed: Array, t: Array) -> Array:
+        """q̈ (B, p) of states (B, p) at times (B,); NaN where there is no position."""
+        v, found = self.positions(q)
+        rates = self.solver.rates(v, speed * self.size)
+        reduction = self.reduction
+        moving = reduction.geometry(v, rates.first, rates.second, t)
+        with np.errstate(all="ignore"):
+            applied = reduction.loaded(moving)
+            applied.weigh(reduction.description)
+            # eq. (96): what the inputs would have to give at constant speeds
+            force = -efforts(applied)[0].T + self._motor_torques(speed)
+            mass = self._masses(applied)
+            good = found & np.isfinite(force).all(axis=1) & np.isfinite(mass).all(axis=(1, 2))
+            result = np.full_like(q, np.nan)
+            if good.any():
+                try:
+                    bend = np.linalg.solve(mass[good], (force * self.size)[good, :, None])
+                except np.linalg.LinAlgError:
+                    return result
+                result[good] = bend[:, :, 0]
+        return result
+
+    def masses(self) -> Array:
+        """The matrix of masses at the last proved position, (p, p)."""
+        v, zero = self._at[None], np.zeros((1, len(self._at)))
+        applied = AppliedLoads(self.reduction.geometry(v, zero, zero, np.zeros(1)), 1.0)
+        applied.weigh(self.reduction.description)
+        found: Array = self._masses(applied)[0]
+        return found
+
+    def _masses(self, applied: AppliedLoads) -> Array:
+        """The matrices of masses, (B, p, p)."""
+        geometry, p = applied.geometry, len(self.size)
+        total = np.zeros((geometry.rows, p, p)) + np.diag(self._inertia)
+        for body in applied.masses:  # eq. (95)
+            moved = geometry.partial_local(body.link, body.centre)
+            turned = geometry.turning(body.link)
+            total = total + body.mass * np.einsum("jb,kb->bjk", moved.conj(), moved).real
+            own = np.asarray(body.inertia) * np.ones(geometry.rows)
+            total = total + np.einsum("b,jb,kb->bjk", own, turned, turned)
+        scaled: Array = total * np.outer(self.size, self.size)
+        return scaled
+
+    def _motor_torques(self, speed: Array) -> Array:
+        scale = self.reduction.model.input_scale
+        torques = np.zeros_like(speed)
+        for k, curve in enumerate(self._motors):
+            if curve is not None:
+                torques[:, k] = curve(speed[:, k] * self.size[k] / scale[k])
+        return torques
+
+    def rows(self, q: Array, speed: Array, bend: Array, t: Array, certify: bool) -> SolvedRows:
+        """Positions with their rates in time, the time behind the variables; found ones only."""
+        v, found = self.positions(q)
+        count = int(np.argmin(found)) if not found.all() else len(v)
+        v, q, speed, bend, t = (x[:count] for x in (v, q, speed, bend, t))
+        rates = self.solver.rates(v, speed * self.size, None, bend * self.size)
+        code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
+        radius = unique = np.full(count, np.nan)
+        if certify and not self._has_bound:
+            code[:] = Certification.NO_BOUND.code
+        elif certify and count:
+            proof = prove(self.solver, v, np.zeros((count, len(self.size))))
+            # the motion between rows is followed by small steps, without proof; an open chain has
+            # one position only
+            closed = self.solver.unknowns > 0
+            proof_of = Certification.MOTION_NOT_PROVED if closed else Certification.CERTIFIED
+            proved = proof_of.code
+            code = np.where(proof.holds, proved, Certification.POSITION_NOT_PROVED.code)
+            radius = np.where(proof.holds, proof.radius, np.nan)
+            unique = np.where(proof.holds, proof.least_uniqueness_radius, np.nan)
+        one = np.ones((count, 1))
+        return SolvedRows(
+            inputs=t[:, None].copy(),
+            v=np.column_stack([v, t]),
+            first=np.column_stack([rates.first, one]),
+            second=np.column_stack([rates.second, 0.0 * one]),
+            status=np.full(count, CONVERGED, dtype=np.int8),
+            iterations=np.zeros(count, dtype=np.int64),
+            residual=self.solver.residual(v),
+            condition=rates.condition.copy(),
+            certification=code.astype(np.int8),
+            radius=radius,
+            uniqueness_radius=unique,
+            branch=np.full(count, self.reduction.model.circuit, dtype=object),
+        )

@@ -1,0 +1,101 @@
+"""Simulation of a mechanism with several inputs, all of them free."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from linkwork.dynamics.input_dynamics import InputDynamics
+from linkwork.dynamics.input_travel import InputTravel
+from linkwork.dynamics.reduction import Reduction
+from linkwork.dynamics.simulated import bounds_of, model_name, start_speeds
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.policy import ChangePointPolicy
+from linkwork.foundation.status import Status
+from linkwork.mechanism.dimensions import Number
+from linkwork.motion.in_time import model_in_time
+from linkwork.motion.model import Model
+from linkwork.motion.motion_of_rows import motion_of_rows
+from linkwork.motion.solving import solve
+from linkwork.numerics.rows import SolvedRows
+from linkwork.results.motion import Motion
+
+__all__ = ["simulate_inputs"]
+
+_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
+
+
+def simulate_inputs(
+    model: Model,
+    *,
+    times: Array,
+    at: float | Mapping[str, float] | None,
+    start_speed: Number | Mapping[str, Number],
+    policy: ChangePointPolicy,
+    certify: bool,
+    forced: bool,
+    progress: Callable[[float], None] | None,
+) -> Motion:
+    """The motion of several free inputs at times (B,).
+
+    Raises
+    ------
+    InputError
+        For friction, further forces, motions straight across change points, and a start at which
+        an input moves no mass.
+    """
+    name = f"{model_name(model)} has {len(model.description.inputs)} inputs"
+    if policy is not ChangePointPolicy.STOP:
+        raise InputError(f"{name}: their simulation stops at change points, leave out {policy}")
+    if forced:
+        raise InputError(f"{name}: further forces are added to one input only")
+    speeds = start_speeds(model, start_speed)
+    start = model.from_position(solve(model, at, certify=False, throw=True))
+    reduction = Reduction(model, model_in_time(model))
+    if reduction.rubs:
+        raise InputError(f"{name}: friction is simulated with one input only, leave out [friction]")
+    dynamics = InputDynamics(reduction, start.equations.start.copy())
+    masses = np.linalg.eigvalsh(dynamics.masses())
+    if not masses[0] > _MASSLESS * masses[-1]:
+        raise InputError(
+            f"{name}, and they can move at the start without moving a mass: add [masses], or "
+            "inertia to the inputs"
+        )
+    travel = InputTravel(
+        dynamics=dynamics,
+        bounds=bounds_of(reduction.named),
+        times=times,
+        speed=speeds / dynamics.size,
+        certify=certify,
+        progress=progress,
+    )
+    beyond = travel.check_inside()
+    if beyond is not None:
+        bound, value = beyond
+        raise InputError(
+            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}"
+        )
+    travel.run()
+    return _motion(travel)
+
+
+def _motion(travel: InputTravel) -> Motion:
+    rows, added = SolvedRows.concatenate(travel.rows), list(travel.added)
+    missing = travel.times[travel.taken :]
+    if len(missing):
+        blank = SolvedRows.blank(missing[:, None], rows.v.shape[1], Status.OUT_OF_REACH)
+        rows = SolvedRows.concatenate([rows, blank.with_columns(v=blank.v)])
+        added += [False] * len(missing)
+    told = f"simulated to t = {travel.t:.10g} s"
+    if travel.ended:
+        model = travel.dynamics.reduction.model
+        values = travel.q * travel.dynamics.size / model.input_scale
+        inputs = model.equations.inputs
+        place = ", ".join(
+            f"{variable.name} = {value:.6g} {model.input_units[variable.name]}".rstrip()
+            for variable, value in zip(inputs, values, strict=True)
+        )
+        told = f"the motion ends at t = {travel.t:.10g} s, {place}: {travel.ended}"
+    return motion_of_rows(travel.dynamics.reduction.named, rows, told, np.array(added))

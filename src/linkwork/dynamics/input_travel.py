@@ -1,0 +1,175 @@
+"""The motion of several inputs, step by step, from event to event."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.dynamics.events import Bound, Event, first_event
+from linkwork.dynamics.input_dynamics import InputDynamics
+from linkwork.dynamics.vector_collocation import VectorStep, try_vector_step
+from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.geometry import Geometry
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.numerics.rows import SolvedRows
+
+__all__ = ["InputTravel"]
+
+_SHORTEST = 1e-12  # of the whole time: a shorter step makes no way
+_FIRST = 1e-3  # of the whole time: the first step
+_MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
+_CHATTER = 1e-7
+_SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
+
+
+@dataclass(eq=False)
+class InputTravel:
+    """A motion under way.
+
+    ``times`` (B,): those asked for, rising. ``rows``: what is found so far, and ``added``, which
+    of them were not asked for. ``ended``: why the motion ended early, "" if it did not.
+    """
+
+    dynamics: InputDynamics
+    bounds: Sequence[Bound]
+    times: Array
+    speed: Array
+    certify: bool
+    progress: Callable[[float], None] | None = None
+    rows: list[SolvedRows] = field(default_factory=list)
+    added: list[bool] = field(default_factory=list)
+    ended: str = ""
+    t: float = 0.0
+    taken: int = 0
+
+    def __post_init__(self) -> None:
+        self.until = float(self.times[-1])
+        self.q = self.dynamics.here
+        self.recent: list[float] = []
+
+    def run(self) -> None:
+        """Step until all times are reached or the motion ends."""
+        self._switch()
+        self._record_here("")
+        h = _FIRST * self.until
+        while self.t < self.until and not self.ended:
+            short = self.until - self.t
+            step, following = try_vector_step(
+                self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short)
+            )
+            if step is None:
+                if following < _SHORTEST * self.until:
+                    self._end(self._why())
+                h = following
+                continue
+            h = following if h <= short else max(h, following)
+            self._advance(step, self.until if h > short and step.h == short else step.t + step.h)
+            if self.progress is not None:
+                self.progress(self.t / self.until)
+
+    def _advance(self, step: VectorStep, end: float) -> None:
+        event = None
+        comparisons = len(self.dynamics.reduction.comparisons)
+        if comparisons or self.bounds:
+            event = first_event(step, end, self._margins, comparisons)
+        if event is not None:
+            end = event.before if event.falls else event.after
+        times = self.times[self.taken :]
+        times = times[times <= end]
+        if len(times) and not self._record(times, *step.at(times), "", False):
+            return
+        self.taken += len(times)
+        place, speed, _ = step.at(np.array([end]))
+        # what follows starts from a proved position, never from one of a rejected step
+        if not self.dynamics.settle(place[0]):
+            self._end("the position there is not proved: it is too close to a singular one")
+            return
+        self.t, self.q, self.speed = end, place[0], speed[0]
+        if event is not None:
+            self._meet(event)
+
+    def _meet(self, event: Event) -> None:
+        if event.falls:
+            name = f"stop of {self.bounds[event.number].asked.name}"
+            self._end(f"a {name} is hit, and shocks of several inputs are not computed", name)
+            return
+        self._record_here("switch")
+        self._switch()
+        limit = self.t - _CHATTER * self.until
+        self.recent = [*(t for t in self.recent if t > limit), self.t]
+        if len(self.recent) > _MOST_EVENTS:
+            self._end("a comparison in a load switches without end there")
+
+    def _switch(self) -> None:
+        """Let every comparison have the value that it has now."""
+        reduction = self.dynamics.reduction
+        if not reduction.comparisons:
+            return
+        reduction.switches = FrozenDict()
+        applied = self._applied(self.q[None], self.speed[None], self._now)
+        reduction.switch([float(margin[0]) for margin in reduction.margins(applied)])
+
+    @property
+    def _now(self) -> Array:
+        return np.array([self.t])
+
+    def _applied(self, q: Array, speed: Array, t: Array) -> AppliedLoads:
+        return AppliedLoads(
+            self._geometry(q, speed, t), 1.0, switches=self.dynamics.reduction.switches
+        )
+
+    def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
+        v, found = self.dynamics.positions(q)
+        rates = self.dynamics.solver.rates(v, speed * self.dynamics.size)
+        first = np.where(found[:, None], rates.first, np.nan)
+        return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
+
+    def _margins(self, q: Array, speed: Array, t: Array) -> Array:
+        """The margins of stops and of comparisons, in this order."""
+        applied = self._applied(q, speed, t)
+        solved = applied.geometry.solved
+        found = [
+            bound.side * (bound.asked.values(solved, 1.0) - bound.value) for bound in self.bounds
+        ]
+        found += self.dynamics.reduction.margins(applied)
+        return np.stack(found, axis=1)
+
+    def check_inside(self) -> tuple[Bound, float] | None:
+        """A stop beyond which the motion would begin, and the value there."""
+        solved = self._geometry(self.q[None], self.speed[None], self._now).solved
+        for bound in self.bounds:
+            value = float(np.atleast_1d(bound.asked.values(solved, 1.0))[0])
+            if bound.side * (value - bound.value) < 0.0:
+                return bound, value
+        return None
+
+    def _record(
+        self, t: Array, q: Array, speed: Array, bend: Array, event: str, added: bool
+    ) -> bool:
+        """Add rows; whether all their positions were found."""
+        rows = self.dynamics.rows(q, speed, bend, t, self.certify)
+        count = len(rows.v)
+        self.rows.append(rows.with_columns(limit=np.full(count, event, dtype=object)))
+        self.added += [added] * count
+        if count < len(t):
+            self.taken += count
+            self._end("the inputs leave the branch of positions")
+        return count == len(t)
+
+    def _record_here(self, event: str) -> None:
+        q, speed = self.q[None], self.speed[None]
+        bend = self.dynamics.acceleration(q, speed, self._now)
+        self._record(self._now, q, speed, bend, event, bool(event))
+
+    def _end(self, why: str, event: str = "end") -> None:
+        self.ended = why
+        self._record_here(event)
+
+    def _why(self) -> str:
+        """Why no step succeeds."""
+        if self.dynamics.nearness > _SINGULAR:
+            return "a dead point of the inputs: their values do not lead on from there"
+        return "the accelerations have no bound there, or the inputs leave their reach"

@@ -1,0 +1,104 @@
+"""What can be simulated: its start speeds, its stops, and what refuses it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwork.dynamics.events import Bound
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem, choices
+from linkwork.foundation.names import canonical
+from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.loaded import LoadedBodies
+from linkwork.mechanism.speed import speed_per_second
+from linkwork.motion.model import Model
+
+__all__ = ["bounds_of", "check_loaded", "model_name", "start_speeds"]
+
+
+def model_name(model: Model) -> str:
+    """The mechanism's name in quotation marks."""
+    return f'"{model.description.name}"'
+
+
+def check_loaded(model: Model) -> LoadedBodies:
+    """The description of a mechanism that loads can move.
+
+    Raises
+    ------
+    InputError
+        If a law drives it, or nothing in it has mass.
+    """
+    description, name = model.description, model_name(model)
+    if not isinstance(description, LoadedBodies):
+        raise InputError(f"{name} has plain equations: only links have masses")
+    if description.timed:
+        raise InputError(f"a law drives {name}: leave it out to simulate")
+    if not description.inputs:
+        raise InputError(f"{name} has 0 inputs: a simulation needs a degree of freedom")
+    if not description.masses and all(each.inertia is None for each in description.inputs):
+        raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
+    return description
+
+
+def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
+    """The speed of every input at the start, [rad/s] or [length/s], (p,)."""
+    description = model.description
+    names = [variable.name for variable in model.equations.inputs]
+    if isinstance(given, Mapping):
+        wanted = {canonical(name): value for name, value in given.items()}
+    elif len(names) == 1 or given not in (0, "0"):
+        if len(names) > 1:
+            raise InputError(
+                f"{model_name(model)} has {len(names)} inputs: name the start speed of each, "
+                f"for example {names[0]}={given}"
+            )
+        wanted = {canonical(names[0]): given}
+    else:
+        wanted = {}
+    known = {canonical(name): k for k, name in enumerate(names)}
+    speeds = np.zeros(len(names))
+    for name, value in wanted.items():
+        if name not in known:
+            raise InputError(
+                f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
+            )
+        k = known[name]
+        kind = description.inputs[k].drives[0]
+        try:
+            own = speed_per_second(value, kind, description.numbers, description.length)
+        except ExpressionError as error:
+            raise InputError(f"start speed: {error.message}") from None
+        speeds[k] = own * float(model.input_scale[k])
+    return speeds
+
+
+def bounds_of(named: Model) -> list[Bound]:
+    """The bounds of all stops."""
+    description = named.description
+    assert isinstance(description, LoadedBodies)
+    found, problems = [], []
+    numbers = description.numbers
+    for k, stop in enumerate(description.stops):
+        own = named.motion_quantities
+        try:
+            asked = own.find(stop.of)
+        except InputError as error:
+            problems.append(Problem(key=("stops", k, "of"), message=str(error)))
+            continue
+        for value, side in ((stop.start, 1.0), (stop.stop, -1.0)):
+            if value is not None:
+                found.append(
+                    Bound(
+                        stop=stop,
+                        asked=asked,
+                        value=numbers(value),
+                        side=side,
+                        restitution=numbers(stop.restitution),
+                    )
+                )
+    if problems:
+        raise MechanismError(problems, f'mechanism "{description.name}"')
+    return found

@@ -1,0 +1,60 @@
+"""Curves of positions, traced one after the other and proved together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwork.foundation.arrays import Array
+from linkwork.motion.curve_branches import TracedCurve, confirmed, trace_boldly
+from linkwork.numerics.continuation.curve_proof import prove_curve, prove_curves
+from linkwork.numerics.continuation.local_parametrization import Parametrizations
+
+__all__ = ["Walks"]
+
+_HALVINGS = 12  # of a bold step: one that needs more is traced again with careful ones
+
+
+class Walks:
+    """The curve from each place and heading, traced once.
+
+    Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
+    far less time than many small ones. From then on each is proved at once.
+    """
+
+    def __init__(self, leads: Parametrizations, certify: bool) -> None:
+        self.leads, self.certify = leads, certify
+        self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
+        self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
+        self._proved: dict[int, TracedCurve] = {}
+        self._settled = not certify
+
+    def walk(self, start: Array, heading: float | Array) -> TracedCurve:
+        """The curve from a position (N,) on; its proof may still have to be made."""
+        key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
+        if key not in self._known:
+            found = trace_boldly(self.leads, start, heading, self.certify)
+            if self.certify and found.curve.legs:
+                if self._settled:
+                    proof = prove_curve(self.leads, found.curve)
+                    found = confirmed(self.leads, start, heading, found, proof)
+                else:
+                    self._open[key] = start, heading
+            self._known[key] = found
+        return self._known[key]
+
+    def settle(self) -> bool:
+        """Prove all curves; whether all of them remain. Others were traced again with care."""
+        remain = True
+        found = [self._known[key] for key in self._open]
+        proofs = prove_curves(self.leads, [one.curve for one in found], halvings=_HALVINGS)
+        for (key, place), one, proof in zip(self._open.items(), found, proofs, strict=True):
+            after = confirmed(self.leads, *place, one, proof)
+            self._known[key] = self._proved[id(one.curve)] = after
+            remain &= after.curve is one.curve
+        self._open.clear()
+        self._settled = True
+        return remain
+
+    def with_proof(self, walk: TracedCurve) -> TracedCurve:
+        """A curve that remained, as it was settled."""
+        return self._proved.get(id(walk.curve), walk)

@@ -1,0 +1,61 @@
+"""Improved numbers of mechanisms: gradients in lanes, goals, bounds, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.mechanism.varied_number import number_named
+
+
+def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
+    bar = lw.example("four-bar")
+    names = ("O2 A", "A B", "O4 B")
+    numbers = [number_named(bar.description, name) for name in names]
+    x = np.array([q.of(bar.description) for q in numbers])
+    position = bar.solve(at=50.0)
+    lanes = SolvedLanes(bar.model, numbers, x, position.q[None], np.radians([50.0]), 2)
+    found = lanes.at(np.array([x, x]), np.radians([[50.0], [50.0]]), np.arange(2))
+    slopes = found.values([found.rows.place("B").v.real])[1][:, 0, 0]
+    expected = [bar.gradient("B.x", by=names, at=50.0)[name] for name in names]
+    # both solve the same linear equations: a few roundings
+    assert slopes == pytest.approx(np.array([expected, expected]), rel=1e-11)
+
+
+def test_a_stroke_is_met_to_rounding_and_all_rows_are_proved() -> None:
+    crank = lw.example("slider-crank")
+    goal = {"of": "stroke(d)", "target": 70.0}
+    best = crank.improve(goal, vary=["O2 A"], starts=2)[0]
+    assert best.sound
+    assert lw.api.Mechanism(best.description).sweep().value("stroke(d)") == pytest.approx(
+        70.0, abs=1e-9
+    )
+
+
+def test_timed_points_of_a_changed_mechanism_give_its_lengths_back() -> None:
+    bar = lw.example("four-bar")
+    wanted = bar.with_dimensions({"O2 A": 38.0, "A B": 124.0})
+    inputs = [0.0, 60.0, 120.0, 200.0, 290.0]
+    points = [wanted.solve(at=a).points["B"] for a in inputs]
+    best = bar.improve({"point": "B", "points": points, "inputs": inputs}, starts=2)[0]
+    assert best.rms < 1e-9
+    bounded = bar.improve(
+        {"point": "B", "points": points, "inputs": inputs}, starts=2, bounds={"A B": (100, 122)}
+    )[0]
+    assert bounded.numbers["A B"] <= 122.0
+    assert bounded.rms > best.rms
+
+
+def test_goals_without_a_meaning_are_refused() -> None:
+    bar = lw.example("four-bar")
+    with pytest.raises(MechanismError, match="has no target"):
+        bar.improve({"of": "rocker"})
+    with pytest.raises(MechanismError, match="contradict each other"):
+        bar.improve({"of": "rocker", "least": 3.0, "most": 2.0})
+    with pytest.raises(InputError, match="need as many inputs"):
+        bar.improve({"point": "B", "points": [(1, 2)]})
+    with pytest.raises(InputError, match="needs rates"):
+        bar.improve({"of": "B.x.velocity", "target": 1.0})
