@@ -252,10 +252,8 @@ class SolvableMechanism(DescribedMechanism):
 
         Parameters
         ----------
-        point : str
-            The point.
-        place : (float, float)
-            The coordinates [length].
+        point, place : str, (float, float)
+            The point, and coordinates [length].
         guess, at
             As in :meth:`iterates`.
         """
