@@ -122,7 +122,7 @@ def linkage(**parts: Any) -> Mechanism:
     Parameters
     ----------
     **parts
-        Fields of :class:`~linkwork.mechanism.linkage.Linkage`: ``points``, ``links``, ``lengths``,
+        Fields of a description by points and links: ``points``, ``links``, ``lengths``,
         ``inputs``, ``sliders``, … in file units.
 
     Returns
@@ -160,7 +160,7 @@ def loops(**parts: Any) -> Mechanism:
     Parameters
     ----------
     **parts
-        Fields of :class:`~linkwork.mechanism.loops.Loops`: ``loops``, ``dimensions``, ``inputs``,
+        Fields of a description by loops: ``loops``, ``dimensions``, ``inputs``,
         ``guess``, … in file units.
 
     Returns
@@ -193,7 +193,7 @@ def plain_equations(**parts: Any) -> Mechanism:
     Parameters
     ----------
     **parts
-        Fields of :class:`~linkwork.mechanism.loops.PlainEquations`: ``equations``, ``guess``,
+        Fields of a description by plain equations: ``equations``, ``guess``,
         ``dimensions``, …
 
     Returns
