@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
 
 __all__ = ["Bodies", "Body", "Pin", "Spring", "bodies_of"]
 
@@ -58,6 +60,7 @@ def bodies_of(mechanism: lw.Mechanism, *, speed: float = 0.0, torque: float = 0.
     springs are not, because each program has its own forms of them.
     """
     given = mechanism.description
+    assert isinstance(given, Linkage | Loops)
     place = mechanism.solve()
     points = {name: complex(place.place(name).v) for name in place.points}
     moving = {name: speed * complex(place.place(name).d1) for name in place.points}

@@ -67,8 +67,7 @@ def sprung(mechanism: lw.Mechanism, seed: int = 0) -> lw.Mechanism:
         )
     which = mechanism.model.equations.inputs[0].name
     load = lw.Load(point=points[-1], force=(f"3*sin({which}) - 2*(t > 40)", "cos(t) - 4"))
-    kept = [spring for spring in given.springs if spring.stiffness is not None]
-    return mechanism.changed(springs=[*kept, *pulls], loads=[*given.loads, load])
+    return mechanism.changed(springs=[*given.springs, *pulls], loads=[*given.loads, load])
 
 
 def rubbed(mechanism: lw.Mechanism, mu: float) -> lw.Mechanism:

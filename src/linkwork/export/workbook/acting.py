@@ -9,7 +9,19 @@ from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.expression.grammar import parse
 from linkwork.foundation.angles import AngleUnit
 
-__all__ = ["NO", "ONE", "Act", "Entry", "Follower", "Reading", "Unknown", "computed", "minus"]
+__all__ = [
+    "NO",
+    "ONE",
+    "Act",
+    "Entry",
+    "Follower",
+    "Reading",
+    "Unknown",
+    "computed",
+    "left_of",
+    "minus",
+    "opposite",
+]
 
 _CELL = re.compile(r"[$\w.]+")
 
@@ -50,6 +62,17 @@ class Act:
     x: Entry = NO
     y: Entry = NO
     moment: Entry = NO
+
+
+def left_of(along: tuple[Entry, Entry]) -> tuple[Entry, Entry]:
+    """A unit vector turned by a right angle."""
+    return minus(along[1]), along[0]
+
+
+def opposite(on: str, against: str, point: str, along: tuple[Entry, Entry]) -> tuple[Act, ...]:
+    """A unit force on one link, and its reaction on another."""
+    x, y = along
+    return Act(on, point, x, y), Act(against, point, minus(x), minus(y))
 
 
 @dataclass(frozen=True)

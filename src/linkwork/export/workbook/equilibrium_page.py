@@ -11,15 +11,15 @@ import numpy as np
 from linkwork.equations.compiling import coordinate_name
 from linkwork.export.workbook.acting import NO, Act, Entry, Follower, Unknown, computed
 from linkwork.export.workbook.book import CYCLE, FIRST, FORCES, Book, cached, column_name
-from linkwork.export.workbook.contact_cells import contacts
 from linkwork.export.workbook.force_page import ForceColumns
+from linkwork.export.workbook.joined_links import join_links
 from linkwork.export.workbook.load_cells import LoadCells
 from linkwork.export.workbook.page_layout import print_on_one_page
+from linkwork.export.workbook.part.index import contacts_of
 from linkwork.export.workbook.reaction_cells import Reactions
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.results.quantity import Kind
 
 __all__ = ["EQUILIBRIUM", "write_equilibrium"]
@@ -80,7 +80,9 @@ class _Page:
             for key, name in self.book.names.cells.items()
             if key in self.book.values and np.ndim(self.book.values[key]) == 0
         }
-        return Reactions(self.book.model, self.linkage, self.along, self.way, cells)
+        found = Reactions(self.book.model, self.linkage, self.along, self.way, cells)
+        join_links(found)
+        return found
 
     # What is picked from other sheets
 
@@ -123,10 +125,10 @@ class _Page:
 
     def _lines(self) -> None:
         """The unit vectors of lines, and where parts push each other."""
-        lines = {
-            guide.label: guide.line for guide in self.linkage.parts if getattr(guide, "line", None)
+        given = {
+            part.label: part.body or getattr(part, "line", None) for part in self.linkage.parts
         }
-        lines |= {own.name: own.between for own in self.linkage.of(Cylinder)}
+        lines = {name: line for name, line in given.items() if line}
         if lines:
             self._heads("line", ("along x", ""), ("along y", ""))
         self.along: dict[str, tuple[Entry, Entry]] = {}
@@ -136,7 +138,7 @@ class _Page:
             self.along[name] = self._vector(name, 1, (f"(bx-ax)/{span}", f"(by-ay)/{span}"), ends)
             self.row += 1
         self.way: dict[str, tuple[Entry, Entry]] = {}
-        for k, contact in enumerate(contacts(self.linkage)):
+        for k, contact in enumerate(contacts_of(self.linkage)):
             if not k:
                 self._heads(
                     "contact", ("x", self.length), ("y", self.length), ("along x", ""),

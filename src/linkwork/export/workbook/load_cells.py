@@ -12,7 +12,7 @@ from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import Book
 from linkwork.export.workbook.page_layout import print_on_one_page
-from linkwork.export.workbook.reaction_cells import HAVE_CELLS
+from linkwork.export.workbook.part.index import has_cells, numbers_of
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Node, names_in
 from linkwork.forces.part.spring import wound_angle
@@ -20,10 +20,8 @@ from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.belt import Belt
 from linkwork.mechanism.part.load import Load
 from linkwork.mechanism.part.part import carriers
-from linkwork.mechanism.part.toothed import ToothedPart
 
 __all__ = ["LOADS", "LoadCells", "force_problem", "write_loads"]
 
@@ -36,7 +34,7 @@ def force_problem(book: Book) -> str | None:
     linkage = book.model.description
     if not isinstance(linkage, Linkage) or not linkage.loaded or not linkage.inputs:
         return ""
-    others = [part for part in linkage.parts if not isinstance(part, HAVE_CELLS)]
+    others = [part for part in linkage.parts if not has_cells(part)]
     if others:
         return f"the forces of {others[0].label} ({others[0].title.lower()}) have no cells"
     loose = [
@@ -159,16 +157,8 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
         amounts = numbers(spring.stiffness), free, numbers(spring.damping)
         for word, value, unit in zip(("stiffness", "free", "damping"), amounts, units, strict=True):
             cells.number(f"{spring.name} {word}", f"{spring.name}_{word}", value, unit, "spring")
-    for part in linkage.parts:
-        if isinstance(part, ToothedPart):
-            angle = part.pressure(linkage) / linkage.angle.radians
-            about = f"pressure angle of {part.name}"
-            key = f"{part.name} pressure"
-            cells.number(key, f"{part.name}_pressure", angle, linkage.angle.value, about)
-        elif isinstance(part, Belt) and part.pretension is not None:
-            about = f"tension of both strands of {part.name} at rest"
-            key, pull = f"{part.name} pretension", numbers(part.pretension)
-            cells.number(key, f"{part.name}_pretension", pull, force, about)
+    for name, word, value, kind, about in numbers_of(linkage):
+        cells.number(f"{name} {word}", f"{name}_{word}", value, book.model.units.of(kind), about)
     for k, load in enumerate(linkage.loads, start=1):
         _write_load(cells, k, load)
     print_on_one_page(sheet, tall=0)
