@@ -10,7 +10,7 @@ import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -27,6 +27,7 @@ __all__ = [
     "good",
     "print_json",
     "print_lines",
+    "print_page",
     "progress",
     "ready_streams",
     "sentence",
@@ -74,6 +75,11 @@ def abandon_output() -> None:
 def print_lines(lines: Iterable[str], err: bool = False) -> None:
     """Print lines of text to the output, or to the error stream."""
     click.echo("\n".join(lines), err=err)
+
+
+def print_page(page: Iterable[str], written: Sequence[str]) -> None:
+    """Print the lines of a result, then those about files that were written."""
+    print_lines([*page, *(["", *written] if written else [])])
 
 
 def print_json(data: dict[str, Any]) -> None:

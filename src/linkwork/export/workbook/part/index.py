@@ -1,8 +1,8 @@
 """The index of the cells of part reactions: each part that has them has a module of the same name.
 
 It adds the part's reactions with ``write(part, reactions)``, and, if the part can be driven, the
-force along its displacement with ``drive(part, reactions, effort)``. Where the part pushes links in
-contact, ``contacts(part, linkage)`` gives the places. ``numbers(part, linkage)`` are numbers on which
+force along its displacement with ``drive(part, reactions, effort)``. ``contacts(part, linkage)``
+are the places where it pushes links in contact, ``numbers(part, linkage)`` those numbers on which
 its forces alone depend: word, value, kind, description.
 """
 
