@@ -103,7 +103,7 @@ def _finite(data: Any) -> Any:
         case list() | tuple():
             return [_finite(entry) for entry in data]
         case float():
-            return data if math.isfinite(data) else None
+            return data + 0.0 if math.isfinite(data) else None  # -0.0 becomes 0.0
         case _:
             return data
 
