@@ -35,6 +35,8 @@ __all__ = [
     "free_bodies",
     "free_bodies_of",
     "known_acts",
+    "read_bodies",
+    "set_down",
     "solve_forces",
     "totals",
 ]
@@ -131,7 +133,7 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
         elif isinstance(description, Loops):
             for load in description.loads:
                 apply_load(load, applied)
-            bodies = _read_bodies(geometry, applied)
+            bodies = read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
         zero = np.zeros_like(by_work)
@@ -194,7 +196,7 @@ def free_bodies_of(model: Model, solved: Solved) -> FreeBodies:
     return free_bodies(description, geometry, applied)
 
 
-def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
+def read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
     """The free bodies of loops that read as a linkage with everything that is loaded."""
     links = {body.link for body in applied.masses} | {link for link, _ in applied.torques}
     links |= {link for _, _, link in applied.forces if link is not None}
@@ -203,14 +205,23 @@ def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None
         return None
     linkage = own.model.description
     assert isinstance(linkage, Linkage)
+    return free_bodies(linkage, own, applied) if set_down(applied, linkage) else None
+
+
+def set_down(applied: AppliedLoads, linkage: Linkage) -> bool:
+    """Give forces on points that only the loops have to the links there.
+
+    ``False`` if one has none.
+    """
     for k, (point, force, link) in enumerate(applied.forces):
         if link is None and point not in linkage.points:
             # only pins are points of what was read: the link of the file that carries it
-            carrier = next((name for name, on in geometry.links.items() if point in on), "")
+            links = applied.geometry.links
+            carrier = next((name for name, on in links.items() if point in on), "")
             if carrier not in linkage.links:
-                return None
+                return False
             applied.forces[k] = (point, force, carrier)
-    return free_bodies(linkage, own, applied)
+    return True
 
 
 def known_acts(bodies: FreeBodies) -> list[Act]:
