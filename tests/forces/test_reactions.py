@@ -329,6 +329,9 @@ def test_loops_with_a_link_of_one_point_are_loaded_there() -> None:
     crank = lw.loads(BLOCK + '[[loads]]\npoint = "B"\nforce = [-10, 0]\n').forces(at=90)
     # virtual work: the block goes back by the crank's length per radian
     assert crank["θ2.effort"] == pytest.approx(-10 * 40)
+    assert crank["disagreement"] < 1e-13
+    # the rod comes from above and pushes the block along itself; the line holds it up
+    assert crank["d.normal"] == pytest.approx(10 * 40 / math.sqrt(120**2 - 40**2))
 
 
 @pytest.mark.parametrize(

@@ -261,8 +261,8 @@ class LoadedRows(DifferentiatedRows):
         if nominal is None:
             return {}, []
         geometry = ReadGeometry(self, nominal)
-        applied = self._applied(TapedGeometry(self), self.description)
-        if geometry.unknown or not set_down(applied, nominal.linkage):
+        applied = set_down(self._applied(TapedGeometry(self), self.description), nominal.linkage)
+        if geometry.unknown or applied is None:
             return {}, geometry.unknown
         taped = free_bodies(nominal.linkage, geometry, applied)
         return _Equilibrium(taped, nominal, self.tape, 1.0).readings(), []

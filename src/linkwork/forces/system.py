@@ -198,30 +198,46 @@ def free_bodies_of(model: Model, solved: Solved) -> FreeBodies:
 
 def read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
     """The free bodies of loops that read as a linkage with everything that is loaded."""
-    links = {body.link for body in applied.masses} | {link for link, _ in applied.torques}
-    links |= {link for _, _, link in applied.forces if link is not None}
-    own = read_geometry(geometry, links)
+    own = read_geometry(geometry)
     if own is None:
         return None
     linkage = own.model.description
     assert isinstance(linkage, Linkage)
-    return free_bodies(linkage, own, applied) if set_down(applied, linkage) else None
+    loads = set_down(applied, linkage)
+    return None if loads is None else free_bodies(linkage, own, loads)
 
 
-def set_down(applied: AppliedLoads, linkage: Linkage) -> bool:
-    """Give forces on points that only the loops have to the links there.
-
-    ``False`` if one has none.
-    """
-    for k, (point, force, link) in enumerate(applied.forces):
-        if link is None and point not in linkage.points:
+def set_down(applied: AppliedLoads, linkage: Linkage) -> AppliedLoads | None:
+    """The loads on loops as loads on the links read from them; ``None`` if some have none."""
+    given = applied.geometry.links
+    own = {link: _same_link(link, points, given, linkage) for link, points in given.items()}
+    masses = [replace(body, link=own[body.link]) for body in applied.masses]
+    torques = [(own[link], torque) for link, torque in applied.torques]
+    forces = []
+    for point, force, link in applied.forces:
+        carrier = None if link is None else own[link]
+        if carrier is None and point not in linkage.points:
             # only pins are points of what was read: the link of the file that carries it
-            links = applied.geometry.links
-            carrier = next((name for name, on in links.items() if point in on), "")
-            if carrier not in linkage.links:
-                return False
-            applied.forces[k] = (point, force, carrier)
-    return True
+            carrier = next((own[name] for name, on in given.items() if point in on), "")
+        forces.append((point, force, carrier))
+    carriers = [*(body.link for body in masses), *(link for link, _ in torques)]
+    carriers += [link for _, _, link in forces if link is not None]
+    if not all(carriers):
+        return None
+    return replace(applied, masses=masses, torques=torques, forces=forces)
+
+
+def _same_link(
+    link: str, points: tuple[str, ...], given: Mapping[str, tuple[str, ...]], linkage: Linkage
+) -> str:
+    """The name of a link of loops in the linkage that was read from them; "" if it is not there."""
+    if link in linkage.links:
+        return link
+    # a block has one point, and another name if the file has a link of that name
+    blocks = [
+        name for name, on in linkage.links.items() if name not in given and tuple(on) == points
+    ]
+    return blocks[0] if len(points) == len(blocks) == 1 else ""
 
 
 def known_acts(bodies: FreeBodies) -> list[Act]:
