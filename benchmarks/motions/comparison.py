@@ -29,9 +29,8 @@ def compare() -> bool:
                 continue
             found[program] = answer
             seconds, error = answer
-            print(
-                f"  {case}, {program:<12} {seconds:8.3f} s   error {error:.1e} {CASES[case].unit}"
-            )
+            took, unit = f"{seconds:7.3f} s", CASES[case].unit
+            print(f"  {case:<12} {program:<10} {took}   error {error:.1e} {unit}")
         if "Linkwork" not in found:
             held = False
         elif "Exudyn" in found:
