@@ -109,6 +109,8 @@ def try_step(
     """
     times = t + h * C
     guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
+    if not np.isfinite(guess[0]):
+        return None, _SMALLEST * h, math.inf
     a = np.full(POINTS, float(guess[0]))
     jacobian = None
     for round_ in range(_MOST_ROUNDS):
@@ -122,6 +124,8 @@ def try_step(
             return None, _SMALLEST * h, math.inf
         change = np.linalg.solve(jacobian, found - a)
         a = a + change
+        if not np.isfinite(a).all():
+            return None, _SMALLEST * h, math.inf
         size = np.abs(a).max() + abs(speed) / abs(h)
         if np.abs(change).max() <= _SETTLED * POINTS * size:
             break

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
-from linkwork.dynamics.reduction import Reduction
+from linkwork.dynamics.reduction import Place, Reduction
 from linkwork.dynamics.simulated import bounds_of, model_name, start_speeds
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
@@ -36,6 +36,7 @@ def simulate_inputs(
     policy: ChangePointPolicy,
     certify: bool,
     forced: bool,
+    place: Place,
     progress: Callable[[float], None] | None,
 ) -> Motion:
     """The motion of several free inputs at times (B,).
@@ -53,7 +54,7 @@ def simulate_inputs(
         raise InputError(f"{name}: further forces are added to one input only")
     speeds = start_speeds(model, start_speed)
     start = model.from_position(solve(model, at, certify=False, throw=True))
-    reduction = Reduction(model, model_in_time(model))
+    reduction = Reduction(model, model_in_time(model), place=place)
     if reduction.rubs:
         raise InputError(f"{name}: friction is simulated with one input only, leave out [friction]")
     dynamics = InputDynamics(reduction, start.equations.start.copy())
@@ -75,7 +76,8 @@ def simulate_inputs(
     if beyond is not None:
         bound, value = beyond
         raise InputError(
-            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}"
+            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
+            f"{place(bound.key)}"
         )
     travel.run()
     return _motion(travel)

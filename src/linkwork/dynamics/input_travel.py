@@ -9,6 +9,8 @@ import numpy as np
 
 from linkwork.dynamics.events import Bound, Event, first_event
 from linkwork.dynamics.input_dynamics import InputDynamics
+from linkwork.dynamics.pace import Pace
+from linkwork.dynamics.reduction import FAR, NEAR
 from linkwork.dynamics.vector_collocation import VectorStep, try_vector_step
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
@@ -55,7 +57,11 @@ class InputTravel:
         self._switch()
         self._record_here("")
         h = _FIRST * self.until
+        pace = Pace(self.until)
         while self.t < self.until and not self.ended:
+            if pace.crawls(self.t, self.q):
+                self._end(self._why())
+                continue
             short = self.until - self.t
             step, following = try_vector_step(
                 self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short)
@@ -96,8 +102,9 @@ class InputTravel:
             name = f"stop of {self.bounds[event.number].asked.name}"
             self._end(f"a {name} is hit, and shocks of several inputs are not computed", name)
             return
-        self._record_here("switch")
+        # the row has the loads, and so the accelerations, after the switch
         self._switch()
+        self._record_here("switch")
         limit = self.t - _CHATTER * self.until
         self.recent = [*(t for t in self.recent if t > limit), self.t]
         if len(self.recent) > _MOST_EVENTS:
@@ -172,4 +179,14 @@ class InputTravel:
         """Why no step succeeds."""
         if self.dynamics.nearness > _SINGULAR:
             return "a dead point of the inputs: their values do not lead on from there"
-        return "the accelerations have no bound there, or the inputs leave their reach"
+        near, far = (
+            self._geometry(
+                self.q + ahead[:, None] * self.speed,
+                np.tile(self.speed, (len(ahead), 1)),
+                self.t + ahead,
+            )
+            for ahead in (NEAR * self.until, FAR * self.until)
+        )
+        return self.dynamics.reduction.failing_load(near, far) or (
+            "the accelerations have no bound there, or the inputs leave their reach"
+        )

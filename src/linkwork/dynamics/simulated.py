@@ -8,12 +8,13 @@ import numpy as np
 
 from linkwork.dynamics.events import Bound
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem, choices
+from linkwork.foundation.errors import ExpressionError, InputError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.model import Model
+from linkwork.motion.stop_quantities import bounded_quantity
 
 __all__ = ["bounds_of", "check_loaded", "model_name", "start_speeds"]
 
@@ -79,26 +80,16 @@ def bounds_of(named: Model) -> list[Bound]:
     """The bounds of all stops."""
     description = named.description
     assert isinstance(description, LoadedBodies)
-    found, problems = [], []
     numbers = description.numbers
-    for k, stop in enumerate(description.stops):
-        own = named.motion_quantities
-        try:
-            asked = own.find(stop.of)
-        except InputError as error:
-            problems.append(Problem(key=("stops", k, "of"), message=str(error)))
-            continue
-        for value, side in ((stop.start, 1.0), (stop.stop, -1.0)):
-            if value is not None:
-                found.append(
-                    Bound(
-                        stop=stop,
-                        asked=asked,
-                        value=numbers(value),
-                        side=side,
-                        restitution=numbers(stop.restitution),
-                    )
-                )
-    if problems:
-        raise MechanismError(problems, f'mechanism "{description.name}"')
-    return found
+    return [
+        Bound(
+            key=("stops", k, field),
+            asked=bounded_quantity(stop.of, named.motion_quantities),
+            value=numbers(value),
+            side=side,
+            restitution=numbers(stop.restitution),
+        )
+        for k, stop in enumerate(description.stops)
+        for field, value, side in (("from", stop.start, 1.0), ("to", stop.stop, -1.0))
+        if value is not None
+    ]

@@ -90,6 +90,8 @@ def try_vector_step(
             return None, _SMALLEST * h
         change = (inverse @ (found - a).ravel()).reshape(a.shape)
         a = a + change
+        if not np.isfinite(a).all():
+            return None, _SMALLEST * h
         size = np.abs(a).max() + np.abs(speed).max() / abs(h)
         if np.abs(change).max() <= max(_SETTLED * POINTS * size, noise):
             break
