@@ -72,7 +72,8 @@ def simulate(
 ) -> None:
     """Compute the motion in time under masses, loads, springs and a motor.
 
-    The inputs are free: they start at the sketch, or at --at, with --start-speed.
+    Inputs with a law follow it; the others are free: they start at the sketch, or at
+    --at, with --start-speed.
     Rows are added where loads switch and where stops are hit.
 
     \b

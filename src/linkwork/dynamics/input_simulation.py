@@ -1,4 +1,4 @@
-"""Simulation of a mechanism with several inputs, all of them free."""
+"""Simulation of a mechanism with several inputs, free or driven by laws."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
 from linkwork.dynamics.reduction import Place, Reduction
 from linkwork.dynamics.simulated import bounds_of, model_name, start_speeds
+from linkwork.equations.input_motion import law_motions
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import canonical
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
 from linkwork.mechanism.dimensions import Number
@@ -39,7 +41,7 @@ def simulate_inputs(
     place: Place,
     progress: Callable[[float], None] | None,
 ) -> Motion:
-    """The motion of several free inputs at times (B,).
+    """The motion of several inputs at times (B,): some may have laws, the others are free.
 
     Raises
     ------
@@ -53,11 +55,13 @@ def simulate_inputs(
     if forced:
         raise InputError(f"{name}: further forces are added to one input only")
     speeds = start_speeds(model, start_speed)
-    start = model.from_position(solve(model, at, certify=False, throw=True))
+    start = _start(model, at)
     reduction = Reduction(model, model_in_time(model), place=place)
     if reduction.rubs:
         raise InputError(f"{name}: friction is simulated with one input only, leave out [friction]")
     dynamics = InputDynamics(reduction, start.equations.start.copy())
+    inputs = dynamics.inputs
+    inputs.check(model, float(times[-1]))
     masses = np.linalg.eigvalsh(dynamics.masses())
     if not masses[0] > _MASSLESS * masses[-1]:
         raise InputError(
@@ -68,7 +72,7 @@ def simulate_inputs(
         dynamics=dynamics,
         bounds=bounds_of(reduction.named),
         times=times,
-        speed=speeds / dynamics.size,
+        speed=(speeds / dynamics.size)[inputs.free],
         certify=certify,
         progress=progress,
     )
@@ -83,6 +87,27 @@ def simulate_inputs(
     return _motion(travel)
 
 
+def _start(model: Model, at: float | Mapping[str, float] | None) -> Model:
+    """The mechanism at its start: driven inputs where their laws begin."""
+    if not model.description.timed:
+        return model.from_position(solve(model, at, certify=False, throw=True))
+    names = [variable.name for variable in model.equations.inputs]
+    laws = law_motions(model.equations, model.description)
+    if at is not None and not isinstance(at, Mapping):
+        raise InputError(f"name the input that begins at {at:g}, for example {names[0]}={at:g}")
+    known = {canonical(name): value for name, value in (at or {}).items()}
+    values = {}
+    for name, own, law, scale in zip(
+        names, model.start_inputs, laws, model.input_scale, strict=True
+    ):
+        if law is not None and canonical(name) in known:
+            raise InputError(f"a law drives {name}, which begins where the law does: leave it out")
+        here = own if law is None else law[0] + float(law[1].jet(np.zeros(1))[0][0])
+        values[name] = known.pop(canonical(name), here / scale)
+    # names of no input are refused with the others
+    return model.from_position(solve(model, {**values, **known}, certify=False, throw=True))
+
+
 def _motion(travel: InputTravel) -> Motion:
     rows, added = SolvedRows.concatenate(travel.rows), list(travel.added)
     missing = travel.times[travel.taken :]
@@ -93,7 +118,8 @@ def _motion(travel: InputTravel) -> Motion:
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.ended:
         model = travel.dynamics.reduction.model
-        values = travel.q * travel.dynamics.size / model.input_scale
+        q = travel.dynamics.inputs.complete(travel.q[None], np.array([travel.t]), 0)[0]
+        values = q * travel.dynamics.size / model.input_scale
         inputs = model.equations.inputs
         place = ", ".join(
             f"{variable.name} = {value:.6g} {model.input_units[variable.name]}".rstrip()

@@ -62,7 +62,9 @@ class InputTravel:
             if pace.crawls(self.t, self.q):
                 self._end(self._why())
                 continue
-            short = self.until - self.t
+            # the acceleration of a law jumps between its segments
+            target = min(self.until, self.dynamics.inputs.next_break(self.t))
+            short = target - self.t
             step, following = try_vector_step(
                 self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short)
             )
@@ -71,8 +73,9 @@ class InputTravel:
                     self._end(self._why())
                 h = following
                 continue
+            reaches = step.h == short
             h = following if h <= short else max(h, following)
-            self._advance(step, self.until if h > short and step.h == short else step.t + step.h)
+            self._advance(step, target if reaches else step.t + step.h)
             if self.progress is not None:
                 self.progress(self.t / self.until)
 
@@ -90,7 +93,7 @@ class InputTravel:
         self.taken += len(times)
         place, speed, _ = step.at(np.array([end]))
         # what follows starts from a proved position, never from one of a rejected step
-        if not self.dynamics.settle(place[0]):
+        if not self.dynamics.settle(place[0], end):
             self._end("the position there is not proved: it is too close to a singular one")
             return
         self.t, self.q, self.speed = end, place[0], speed[0]
@@ -129,8 +132,9 @@ class InputTravel:
         )
 
     def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
-        v, found = self.dynamics.positions(q)
-        rates = self.dynamics.solver.rates(v, speed * self.dynamics.size)
+        v, found = self.dynamics.positions(q, t)
+        whole = self.dynamics.inputs.complete(speed, t, 1)
+        rates = self.dynamics.solver.rates(v, whole * self.dynamics.size)
         first = np.where(found[:, None], rates.first, np.nan)
         return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 

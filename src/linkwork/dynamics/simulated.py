@@ -35,7 +35,7 @@ def check_loaded(model: Model) -> LoadedBodies:
     description, name = model.description, model_name(model)
     if not isinstance(description, LoadedBodies):
         raise InputError(f"{name} has plain equations: only links have masses")
-    if description.timed:
+    if description.inputs and all(which.law is not None for which in description.inputs):
         raise InputError(f"a law drives {name}: leave it out to simulate")
     if not description.inputs:
         raise InputError(f"{name} has 0 inputs: a simulation needs a degree of freedom")
@@ -67,6 +67,8 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
                 f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
             )
         k = known[name]
+        if description.inputs[k].law is not None:
+            raise InputError(f"start speed: a law drives {names[k]}, which has its speed")
         kind = description.inputs[k].drives[0]
         try:
             own = speed_per_second(value, kind, description.numbers, description.length)

@@ -74,8 +74,8 @@ def simulate(
     Raises
     ------
     InputError
-        If nothing has mass, the mechanism has no input, a law drives it, or it has several inputs
-        and friction.
+        If nothing has mass, the mechanism has no input, laws drive all inputs, or it has several
+        inputs and friction.
     """
     check_flags(progress, certify=certify)
     times = _times(until, step)
@@ -85,8 +85,8 @@ def simulate(
     if len(model.description.inputs) > 1:
         check_loaded(model)
         return simulate_inputs(
-            model, times=times, at=at, start_speed=start_speed, policy=policy, certify=certify,
-            forced=bool(forcing), place=place, progress=progress,
+            model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
+            certify=certify, forced=bool(forcing), place=place, progress=progress,
         )  # fmt: skip
     speed = float(start_speeds(model, start_speed)[0])
     reduction, curve = start_of(model, at, policy, certify, forcing, place)

@@ -86,7 +86,8 @@ class AppliedLoads:
             still: Array = np.zeros(self.geometry.shape) + self.geometry.numbers(number)
             return still
         found = self.formula(parse(number, comparing=True))
-        lost = ~np.isfinite(found)
+        # of families, and of values that are recorded, rows are judged later
+        lost = ~np.isfinite(found) if isinstance(found, np.ndarray) else np.zeros(1, dtype=bool)
         if lost.any():
             self.undefined[number] = lost
         return found
