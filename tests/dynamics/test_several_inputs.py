@@ -162,7 +162,7 @@ def test_what_is_not_simulated_is_refused(
 def _driven_cart(**more: Any) -> lw.Mechanism:
     """The cart moves 1 m by a law and stays, while its pendulum is free."""
     law = [lw.LawSegment(law="3-4-5", over=1, by=1), lw.LawSegment(law="dwell", over=1)]
-    given = {"begin": 5, "law": law} | more
+    given: dict[str, Any] = {"begin": 5, "law": law} | more
     bar = lw.Input(link="bar", start=-90, stop=-90)
     return lw.linkage(**(CART | {"inputs": (lw.Input(slider="d", **given), bar)}))
 

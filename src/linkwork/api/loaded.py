@@ -118,9 +118,9 @@ class LoadedMechanism(SolvableMechanism):
         """The motion in time under masses, loads, springs, a motor and stops; see
         :mod:`linkwork.dynamics`.
 
-        Inputs with a law follow it, the others are free: they start at ``at`` with ``start_speed``. Friction of joints takes the
-        energy ``friction_work`` of the motion, and can hold the mechanism at rest; with several
-        inputs it is refused.
+        Inputs with a law follow it, the others are free: they start at ``at`` with
+        ``start_speed``. Friction of joints takes the energy ``friction_work`` of the motion, and
+        can hold the mechanism at rest; with several inputs it is refused.
 
         Parameters
         ----------
@@ -148,8 +148,8 @@ class LoadedMechanism(SolvableMechanism):
         Raises
         ------
         InputError
-            If nothing has mass, there is no input, or laws drive all of them; for friction in joints
-            whose forces redundant links leave undetermined.
+            If nothing has mass, there is no input, or laws drive all of them; for friction in
+            joints whose forces redundant links leave undetermined.
 
         Examples
         --------

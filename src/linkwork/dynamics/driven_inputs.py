@@ -32,7 +32,7 @@ class DrivenInputs:
     @classmethod
     def of(cls, model: Model, size: Array) -> DrivenInputs:
         """Those of a mechanism with its own inputs."""
-        laws = [None] * len(size)
+        laws: list[tuple[float, Piecewise] | None] = [None] * len(size)
         if model.description.timed:
             laws = law_motions(model.equations, model.description)
         return cls(laws=tuple(laws), size=size)

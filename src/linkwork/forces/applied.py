@@ -87,9 +87,10 @@ class AppliedLoads:
             return still
         found = self.formula(parse(number, comparing=True))
         # of families, and of values that are recorded, rows are judged later
-        lost = ~np.isfinite(found) if isinstance(found, np.ndarray) else np.zeros(1, dtype=bool)
-        if lost.any():
-            self.undefined[number] = lost
+        if not is_batched(found):
+            lost = ~np.isfinite(found)
+            if lost.any():
+                self.undefined[number] = lost
         return found
 
     def formula(self, tree: Node) -> Array:
