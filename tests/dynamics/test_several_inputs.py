@@ -202,7 +202,7 @@ def test_a_formula_of_the_time_drives_a_crank_of_a_five_bar() -> None:
     left = lw.Input(link="left", law="120 + 20*sin(180*t)", start=0, stop=1)
     right = lw.Input(link="right", start=66, stop=66)
     arm = _arm(1.0, "m", loads=(), inputs=(left, right))
-    motion = arm.simulate(until=0.3, step=0.05)
+    motion = arm.simulate(until=0.1, step=0.05)
     law = 120 + 20 * np.sin(np.pi * motion["t"])
     assert motion["left"] == pytest.approx(law, abs=1e-11)
     assert motion["disagreement"].max() < 1e-11
@@ -239,3 +239,36 @@ def test_laws_that_do_not_fit_a_simulation_are_refused(
     with pytest.raises(lw.InputError) as caught:
         _driven_cart(**change).simulate(**({"until": 2} | asked))
     assert said in str(caught.value)
+
+
+def test_a_double_pendulum_has_four_equilibria() -> None:
+    """ω² = (2 ± √2) g/l about the hanging one, with signs for bars that stand."""
+    found = lw.example("double-pendulum").equilibria()
+    places = [(each.values["upper"], each.values["lower"]) for each in found]
+    signs = [(-1, -1), (-1, 1), (1, -1), (1, 1)]
+    assert np.array(places) == pytest.approx(90 * np.array(signs), abs=1e-9)
+    assert [each.stable for each in found] == [True, False, False, False]
+    # K = -g diag(2 sin a, sin b), M = [[2, cos(a - b)], [cos(a - b), 1]]
+    for each, (a, b) in zip(found, signs, strict=True):
+        masses = np.array([[2, a * b], [a * b, 1]])
+        squares = np.linalg.eigvals(np.linalg.solve(masses, -G * np.diag([2 * a, b])))
+        rates = np.sort(np.sign(squares) * np.sqrt(np.abs(squares))) / (2 * math.pi)
+        assert each.frequencies == pytest.approx(rates, rel=1e-9)
+        assert each.frequency == each.frequencies[0]
+
+
+@pytest.mark.extended
+def test_equilibria_of_a_five_bar_are_at_rest() -> None:
+    """A motion that starts at rest there does not begin to move; at the others a law is refused."""
+    spring = lw.Spring(name="s", between=("A", "B"), stiffness=200, free=1)
+    free = [lw.Input(link="left"), lw.Input(link="right")]
+    arm = _arm(1.0, "m", loads=(), springs=[spring], inputs=free)
+    stable = [each for each in arm.equilibria() if each.stable]
+    assert len(stable) >= 2
+    for each in stable[:2]:
+        at = {name: each.values[name] for name in ("left", "right")}
+        motion = arm.simulate(until=0.5, step=0.5, at=at)
+        assert np.abs(motion["left.acceleration"]).max() < 1e-9
+        assert motion["left"] == pytest.approx(at["left"], abs=1e-9)
+    with pytest.raises(lw.InputError, match="leave it out for equilibria"):
+        _driven_cart().equilibria()

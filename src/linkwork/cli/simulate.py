@@ -148,7 +148,8 @@ def _inputs(mechanism: Mechanism) -> list[str]:
 def _list_equilibria(
     mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
 ) -> None:
-    found = mechanism.equilibria(start, change_points=change_points)
+    with progress("looking for equilibria"):
+        found = mechanism.equilibria(start, change_points=change_points)
     if as_json:
         print_json({"equilibria": [asdict(each) for each in found]})
     else:

@@ -45,7 +45,8 @@ class InputDynamics:
         #: The unit in which every input is measured here, (p,).
         self.size = np.array([1.0 if kind == "angle" else length for kind in kinds])
         self.inputs = DrivenInputs.of(model, self.size)
-        self._at, self._slopes, self._signs = self._anchor(start)
+        self._start = start
+        self.restart()
         own = reduction.description
         unit = force_of_inertia(own.mass, own.length, own.force)
         given = [each.inertia for each in own.inputs]
@@ -67,6 +68,15 @@ class InputDynamics:
     def nearness(self) -> float:
         """How near the last proved position is to a singular one."""
         return float(self.solver.rates(self._at[None], np.ones(len(self.size))).nearness[0])
+
+    @property
+    def variables(self) -> Array:
+        """The last proved position, (N,)."""
+        return self._at
+
+    def restart(self) -> None:
+        """Go on from the first position."""
+        self._at, self._slopes, self._signs = self._anchor(self._start)
 
     def _anchor(self, v: Array) -> tuple[Array, Array, Array]:
         """A position with its derivatives by all inputs, (N, p), and the signs of its blocks."""

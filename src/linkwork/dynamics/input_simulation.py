@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
 from linkwork.dynamics.reduction import Place, Reduction
-from linkwork.dynamics.simulated import bounds_of, model_name, start_speeds
+from linkwork.dynamics.simulated import bounds_of, check_masses_move, model_name, start_speeds
 from linkwork.equations.input_motion import law_motions
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
@@ -25,8 +25,6 @@ from linkwork.numerics.rows import SolvedRows
 from linkwork.results.motion import Motion
 
 __all__ = ["simulate_inputs"]
-
-_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 
 
 def simulate_inputs(
@@ -62,12 +60,7 @@ def simulate_inputs(
     dynamics = InputDynamics(reduction, start.equations.start.copy())
     inputs = dynamics.inputs
     inputs.check(model, float(times[-1]))
-    masses = np.linalg.eigvalsh(dynamics.masses())
-    if not masses[0] > _MASSLESS * masses[-1]:
-        raise InputError(
-            f"{name}, and they can move at the start without moving a mass: add [masses], or "
-            "inertia to the inputs"
-        )
+    check_masses_move(model, dynamics.masses())
     travel = InputTravel(
         dynamics=dynamics,
         bounds=bounds_of(reduction.named),

@@ -16,7 +16,9 @@ from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.model import Model
 from linkwork.motion.stop_quantities import bounded_quantity
 
-__all__ = ["bounds_of", "check_loaded", "model_name", "start_speeds"]
+__all__ = ["bounds_of", "check_loaded", "check_masses_move", "model_name", "start_speeds"]
+
+_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 
 
 def model_name(model: Model) -> str:
@@ -42,6 +44,22 @@ def check_loaded(model: Model) -> LoadedBodies:
     if not description.masses and all(each.inertia is None for each in description.inputs):
         raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
     return description
+
+
+def check_masses_move(model: Model, masses: Array) -> None:
+    """Refuse inputs that can move without a mass; ``masses`` (f, f) at the start.
+
+    Raises
+    ------
+    InputError
+        With what to add.
+    """
+    sizes = np.linalg.eigvalsh(masses)
+    if not sizes[0] > _MASSLESS * sizes[-1]:
+        raise InputError(
+            f"{model_name(model)} has {len(model.description.inputs)} inputs, and they can move at "
+            "the start without moving a mass: add [masses], or inertia to the inputs"
+        )
 
 
 def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:

@@ -11,7 +11,7 @@ from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.input_simulation import simulate_inputs
 from linkwork.dynamics.reduction import Forcing, Place, Reduction
 from linkwork.dynamics.sample import Sample
-from linkwork.dynamics.simulated import bounds_of, check_loaded, model_name, start_speeds
+from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, key_text
@@ -112,20 +112,12 @@ def start_of(
     place: Place = key_text,
 ) -> Start:
     """The loads, and the curve of positions through the start."""
-    _check(model)
+    check_loaded(model)
     position = solve(model, at, certify=False, throw=True)
     there = model.from_position(position)
     start = there.equations.start.copy()
     reduction = Reduction(model, model_in_time(model), forcing, place)
     return reduction, curve_of(model, start, policy, certify)
-
-
-def _check(model: Model) -> None:
-    description = check_loaded(model)
-    if len(description.inputs) != 1:
-        raise InputError(
-            f"{model_name(model)} has {len(description.inputs)} inputs: equilibria need one"
-        )
 
 
 def _times(until: float, step: float | None) -> Array:
