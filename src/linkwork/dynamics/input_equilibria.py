@@ -28,7 +28,7 @@ _LONGEST = 0.3  # of Newton's method
 _ROUNDS = 60
 _SETTLED = 1e-12
 _DIFFERENCE = 1e-3  # of fourth order: its error is that of rounding
-_SAME = 1e-7
+_SAME_POSITION = 1e-7
 
 
 def input_equilibria(
@@ -58,7 +58,9 @@ def input_equilibria(
         place = _folded(model, v)
         if not _inside(dynamics, place, bounds):
             continue
-        if not any(_distance(model, dynamics, place, other) < _SAME for other, *_ in found):
+        if not any(
+            _distance(model, dynamics, place, other) < _SAME_POSITION for other, *_ in found
+        ):
             found.append((place, v, slope))
     lead = dynamics.solver.unknowns
     found.sort(key=lambda each: tuple(np.round(each[0][lead:], 6)))
