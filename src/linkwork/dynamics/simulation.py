@@ -82,8 +82,8 @@ def simulate(
     policy = ChangePointPolicy.of(change_points)
     if policy is ChangePointPolicy.TURN:
         raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    check_loaded(model)
     if len(model.description.inputs) > 1:
-        check_loaded(model)
         return simulate_inputs(
             model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
             certify=certify, forced=bool(forcing), place=place, progress=progress,
