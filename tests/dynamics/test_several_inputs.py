@@ -114,14 +114,39 @@ def test_a_closed_loop_keeps_its_balance_and_its_units() -> None:
     assert metres["disagreement"].max() < 1e-11
 
 
-def test_a_stop_ends_the_motion_where_it_is_hit() -> None:
-    """Shocks of several inputs are not computed: time and place are said."""
-    stop = lw.Stop(of="d", start=4.9)
+def test_a_cart_bounces_off_a_stop_and_its_pendulum_swings() -> None:
+    """M = [[4, 1], [1, 1]] below: the impulse on the cart alone leaves 1 m/s and -2 rad/s."""
+    stop = lw.Stop(of="d", start=4.9, restitution=1)
     motion = lw.linkage(**CART, stops=[stop]).simulate(
-        until=1, at={"d": 5, "bar": -90}, start_speed={"d": -1}
+        until=0.2, step=0.1, at={"d": 5, "bar": -90}, start_speed={"d": -1}
     )
+    (hit,) = np.flatnonzero([word == "stop of d" for word in motion.limit])
+    assert motion["t"][hit] == pytest.approx(0.1, abs=1e-12)
+    assert motion["d.velocity"][hit] == pytest.approx(-1, abs=1e-12)
+    energy = motion["kinetic_energy"] + motion["stored_energy"]
+    assert energy == pytest.approx(energy[0], rel=1e-12)
+    oracle = solve_ivp(
+        _free_cart, (0, 0.1), [4.9, -math.pi / 2, 1, -2], "DOP853", rtol=1e-13, atol=1e-13
+    )
+    last = [motion["d"][-1], math.radians(motion["bar"][-1]), motion["d.velocity"][-1]]
+    assert last == pytest.approx(oracle.y[:3, -1], abs=1e-10)
+
+
+def _free_cart(_: float, y: Any) -> list[float]:
+    _, angle, v, w = y
+    masses = [[4, -math.sin(angle)], [-math.sin(angle), 1]]
+    right = [math.cos(angle) * w**2, -G * math.cos(angle)]
+    return [v, w, *np.linalg.solve(masses, right)]
+
+
+def test_a_motion_that_stays_at_a_stop_ends_there() -> None:
+    """Contacts of several inputs are not computed: time and place are said."""
+    push = lw.Load(point="B", link="cart", force=(-1, 0))
+    cart = lw.linkage(**CART, stops=[lw.Stop(of="d", start=4.9)], loads=[push])
+    motion = cart.simulate(until=1, at={"d": 5, "bar": -90}, start_speed={"d": -1})
     assert motion.message.startswith("the motion ends at t = 0.")
     assert "d = 4.9 m" in motion.message
+    assert "it stays at the stop of d" in motion.message
     assert "stop of d" in motion.limit
     assert not motion.found[-1]
 

@@ -24,6 +24,8 @@ _SHORTEST = 1e-12  # of the whole time: a shorter step makes no way
 _FIRST = 1e-3  # of the whole time: the first step
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
+_DIFFERENCE = 1e-3  # of fourth order, for the normal of a stop
+_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
 
@@ -102,8 +104,7 @@ class InputTravel:
 
     def _meet(self, event: Event) -> None:
         if event.falls:
-            name = f"stop of {self.bounds[event.number].asked.name}"
-            self._end(f"a {name} is hit, and shocks of several inputs are not computed", name)
+            self._hit(event.number)
             return
         # the row has the loads, and so the accelerations, after the switch
         self._switch()
@@ -112,6 +113,29 @@ class InputTravel:
         self.recent = [*(t for t in self.recent if t > limit), self.t]
         if len(self.recent) > _MOST_EVENTS:
             self._end("a comparison in a load switches without end there")
+
+    def _hit(self, number: int) -> None:
+        """A shock at a stop: an impulse along its normal."""
+        bound = self.bounds[number]
+        name = f"stop of {bound.asked.name}"
+        self._record_here(name)
+        count = len(self.q)
+        steps = _DIFFERENCE * np.array([1.0, -1.0, 2.0, -2.0])
+        around = np.stack([self.q + step * unit for step in steps for unit in np.eye(count)])
+        speeds, times = np.tile(self.speed, (len(around), 1)), np.full(len(around), self.t)
+        found = self._margins(around, speeds, times)[:, number].reshape(4, count)
+        normal = (8.0 * (found[0] - found[1]) - (found[2] - found[3])) / (12.0 * _DIFFERENCE)
+        push = np.linalg.solve(self.dynamics.masses(), normal)
+        # eq. (172)
+        leaving = -bound.restitution * float(normal @ self.speed)
+        self.speed = self.speed - float(normal @ self.speed) / float(normal @ push) * push * (
+            1.0 + bound.restitution
+        )
+        bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
+        pull = float(normal @ bend)
+        if pull <= 0.0 and 2.0 * leaving <= _RESTS * self.until * abs(pull):
+            self._end(f"it stays at the {name}, and contacts of several inputs are not computed")
+        self._switch()
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
