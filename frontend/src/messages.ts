@@ -240,6 +240,7 @@ export interface Simulate {
   id?: number;
   until: number | string;
   start_speed?: number | string;
+  start_speeds?: Record<string, number | string> | null;
   at?: Record<string, number | string> | null;
   change_points?: string;
   step?: number | string | null;

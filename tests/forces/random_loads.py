@@ -29,7 +29,9 @@ def loaded(mechanism: lw.Mechanism, seed: int = 0) -> lw.Mechanism:
         x, y = random.normal(size=2) * 0.3 * size * directed
         inertia = random.uniform(0.0, 1.0) * size**2
         masses[link] = lw.Mass(mass=random.uniform(0.5, 2.0), center=(x, y), inertia=inertia)
-    points = random.choice(list(given.points), 3)
+    fixed = given.links["ground"]
+    moved = [point for point in given.points if point not in fixed]
+    points = list(random.choice(moved, 3)) if moved else []
     loads = [lw.Load(point=str(p), force=tuple(random.normal(size=2) * 10.0)) for p in points]
     loads.append(lw.Load(link=str(random.choice(moving)), torque=10.0 * size))
     driven = [replace(which, speed=None) for which in given.inputs]

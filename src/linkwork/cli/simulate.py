@@ -69,7 +69,8 @@ def simulate(
 ) -> None:
     """Compute the motion in time under masses, loads, springs and a motor.
 
-    The inputs are free: they start at the sketch, or at --at, with --start-speed.
+    Inputs with a law follow it; the others are free: they start at the sketch, or at
+    --at, with --start-speed.
     Rows are added where loads switch and where stops are hit.
 
     \b
@@ -136,7 +137,8 @@ def _inputs(mechanism: Mechanism) -> list[str]:
 def _list_equilibria(
     mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
 ) -> None:
-    found = mechanism.equilibria(start, change_points=change_points)
+    with progress("looking for equilibria"):
+        found = mechanism.equilibria(start, change_points=change_points)
     if as_json:
         print_json({"equilibria": [asdict(each) for each in found]})
     else:

@@ -20,6 +20,7 @@ from linkwork.forces.pins import join_pins, read_first_links
 from linkwork.forces.read_bodies import read_geometry
 from linkwork.forces.virtual_work import efforts, energies
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
@@ -68,11 +69,14 @@ class ForceValue:
 class ForceRows:
     """All forces in B rows: quantities by name, the status code of every row, and whether it is
     proved that friction leaves an equilibrium or none.
+
+    ``undefined``: formulas of loads with the rows in which they have no finite value.
     """
 
     values: Mapping[str, ForceValue]
     status: StatusArray
     proved: BoolArray
+    undefined: Mapping[str, BoolArray] = FrozenDict()
 
 
 @dataclass(eq=False)
@@ -155,12 +159,17 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
+    undefined = {formula: rows & ~lost for formula, rows in applied.undefined.items()}
+    for rows in undefined.values():
+        status[rows] = ForceStatus.NO_LOAD.code
     status[lost] = ForceStatus.NO_POSITION.code
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
     status[found.locked & ~lost] = ForceStatus.SELF_LOCKING.code
     status[found.held & ~lost] = ForceStatus.HELD.code
-    return ForceRows(values=found.values, status=status.astype(np.int8), proved=found.proved)
+    return ForceRows(
+        values=found.values, status=status.astype(np.int8), proved=found.proved, undefined=undefined
+    )
 
 
 def _anything(geometry: Geometry) -> Iterator[Array]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from linkwork.drawing.label_placement import Kept
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
-from linkwork.mechanism.part.part import LARGEST
+from linkwork.mechanism.dimensions import LARGEST
 from linkwork.results.motion import Motion
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input
