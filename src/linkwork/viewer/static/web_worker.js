@@ -1,9 +1,17 @@
-"use strict";(()=>{function*h(n){let e=new DataView(n),i=n.byteLength-22,t=e.getUint32(i+16,!0);for(let s=e.getUint16(i+10,!0);s>0;s-=1){let[a,l]=[e.getUint32(t+24,!0),e.getUint16(t+28,!0)],o=e.getUint32(t+42,!0),p=o+30+e.getUint16(o+26,!0)+e.getUint16(o+28,!0);yield{name:new TextDecoder().decode(new Uint8Array(n,t+46,l)),content:new Uint8Array(n,p,a)},t+=46+l+e.getUint16(t+30,!0)+e.getUint16(t+32,!0)}}var d="https://linkwork.invalid/",b="/lib/python3.13/site-packages",E=["python_stdlib.zip","site.zip"],y="/tmp/site.zip",g="/tmp/prepared.zip",P=3e3,U=`
-from linkwork_page import take, tell, turn
+"use strict";(()=>{function d(t){let{port1:e,port2:n}=new MessageChannel;e.postMessage(null,[t]),e.close(),n.close()}var h="https://linkwork.invalid/snapshot",R="linkwork-snapshot",H=1<<20,x=65536;async function U(t){let e=await t.match(h);if(!e)return null;let n=new Uint8Array(await e.arrayBuffer());return e.headers.get(R)===O(n)?n:null}function F(t,e){let{HEAPU8:n,LDSO:o}=t._module;if(Object.keys(o.loadedLibsByName).some(r=>r!=="__main__"&&!e.includes(r)))return null;let s=t.makeMemorySnapshot(),c=n.length-Math.ceil(t._module._sbrk(0)/x)*x;return s.subarray(0,s.length-c)}async function E(t,e){let n=0,o=new ReadableStream({pull(s){n<e.length?s.enqueue(e.subarray(n,n+=H)):s.close()}});await t.put(h,new Response(o,{headers:{[R]:O(e)}})).catch(()=>{}),d(e.buffer)}function O({length:t}){return`${t} ${navigator.userAgent}`}async function w(t){await t.delete(h)}var L=22,W=30,g=class{constructor(e){this.outside=e}memory=null;async bringIn(){this.memory=await this.outside.arrayBuffer()}leaveOutside(){this.memory&&d(this.memory),this.memory=null}read(e,n){return this.memory?.slice(e,n)??new FileReaderSync().readAsArrayBuffer(this.outside.slice(e,n))}async entries(){let{size:e}=this.outside,n=new DataView(await this.outside.slice(e-L).arrayBuffer()),o=await this.outside.slice(n.getUint32(16,!0),e-L).arrayBuffer(),s=new DataView(o),c=new Map;for(let r=0;r<o.byteLength;){let[i,u]=[s.getUint32(r+24,!0),s.getUint16(r+28,!0)],f=s.getUint32(r+42,!0)+W+u,y=new TextDecoder().decode(new Uint8Array(o,r+46,u));c.set(y,new b(this,f,f+i)),r+=46+u+s.getUint16(r+30,!0)+s.getUint16(r+32,!0)}return c}},b=class t{constructor(e,n,o){this.archive=e;this.start=n;this.end=o}get size(){return this.end-this.start}slice(e,n){return new t(this.archive,this.start+e,Math.min(this.start+n,this.end))}read(){return this.archive.read(this.start,this.end)}};var S="https://linkwork.invalid/",D="/lib/python3.13/site-packages",z=/^numpy\/(_core\/_multiarray_umath|linalg\/_umath_linalg)\..*\.so$/,G=`
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
 from linkwork.viewer.live.browser_desk import BrowserDesk
+`,T=`
+import gc
+
+desk = BrowserDesk(loads, example_text, lambda event: None, lambda: ())
+desk.begin("#example=four-bar")
+del desk
+gc.collect()
+`,J=`
+from linkwork_page import take, tell, turn
 
 
 def pause():
@@ -13,19 +21,4 @@ def pause():
 
 desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
-`,_=`
-from pathlib import Path
-
-from linkwork.viewer.live.bytecode import with_bytecode
-
-STDLIB = Path("/lib/python313.zip")
-
-steps = {
-    "python_stdlib.zip": with_bytecode(STDLIB, STDLIB, Path("${g}")),
-    "site.zip": with_bytecode(Path("${y}"), Path("${b}"), Path("${g}")),
-}
-
-
-def prepare(name):
-    return next(steps[name], 0) is None
-`,S=[],f=null,c=!1;self.onmessage=({data:n})=>{typeof n=="string"?(S.push(n),v()):x(n).catch(e=>self.postMessage({failed:String(e)}))};async function x({engine:n,files:e,fragment:i,kept:t,prepare:s,machine:a}){u("Starting Python …",.35);let{fetch:l}=self;self.fetch=async r=>a&&String(r).endsWith(".wasm")?l(a):R(String(r),e);let o=await loadPyodide({indexURL:d,lockFileContents:n.lock,packageBaseUrl:d});u("Loading the solver …",.7);for(let{name:r,content:A}of h(e["site.zip"])){let m=`${b}/${r}`;o.FS.mkdirTree(m.slice(0,m.lastIndexOf("/"))),o.FS.writeFile(m,A,{canOwn:!0})}s&&o.FS.writeFile(y,new Uint8Array(e["site.zip"]),{canOwn:!0});for(let r of Object.keys(e))delete e[r];let p=()=>S.splice(0);o.registerJsModule("linkwork_page",{take:p,tell:r=>self.postMessage(r),turn:F}),await o.runPythonAsync(U),u("Solving …",.9);let[w,k]=[o.globals.get("begin"),o.globals.get("work")];w(i,t?.name??"",t?.saved??"",t?.text??""),f="Suspending"in WebAssembly?()=>k.callPromising():()=>Promise.resolve(k()),await v(),s&&await D(o)}async function D(n){await new Promise(s=>setTimeout(s,P)),await n.runPythonAsync(_);let e=n.globals.get("prepare"),i=[...E],t=()=>{let[s]=i;if(s===void 0)n.FS.unlink(y);else if(c)setTimeout(t,P);else{if(!e(s)){let a=n.FS.readFile(g).buffer;n.FS.unlink(g),self.postMessage({prepared:{[s]:a}},[a]),i.shift()}setTimeout(t)}};t()}async function v(){if(!(c||f===null)){c=!0;try{for(;await f();)await F()}catch(n){self.postMessage({failed:String(n)})}c=!1}}function F(){return new Promise(n=>{let{port1:e,port2:i}=new MessageChannel;e.onmessage=()=>{e.close(),n()},i.postMessage(null)})}function R(n,e){let i=n.slice(d.length),t=i.endsWith(".wasm")?"application/wasm":"application/octet-stream",s=n.startsWith(d)?e[i]:void 0;return s?new Response(s,{headers:{"content-type":t}}):new Response(null,{status:404})}function u(n,e){self.postMessage({doing:n,done:e})}})();
+`,P=[],v=null,k=!1,m=null;self.onmessage=({data:t})=>{typeof t=="string"?(P.push(t),C()):V(t).catch(async e=>{m?(await w(m),self.postMessage({again:P})):self.postMessage({failed:String(e)})})};async function V({engine:t,files:e,fragment:n,kept:o,store:s,machine:c}){A("Starting Python …",.35);let r=s===null?null:await caches.open(s),i=r&&await U(r);m=i&&r;let u=new g(e["site.zip"]);i||await u.bringIn();let f=await u.entries(),y=new Map([...f].flatMap(([a,p])=>z.test(a)?[[`${D}/${a}`,p]]:[])),{fetch:I,_createPyodideModule:K}=self;self.fetch=async a=>c&&String(a).endsWith(".wasm")?I(c):q(String(a),e,y),self._createPyodideModule=a=>K(Object.assign(a,{dynamicLibraries:[...y.keys()]}));let l=await loadPyodide({indexURL:S,lockFileContents:t.lock,packageBaseUrl:S,...i?{_loadSnapshot:i}:{_makeSnapshot:r!==null}}),{WORKERFS:M}=l.FS.filesystems;M.reader={readAsArrayBuffer:a=>a.read()},l.FS.mount(M,{blobs:[...f].map(([a,p])=>({name:a,data:p}))},D),i?d(i.buffer):(A("Loading the solver …",.7),l.runPython(G)),r&&!i&&l.runPython(T);let _=r&&!i?F(l,[...y.keys()]):null,N=()=>P.splice(0);l.registerJsModule("linkwork_page",{take:N,tell:a=>self.postMessage(a),turn:j}),l.runPython(J),A("Solving …",.9);let[$,B]=[l.globals.get("begin"),l.globals.get("work")];$(n,o?.name??"",o?.saved??"",o?.text??""),v="Suspending"in WebAssembly?()=>B.callPromising():()=>Promise.resolve(B()),await C(),u.leaveOutside(),r&&_&&await E(r,_)}async function C(){if(!(k||v===null)){k=!0;try{for(;await v();)await j()}catch(t){m&&await w(m),self.postMessage({failed:String(t)})}k=!1}}function j(){return new Promise(t=>{let{port1:e,port2:n}=new MessageChannel;e.onmessage=()=>{e.close(),t()},n.postMessage(null)})}function q(t,e,n){let o=t.slice(S.length),s=e[o]??n.get(o)?.read();return s?new Response(s):new Response(null,{status:404})}function A(t,e){self.postMessage({doing:t,done:e})}})();
