@@ -26,6 +26,7 @@ nb_ipywidgets_js: dict[str, object] = {}  # no script from another host
 
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+toc_object_entries = False
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 88
 napoleon_use_param = False  # types are in the signature; the text beside a name is English

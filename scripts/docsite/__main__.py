@@ -10,11 +10,22 @@ import sys
 import tempfile
 from pathlib import Path
 
+from scripts.docsite.api_page import api_page
+from scripts.docsite.command_page import command_page
+from scripts.docsite.file_page import file_page
 from scripts.docsite.live_pages import moving_examples, write_library_pages
+from scripts.docsite.quantity_page import quantity_page
 from scripts.docsite.text_files import write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 _PICTURE = re.compile(r'<img src="(images/gallery/([^"]+)\.svg)" alt="([^"]*)">')
+#: Pages that are made from the package: the public names, the parser, the schema, the registry.
+_GENERATED = {
+    "python": api_page,
+    "commands": command_page,
+    "file-keys": file_page,
+    "quantity-list": quantity_page,
+}
 #: Links of pages to files and folders that are not pages of the site.
 _OUTSIDE = {
     "](decisions/)": "](decisions/0001-loops-follow-the-blocks.md)",
@@ -41,6 +52,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         source, doctrees = Path(scratch) / "source", Path(scratch) / "doctrees"
         shutil.copytree(ROOT / "docs", source)
+        for name, page in _GENERATED.items():
+            (source / f"{name}.md").write_text(page(), encoding="utf-8")
         _adapt(source, set(moving), asked.app is not None)
         for builder, to in (("html", out), ("text", Path(scratch) / "text")):
             done = _sphinx(builder, source, doctrees, to, asked.app is not None)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import unwritten
 
 __all__ = ["check_outputs", "write_bytes", "write_text"]
 
@@ -72,7 +73,7 @@ def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
         if regular:
             part.replace(target)
     except OSError as error:
-        raise InputError(f'cannot write "{name}": {error.strerror or error}') from None
+        raise unwritten(name, error) from None
     finally:
         if regular:
             part.unlink(missing_ok=True)

@@ -16,6 +16,7 @@ from typing import Any
 
 import click
 
+from linkwork.cli.interrupts import go_on_unless_interrupted
 from linkwork.cli.text_table import WIDTH
 
 __all__ = [
@@ -178,7 +179,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         A function to call with the finished fraction, 0 to 1.
     """
     if not sys.stderr.isatty():
-        yield lambda fraction: None
+        yield lambda fraction: go_on_unless_interrupted()
         return
     began = time.monotonic()
     bar = click.progressbar(length=_BAR_STEPS, label=label, file=sys.stderr)
@@ -191,6 +192,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
     def tell(fraction: float) -> None:
         nonlocal shown
+        go_on_unless_interrupted()
         with lock:
             if not shown and time.monotonic() - began > _PATIENCE:
                 shown = True

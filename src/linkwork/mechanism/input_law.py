@@ -11,6 +11,7 @@ from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import names_in
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.file_keys import Key, ListOf, Measured, Number as NumberKey, Text
+from linkwork.foundation.internal import internal
 from linkwork.foundation.units import split_unit
 from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number, Numbers
@@ -31,6 +32,7 @@ LAW_KEYS = (
 )
 
 
+@internal("through", "duration", "displacement")
 @dataclass(frozen=True, kw_only=True)
 class LawSegment:
     """A segment of an input's law: the input moves by ``by`` in the time ``over``.

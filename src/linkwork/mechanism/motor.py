@@ -10,6 +10,7 @@ import numpy as np
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Speed
+from linkwork.foundation.internal import internal
 from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number, Numbers
 from linkwork.mechanism.speed import speed_per_second
@@ -27,6 +28,7 @@ MOTOR_KEYS = (
 )
 
 
+@internal("mistakes", "curve", "constant")
 @dataclass(frozen=True, kw_only=True)
 class Motor:
     """A motor on an input, for simulations.

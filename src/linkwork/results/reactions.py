@@ -12,6 +12,7 @@ from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.errors import UnknownNameError
 from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.results.force import Force
 from linkwork.results.quantities.registry import nearest
@@ -51,6 +52,7 @@ class ForceStatus(CodedEnum):
     )
 
 
+@internal("kinds")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Reactions:
     """Forces and moments of a mechanism, at one position or in the N rows of a motion.
