@@ -80,12 +80,14 @@ class SetNumber:
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a given
     one. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
+    ``rates``: whether the page shows rates of points, which an intermediate answer otherwise lacks.
     """
 
     name: str
     value: float | str
     any_formula: bool = False
     live: bool = False
+    rates: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,11 +111,13 @@ class MovePoints:
     follow.
 
     ``keep``: lengths that stay: a single point then moves along the circles that they leave to it.
+    ``rates``: as in :class:`SetNumber`.
     """
 
     places: dict[str, tuple[float, float]]
     keep: tuple[str, ...] = ()
     live: bool = False
+    rates: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
