@@ -1,7 +1,8 @@
 """Requests of the page: one frozen dataclass per request.
 
 The name of a class in snake case is the ``kind`` of its message. ``live`` marks intermediate
-changes of a drag: they are displayed, and become one step of the history with the last change.
+changes of a drag: they are displayed, and become one step of the history with the last change;
+without ``rates`` their answers lack rates of points.
 """
 
 from __future__ import annotations
@@ -80,7 +81,6 @@ class SetNumber:
 
     ``name``: as in a family: ``a2``, ``O2 A``, ``s16.offset``; a measured length becomes a given
     one. A value may have a unit: "3 in". With ``any_formula`` a number replaces a formula.
-    ``rates``: whether the page shows rates of points, which an intermediate answer otherwise lacks.
     """
 
     name: str
@@ -107,11 +107,9 @@ class MovePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class MovePoints:
-    """Move points of the drawing to other coordinates [length]; lengths between them and others
-    follow.
+    """Move points of the drawing to other places [length]; lengths between them and others follow.
 
     ``keep``: lengths that stay: a single point then moves along the circles that they leave to it.
-    ``rates``: as in :class:`SetNumber`.
     """
 
     places: dict[str, tuple[float, float]]
@@ -124,8 +122,7 @@ class MovePoints:
 class SetInput:
     """Set the driven quantity and its range; omitted fields do not change.
 
-    ``drive`` is link, joint, slider, cylinder or variable, ``name`` its name; ``speed`` may have a
-    unit, "300 rpm".
+    ``drive``: link, joint, slider, cylinder or variable; ``speed`` may have a unit: "300 rpm".
     """
 
     number: int = 0
