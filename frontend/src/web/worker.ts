@@ -71,6 +71,9 @@ const PACKAGES = "/lib/python3.13/site-packages";
 /** Machine code of NumPy that is loaded before Python starts: only thus it has the same addresses at every visit. */
 const LIBRARIES = /^numpy\/(_core\/_multiarray_umath|linalg\/_umath_linalg)\..*\.so$/;
 
+/** For a start from a snapshot, on a busy machine [ms]. */
+const PATIENCE = 20_000;
+
 const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
@@ -113,10 +116,8 @@ self.onmessage = ({ data }) => {
     void answer();
   } else {
     start(data).catch(async (error: unknown) => {
-      if (restored) {
-        await forgetSnapshot(restored);
-        self.postMessage({ again: messages });
-      } else self.postMessage({ failed: String(error) });
+      if (restored) await startAgain(restored);
+      else self.postMessage({ failed: String(error) });
     });
   }
 };
@@ -126,6 +127,8 @@ async function start({ engine, files, fragment, kept, store, machine }: Start): 
   const cache = store === null ? null : await caches.open(store);
   const before = cache && (await keptSnapshot(cache));
   restored = before && cache;
+  // Pyodide waits for ever where its machine code does not fit into the memory
+  const late = restored && setTimeout(startAgain, PATIENCE, restored);
   const site = new StoredZip(files["site.zip"]!);
   if (!before) await site.bringIn();
   const entries = await site.entries();
@@ -150,6 +153,7 @@ async function start({ engine, files, fragment, kept, store, machine }: Start): 
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
   python.runPython(BEGIN);
+  if (late) clearTimeout(late);
   say("Solving …", 0.9);
   const [begin, one] = [python.globals.get("begin"), python.globals.get("work")];
   begin(fragment, kept?.name ?? "", kept?.saved ?? "", kept?.text ?? "");
@@ -158,6 +162,12 @@ async function start({ engine, files, fragment, kept, store, machine }: Start): 
   await answer();
   site.leaveOutside();
   if (cache && snapshot) await keepSnapshot(cache, snapshot);
+}
+
+/** Let another worker start without the snapshot. */
+async function startAgain(store: Cache): Promise<void> {
+  await forgetSnapshot(store);
+  self.postMessage({ again: messages });
 }
 
 /** Answer all requests, one at a time. */
