@@ -10,6 +10,7 @@ export interface SetNumber {
   value: number | string;
   any_formula?: boolean;
   live?: boolean;
+  rates?: boolean;
 }
 
 export interface MovePoint {
@@ -28,6 +29,7 @@ export interface MovePoints {
   places: Record<string, readonly [number, number]>;
   keep?: readonly (string)[];
   live?: boolean;
+  rates?: boolean;
 }
 
 export interface SetInput {
