@@ -28,7 +28,7 @@ import matplotlib as mpl
 import linkwork as lw
 from scripts.docsite.commands_run import commands_of, run_command
 
-__all__ = ["Checked", "check_pages"]
+__all__ = ["Checked", "check_page", "check_pages"]
 
 _BLOCK = re.compile(
     r"(?:<!-- (?P<word>before|not run): (?P<comment>.*?)-->\n\n?)?"
@@ -53,10 +53,11 @@ class Checked:
 def check_pages(pages: list[Path]) -> list[Checked]:
     """Run the blocks of all pages, two pages at once."""
     with ProcessPoolExecutor(2) as workers:
-        return list(workers.map(_check_page, pages))
+        return list(workers.map(check_page, pages))
 
 
-def _check_page(path: Path) -> Checked:
+def check_page(path: Path) -> Checked:
+    """Run the blocks of one page."""
     mpl.use("Agg")
     signal.signal(signal.SIGALRM, _too_long)
     text = path.read_text(encoding="utf-8")

@@ -19,7 +19,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import ViewportSize, sync_playwright
 
 __all__ = ["Site", "check_site"]
 
@@ -77,7 +77,7 @@ def _check_share(site: Site, pages: list[str]) -> list[str]:
     with _served(site.folder) as own, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         for width in WIDTHS:
-            window = {"width": width, "height": 900}
+            window: ViewportSize = {"width": width, "height": 900}
             context = browser.new_context(viewport=window, reduced_motion="reduce")
             context.route(lambda address: not _is_own(address, own), lambda route: route.abort())
             axe = site.axe if width == WIDTHS[0] else ""
