@@ -35,6 +35,7 @@ napoleon_use_ivar = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "Linkwork"
+templates_path = ["_templates"]
 html_static_path = ["_static"]
 html_css_files = ["linkwork.css"]
 html_math_renderer = "mathml"  # in scripts/docsite/mathml.py: no script, no font

@@ -52,6 +52,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("autodoc-process-signature", _public_signature)
     # before napoleon reads the docstring
     app.connect("autodoc-process-docstring", _without_internal, priority=400)
+    app.connect("html-page-context", _plain_parameter_lists)
     app.connect("build-finished", text_files.write_index)
     mathml.setup(app)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
@@ -227,3 +228,11 @@ def _without_internal(
         if not dropping:
             kept.append(line)
     lines[:] = kept
+
+
+def _plain_parameter_lists(
+    _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: object
+) -> None:
+    """Parameters one below the other are no list of definitions, as Sphinx marks them."""
+    if "body" in context:
+        context["body"] = context["body"].replace("<dl>\n<dd><em", '<dl role="none">\n<dd><em')
