@@ -183,6 +183,7 @@ def test_little_friction_changes_little() -> None:
     assert ends[2] - ends[0] == pytest.approx(2 * (ends[1] - ends[0]), rel=1e-4)
 
 
+@pytest.mark.extended
 def test_at_rest_an_engine_starts_where_the_effort_of_statics_is_exceeded() -> None:
     """And on the other side of its stall nothing starts it."""
     friction = {pin: lw.Friction(mu=0.3, radius=30) for pin in "OAB"}
@@ -228,6 +229,7 @@ def test_friction_where_redundant_links_leave_forces_open_is_refused() -> None:
         loaded.simulate(0.1)
 
 
+@pytest.mark.extended
 def test_events_at_the_same_place_are_all_met() -> None:
     """The compressor starts where its guide's force changes sides: after a turn both meet."""
     motion = lw.example("compressor").simulate(0.4, step=0.1)
