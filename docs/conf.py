@@ -26,6 +26,7 @@ nb_ipywidgets_js: dict[str, object] = {}  # no script from another host
 
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+toc_object_entries = False
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 88
 napoleon_use_param = False  # types are in the signature; the text beside a name is English
@@ -34,6 +35,7 @@ napoleon_use_ivar = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "Linkwork"
+templates_path = ["_templates"]
 html_static_path = ["_static"]
 html_css_files = ["linkwork.css"]
 html_math_renderer = "mathml"  # in scripts/docsite/mathml.py: no script, no font

@@ -10,11 +10,23 @@ import sys
 import tempfile
 from pathlib import Path
 
+from scripts.docsite.api_page import api_page
+from scripts.docsite.command_page import command_page
+from scripts.docsite.file_page import file_page
 from scripts.docsite.live_pages import moving_examples, write_library_pages
+from scripts.docsite.page_blocks import check_pages
+from scripts.docsite.quantity_page import quantity_page
 from scripts.docsite.text_files import write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 _PICTURE = re.compile(r'<img src="(images/gallery/([^"]+)\.svg)" alt="([^"]*)">')
+#: Pages that are made from the package: the public names, the parser, the schema, the registry.
+_GENERATED = {
+    "python": api_page,
+    "commands": command_page,
+    "file-keys": file_page,
+    "quantity-list": quantity_page,
+}
 #: Links of pages to files and folders that are not pages of the site.
 _OUTSIDE = {
     "](decisions/)": "](decisions/0001-loops-follow-the-blocks.md)",
@@ -34,6 +46,8 @@ def main() -> int:
     out = asked.out.resolve()
     if asked.app is not None and not (asked.app / "index.html").is_file():
         parser.error(f"{asked.app} has no index.html: write it with `linkwork web {asked.app}`")
+    if _blocks_fail():
+        return 1
     moving = moving_examples()
     write_library_pages(out, moving)
     if asked.app is not None:
@@ -41,6 +55,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         source, doctrees = Path(scratch) / "source", Path(scratch) / "doctrees"
         shutil.copytree(ROOT / "docs", source)
+        for name, page in _GENERATED.items():
+            (source / f"{name}.md").write_text(page(), encoding="utf-8")
         _adapt(source, set(moving), asked.app is not None)
         for builder, to in (("html", out), ("text", Path(scratch) / "text")):
             done = _sphinx(builder, source, doctrees, to, asked.app is not None)
@@ -49,6 +65,19 @@ def main() -> int:
         write_whole(Path(scratch) / "text", doctrees, out)
     sys.stdout.write(f"Wrote {out / 'index.html'}.\n")
     return 0
+
+
+def _blocks_fail() -> bool:
+    """Run the blocks that pages show; print those that fail."""
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    checked = check_pages(pages)
+    errors = [error for page in checked for error in page.errors]
+    sys.stderr.writelines(f"{error}\n" for error in errors)
+    left = sum(len(page.left) for page in checked)
+    sys.stdout.write(
+        f"{sum(page.run for page in checked)} blocks run, {left} left with a reason.\n"
+    )
+    return bool(errors)
 
 
 def _sphinx(builder: str, source: Path, doctrees: Path, to: Path, app: bool) -> int:

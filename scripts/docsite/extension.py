@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import builtins
 import importlib.util
+import inspect
+import re
 import sys
 from html import escape
 from pathlib import Path
@@ -22,9 +24,12 @@ from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import ReferenceRole, SphinxDirective
+from sphinx.util.inspect import stringify_signature
 
 import linkwork as lw
+from linkwork.foundation.internal import internal_members
 from scripts.docsite import mathml, text_files
+from scripts.docsite.api_page import ALIASES, is_built_by_users
 from scripts.docsite.commands_run import commands_of, run_command
 from scripts.docsite.live_pages import Opened, opened
 
@@ -32,7 +37,8 @@ __all__ = ["setup"]
 
 #: Packages whose types may appear in signatures; the site has no pages about them.
 _FOREIGN = {"numpy", "pandas", "xarray", "matplotlib", *sys.stdlib_module_names}
-_FOREIGN_SHORT = {"np", "Any", "Array", "BoolArray", "IntArray", *dir(builtins)}
+_FOREIGN_SHORT = {"np", "Any", "Path", *ALIASES, *dir(builtins)}
+_ENTRY = re.compile(r"(?P<names>\w+(?:, \w+)*) :(?P<type>.*)$")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -43,6 +49,10 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("live", Live)
     app.add_role("open", Open())
     app.connect("missing-reference", _resolve_python)
+    app.connect("autodoc-process-signature", _public_signature)
+    # before napoleon reads the docstring
+    app.connect("autodoc-process-docstring", _without_internal, priority=400)
+    app.connect("html-page-context", _plain_parameter_lists)
     app.connect("build-finished", text_files.write_index)
     mathml.setup(app)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
@@ -175,9 +185,54 @@ def _resolve_python(
     if node["reftype"] == "mod":
         known = root == "linkwork" and importlib.util.find_spec(target) is not None
         return contnode if known else None
+    if node["reftype"] == "func" and root == "linkwork":
+        return contnode  # a hint for readers of the source
     if short not in lw.__all__:  # type: ignore[attr-defined]  # by the loader
         return None
     domain = env.get_domain("py")
     return domain.resolve_xref(
         env, env.docname, app.builder, node["reftype"], f"linkwork.{short}", node, contnode
     )
+
+
+def _public_signature(
+    _app: Sphinx, what: str, _name: str, kind: Any, _options: object, text: str, returns: str
+) -> tuple[str, str] | None:
+    """No constructor for results; parameters of others without internal ones."""
+    if what not in ("class", "exception"):
+        return None
+    if what == "exception" or not is_built_by_users(kind):
+        return "", ""
+    signature = inspect.signature(kind)
+    hidden = internal_members(kind)
+    shown = [own for own in signature.parameters.values() if own.name not in hidden]
+    bare = signature.replace(parameters=shown, return_annotation=inspect.Signature.empty)
+    return stringify_signature(bare, unqualified_typehints=True), ""
+
+
+def _without_internal(
+    _app: Sphinx, what: str, _name: str, kind: Any, _options: object, lines: list[str]
+) -> None:
+    """Leave internal fields out of the parameters of a class."""
+    hidden = internal_members(kind) if what == "class" else frozenset()
+    kept: list[str] = []
+    dropping = False
+    for line in lines:
+        entry = _ENTRY.match(line)
+        if entry:
+            names = [name for name in entry["names"].split(", ") if name not in hidden]
+            dropping = not names
+            line = f"{', '.join(names)} :{entry['type']}"
+        elif not line.startswith(" "):
+            dropping = False
+        if not dropping:
+            kept.append(line)
+    lines[:] = kept
+
+
+def _plain_parameter_lists(
+    _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: object
+) -> None:
+    """Parameters one below the other are no list of definitions, as Sphinx marks them."""
+    if "body" in context:
+        context["body"] = context["body"].replace("<dl>\n<dd><em", '<dl role="none">\n<dd><em')

@@ -23,6 +23,37 @@ if TYPE_CHECKING:
         plain_equations as plain_equations,
     )
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
+    from linkwork.batch.family import (
+        Family as Family,
+    )
+    from linkwork.batch.family_motion import (
+        FamilyMotion as FamilyMotion,
+    )
+    from linkwork.batch.limits import (
+        FamilyLimits as FamilyLimits,
+    )
+    from linkwork.design.improvement.improving import (
+        ImprovedDesign as ImprovedDesign,
+    )
+    from linkwork.design.synthesis.defect_messages import (
+        Defect as Defect,
+    )
+    from linkwork.design.synthesis.result import (
+        Dyad as Dyad,
+        SynthesizedDesign as SynthesizedDesign,
+    )
+    from linkwork.design.synthesis.verdicts import (
+        DefectKind as DefectKind,
+    )
+    from linkwork.drawing.scene import (
+        Scene as Scene,
+    )
+    from linkwork.drawing.scene_options import (
+        SceneOptions as SceneOptions,
+    )
+    from linkwork.equations.writing import (
+        EquationSheet as EquationSheet,
+    )
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd
@@ -61,7 +92,10 @@ if TYPE_CHECKING:
     from linkwork.mechanism.question import Question as Question
     from linkwork.mechanism.stop import Stop as Stop
     from linkwork.numerics.newton import NewtonOptions as NewtonOptions
-    from linkwork.results.check import CheckReport as CheckReport
+    from linkwork.results.check import (
+        BlockSummary as BlockSummary,
+        CheckReport as CheckReport,
+    )
     from linkwork.results.circuits import (
         Branch as Branch,
         Circuit as Circuit,
@@ -83,7 +117,12 @@ if TYPE_CHECKING:
         Remedy as Remedy,
     )
     from linkwork.results.force import Force as Force
+    from linkwork.results.iterates import (
+        Iterate as Iterate,
+        Iterates as Iterates,
+    )
     from linkwork.results.machine_design import (
+        Counterweight as Counterweight,
         Counterweights as Counterweights,
         Flywheel as Flywheel,
         Harmonics as Harmonics,
@@ -96,8 +135,13 @@ if TYPE_CHECKING:
         Motion as Motion,
         OutputLimit as OutputLimit,
     )
+    from linkwork.results.nearest_assembly import (
+        NearestAssembly as NearestAssembly,
+    )
     from linkwork.results.position import (
         Certificate as Certificate,
+        NewtonStep as NewtonStep,
+        NewtonTrail as NewtonTrail,
         Position as Position,
     )
     from linkwork.results.reactions import ForceStatus as ForceStatus, Reactions as Reactions
@@ -112,6 +156,9 @@ if TYPE_CHECKING:
         Contribution as Contribution,
         Sampled as Sampled,
         Tolerance as Tolerance,
+    )
+    from linkwork.viewer.animation import (
+        FilmOptions as FilmOptions,
     )
 else:
     __getattr__ = loader(__name__)

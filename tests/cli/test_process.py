@@ -106,6 +106,46 @@ def test_an_interrupt_of_executed_text_has_the_exit_code_too(
     assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
 
 
+def test_an_interrupt_of_a_deletion_is_not_lost(environment: dict[str, str]) -> None:
+    program = (
+        "import os, signal, sys, time, types\n"
+        "class Deleted:\n"
+        "    def __del__(self): os.kill(os.getpid(), signal.SIGINT); time.sleep(0)\n"
+        "def command():\n"
+        "    Deleted()\n"
+        "    for _ in range(60): time.sleep(0.1)\n"
+        "sys.modules['linkwork.cli.main'] = types.SimpleNamespace(main=command)\n"
+        "from linkwork.__main__ import main\n"
+        "main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
+
+
+@pytest.mark.parametrize("loses", ["raise ValueError", "pass"])
+def test_an_interrupt_that_a_library_loses_is_one_all_the_same(
+    environment: dict[str, str], loses: str
+) -> None:
+    program = (
+        "import os, signal, sys, time\n"
+        "import linkwork.cli.compile as command\n"
+        "def compiling(tell):\n"
+        "    try:\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        time.sleep(60)\n"
+        f"    except KeyboardInterrupt: {loses}\n"
+        "    tell(0.5)\n"
+        "    print('not reached')\n"
+        "sys.argv = ['linkwork', 'compile']\n"
+        "from linkwork.__main__ import main\n"
+        "command.compile_kernels = compiling\n"
+        "main()\n"
+    )
+    words = [sys.executable, "-c", program]
+    ended = subprocess.run(words, env=environment, capture_output=True, preexec_fn=interruptible)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, b"", b"\nInterrupted.\n")
+
+
 def test_an_interrupt_at_the_very_end_changes_nothing(environment: dict[str, str]) -> None:
     program = (
         "import atexit, os, signal, sys\n"

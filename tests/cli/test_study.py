@@ -164,7 +164,6 @@ def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.Mo
     monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
     monkeypatch.setattr(sys, "stderr", terminal)
     with study_progress(quiet=False) as tell:
-        assert tell is not None
         for done in (500, 1000):
             tell(Progress(total=1000, done=done, before=0, seconds=1.0))
     longest = len(" 50 %  500 of 1,000 designs  500/s  0:01 left")
@@ -177,11 +176,14 @@ def test_progress_is_one_line_written_over_and_taken_away(monkeypatch: pytest.Mo
 def test_there_is_no_progress_in_a_file_nor_where_it_is_not_wanted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    with study_progress(quiet=False) as tell:
-        assert tell is None
-    monkeypatch.setattr(sys, "stderr", _Terminal())
-    with study_progress(quiet=True) as tell:
-        assert tell is None
+    half = Progress(total=2, done=1, before=0, seconds=5.0)
+    file, terminal = io.StringIO(), _Terminal()
+    monkeypatch.setattr("linkwork.cli.study._PATIENCE", 0.0)
+    for stream, quiet in ((file, False), (terminal, True)):
+        monkeypatch.setattr(sys, "stderr", stream)
+        with study_progress(quiet) as tell:
+            tell(half)
+        assert stream.getvalue() == ""
 
 
 def test_the_schema_of_plans_is_printed(run: Run) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from linkwork import equations as closure, motion, textfile
 from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.internal import internal
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["DescribedMechanism"]
 
 
+@internal("loop_equations")
 class DescribedMechanism:
     """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no position.
 
@@ -32,7 +34,7 @@ class DescribedMechanism:
     """
 
     def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
-        self.description = description
+        self.description, self._read = description, read
         try:
             self.model = motion.as_described(description)
         except MechanismError as error:

@@ -11,6 +11,7 @@ from linkwork import batch, drawing, export, motion, textfile, viewer
 from linkwork.api import solving
 from linkwork.api.designed import DesignedMechanism
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_names
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import given_or
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Mechanism"]
 
 
+@internal("description", "read", "solving_page")
 class Mechanism(DesignedMechanism):
     """A planar mechanism: solve, sweep, check, draw, animate and export it.
 

@@ -9,6 +9,7 @@ from linkwork import batch, motion
 from linkwork.api.described import DescribedMechanism
 from linkwork.foundation.deprecation import former_method
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.internal import internal
 from linkwork.mechanism.dimensions import Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.position import Position
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["SolvableMechanism"]
 
 
+@internal("moving_loops", "guessed_points", "pulled_guess", "sweep_beside")
 class SolvableMechanism(DescribedMechanism):
     """The part of :class:`~linkwork.api.mechanism.Mechanism` that needs no drawing."""
 
@@ -250,10 +252,8 @@ class SolvableMechanism(DescribedMechanism):
 
         Parameters
         ----------
-        point : str
-            The point.
-        place : (float, float)
-            The coordinates [length].
+        point, place : str, (float, float)
+            The point, and coordinates [length].
         guess, at
             As in :meth:`iterates`.
         """

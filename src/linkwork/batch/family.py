@@ -13,6 +13,7 @@ from linkwork.batch.designs import Designs, designs_of
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_name
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores
@@ -31,6 +32,7 @@ _PART = 16_384  # designs reduced at a time, fewer if unknowns and rates exceed
 _PART_BYTES = 1 << 30
 
 
+@internal("designs")
 class Family:
     """Designs of one mechanism; made by ``mechanism.family({"a2": array, …})``.
 

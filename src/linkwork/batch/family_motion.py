@@ -31,6 +31,7 @@ from linkwork.foundation.errors import (
     UnknownNameError,
     choices,
 )
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
@@ -46,6 +47,17 @@ _EVIDENCE = ("residual", "condition", "radius")  # names of the evidence of rows
 _NEAR = 1 << 16  # positions whose rates are computed at a time: temporaries fit into the cache
 
 
+@internal(
+    "designs",
+    "rows",
+    "quantities",
+    "quantity",
+    "take_rows",
+    "check_names",
+    "leading",
+    "threads",
+    "unit",
+)
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FamilyMotion:
     """Positions of D designs at R input values.
@@ -59,6 +71,15 @@ class FamilyMotion:
         Unknowns, statuses and proofs, internal units.
     threads : int
         Number of cores that compute rates, at their first request.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> motion = lw.example("four-bar").family({"O2 A": [38, 40, 42]}).sweep()
+    >>> motion["rocker"].max(axis=1).round(3)  # of each design
+    array([127.211, 128.682, 130.147])
+    >>> bool(motion.found.all())
+    True
     """
 
     designs: Designs

@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, StatusArray
 from linkwork.foundation.frozen import read_only
+from linkwork.foundation.internal import internal
 from linkwork.motion.limits import BranchEnd
 from linkwork.results.motion import LimitKind
 
@@ -18,6 +19,7 @@ __all__ = ["LIMIT_KINDS", "FamilyLimits", "ends_as_limits"]
 LIMIT_KINDS: tuple[LimitKind | None, ...] = (None, *LimitKind)
 
 
+@internal("of")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FamilyLimits:
     """The ends of the branch on which each of D designs starts.
@@ -30,6 +32,14 @@ class FamilyLimits:
         was met but not located, or the design has no position.
     lower_kind, upper_kind : (D,) text
         ``dead point``, ``change point``, ``limit`` (not located), or "" for none.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar").driven_by(link="rocker", relative_to="ground")
+    >>> limits = bar.family({"O2 A": [40, 42]}).sweep().limits
+    >>> limits.lower.round(2), limits.lower_kind
+    (array([54.9 , 52.03]), array(['dead point', 'dead point'], dtype='<U12'))
     """
 
     lower: Array

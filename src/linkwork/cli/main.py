@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import traceback
 from importlib import import_module
 
 import click
 
+from linkwork.cli.interrupts import INTERRUPTED, was_interrupted
 from linkwork.cli.options import DEBUG, JSON, debug_option
 from linkwork.cli.problems import problem_data, problem_lines
 from linkwork.cli.terminal import abandon_output, print_json, print_lines, ready_streams
@@ -45,7 +47,6 @@ _COMMANDS = (
 
 _WRONG_INPUT = 2
 _OUR_FAULT = 3
-_INTERRUPTED = 128 + 2  # the shell's exit code after SIGINT
 _READER_GONE = 128 + 13  # the shell's exit code after SIGPIPE
 
 
@@ -84,9 +85,12 @@ def _ended_by(error: BaseException, debug: bool) -> int:
         return _READER_GONE
     if debug:
         click.echo(traceback.format_exc(), err=True)
+    # a library may have turned the interrupt into an error of its own
+    if was_interrupted():
+        error = KeyboardInterrupt()
     match error:
         case KeyboardInterrupt():
-            lines, code = ["", "Interrupted."], _INTERRUPTED
+            lines, code = ["", "Interrupted."], INTERRUPTED
         case LinkworkError():
             lines, code = problem_lines(error), error.exit_code
         case MemoryError():
@@ -135,4 +139,12 @@ def linkwork(context: click.Context) -> None:
 def main() -> None:
     """Entry point of the installed program."""
     ready_streams()
-    linkwork(prog_name="linkwork")
+    try:
+        sys.exit(linkwork.main(prog_name="linkwork", standalone_mode=False))
+    except click.Abort:  # an interrupt outside a command
+        raise KeyboardInterrupt from None
+    except click.ClickException as error:
+        error.show()
+        sys.exit(error.exit_code)
+    except OSError as error:  # of the text of --help
+        sys.exit(_ended_by(error, debug=False))

@@ -20,7 +20,9 @@ from linkwork.batch.study import (
     summary_of,
     verify_store,
 )
+from linkwork.batch.study.chunk_manifest import chunks_with_entry
 from linkwork.batch.study.plan_file import read_plan_bytes
+from linkwork.cli.interrupts import go_on_unless_interrupted
 from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
 from linkwork.cli.terminal import print_json, print_lines, wrapped
@@ -101,7 +103,7 @@ def study(
                 progress=tell,
             )
         except KeyboardInterrupt:
-            print_lines(["", *_how_to_go_on(output)], err=True)
+            print_lines(["", *_how_to_go_on(asked, output)], err=True)
             raise
     _print(found, output, as_json)
 
@@ -128,28 +130,29 @@ def _print_verification(found: Verification, store: str, as_json: bool) -> None:
         print_lines(verification_lines(found, store))
 
 
-def _how_to_go_on(store: str) -> list[str]:
+def _how_to_go_on(asked: Study, store: str) -> list[str]:
     """How many designs of an interrupted study are stored, and how to resume it."""
     if not Path(store).exists():
         return []
-    found = summary_of(store)
+    stored = asked.count_in(chunks_with_entry(Path(store)))
     return wrapped(
-        f"{found.computed} of {found.designs} designs are stored in {store}. "
+        f"{stored} of {asked.plan.count} designs are stored in {store}. "
         "To resume, repeat the same command."
     )
 
 
 @contextmanager
-def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None] | None]:
+def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None]]:
     """A progress line that rewrites itself, on the error stream of a terminal only."""
     if quiet or not sys.stderr.isatty():
-        yield None
+        yield lambda progress: go_on_unless_interrupted()
         return
     began = monotonic()
     width = 0
 
     def tell(progress: Progress) -> None:
         nonlocal width
+        go_on_unless_interrupted()
         if monotonic() - began > _PATIENCE:
             line = progress_line(progress)
             click.echo("\r" + line.ljust(width), nl=False, err=True)

@@ -10,12 +10,13 @@ import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import click
 
+from linkwork.cli.interrupts import go_on_unless_interrupted
 from linkwork.cli.text_table import WIDTH
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "good",
     "print_json",
     "print_lines",
+    "print_page",
     "progress",
     "ready_streams",
     "sentence",
@@ -75,6 +77,11 @@ def print_lines(lines: Iterable[str], err: bool = False) -> None:
     click.echo("\n".join(lines), err=err)
 
 
+def print_page(page: Iterable[str], written: Sequence[str]) -> None:
+    """Print the lines of a result, then those about files that were written."""
+    print_lines([*page, *(["", *written] if written else [])])
+
+
 def print_json(data: dict[str, Any]) -> None:
     """Print data as JSON: the version of the keys first, null for missing numbers."""
     versioned = {"schema": JSON_SCHEMA, **_finite(data)}
@@ -96,7 +103,7 @@ def _finite(data: Any) -> Any:
         case list() | tuple():
             return [_finite(entry) for entry in data]
         case float():
-            return data if math.isfinite(data) else None
+            return data + 0.0 if math.isfinite(data) else None  # -0.0 becomes 0.0
         case _:
             return data
 
@@ -178,7 +185,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         A function to call with the finished fraction, 0 to 1.
     """
     if not sys.stderr.isatty():
-        yield lambda fraction: None
+        yield lambda fraction: go_on_unless_interrupted()
         return
     began = time.monotonic()
     bar = click.progressbar(length=_BAR_STEPS, label=label, file=sys.stderr)
@@ -191,6 +198,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
     def tell(fraction: float) -> None:
         nonlocal shown
+        go_on_unless_interrupted()
         with lock:
             if not shown and time.monotonic() - began > _PATIENCE:
                 shown = True

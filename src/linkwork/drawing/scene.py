@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from linkwork.drawing.box import XY, Box
 from linkwork.drawing.measures import Measures
+from linkwork.foundation.internal import internal
 
 __all__ = [
     "XY",
@@ -267,6 +268,7 @@ class Text(Primitive):
 P = TypeVar("P", bound=Primitive)
 
 
+@internal("primitives", "measures", "within", "box", "select")
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """A finished picture.
@@ -283,6 +285,13 @@ class Scene:
         The length unit of every coordinate.
     title, caption : str
         The mechanism's name; the input values.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> scene = lw.example("four-bar").scene()
+    >>> scene.title, scene.unit
+    ('Four-bar linkage, open', 'mm')
     """
 
     primitives: tuple[Primitive, ...]

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.drawing.box import Box
+from linkwork.foundation.internal import internal
 from linkwork.results.force import Force
 from linkwork.results.vector_loop import VectorLoop
 
 __all__ = ["SceneOptions"]
 
 
+@internal("vectors", "within")
 @dataclass(frozen=True, kw_only=True)
 class SceneOptions:
     """Optional contents of a picture.
@@ -47,6 +49,13 @@ class SceneOptions:
         The minimum extent of the picture, and the reference for sizes of symbols: use the same for
         all pictures of an animation, from
         :func:`~linkwork.drawing.drawn_box.reach_of`.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> options = lw.SceneOptions(dimensions=True, velocities=True)
+    >>> lw.example("four-bar").scene(at=60, options=options).title
+    'Four-bar linkage, open'
     """
 
     link_names: bool = False

@@ -15,6 +15,7 @@ from linkwork.equations.term_writing import TermWriter
 from linkwork.expression.derivative import derivative
 from linkwork.expression.tree import Binary, Number
 from linkwork.expression.writing import number_text
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import pretty
 
 __all__ = ["EquationSheet"]
@@ -23,9 +24,20 @@ Matrix = list[list[str]]
 T = TypeVar("T")
 
 
+@internal("equations", "loop", "real_rows", "complex_jacobian", "real_jacobian")
 @dataclass(frozen=True)
 class EquationSheet:
-    """The closure equations of a mechanism for display."""
+    """The closure equations of a mechanism for display.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> sheet = lw.example("four-bar").equations()
+    >>> print(sheet.text().splitlines()[0])
+    unknowns  θ_coupler (angle), θ_rocker (angle)
+    >>> sheet.latex().startswith("%")
+    False
+    """
 
     equations: LoopEquations
 

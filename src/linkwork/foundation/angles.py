@@ -80,5 +80,5 @@ class AngleUnit(Enum):
 
     @property
     def sign(self) -> str:
-        """The unit as printed after a number: ``°`` or `` rad``."""
+        """The unit as printed after a number, ``°`` or `` rad``."""
         return "°" if self is AngleUnit.DEGREE else " rad"

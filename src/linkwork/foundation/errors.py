@@ -21,6 +21,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
+from linkwork.foundation.internal import internal
+
 __all__ = [
     "ExpressionError",
     "InputError",
@@ -109,6 +111,7 @@ class ExpressionError(InputError):
         return f"    {before}{piece}{after}\n    {caret}"
 
 
+@internal("at_line")
 @dataclass(frozen=True, kw_only=True)
 class Problem:
     """One problem of a mechanism or file.

@@ -87,7 +87,7 @@ class Input:
 
     @property
     def column(self) -> str:
-        """The name of the input in results: ``crank``, ``stick-boom``, ``s16``."""
+        """The name of the input in results, ``crank``, ``stick-boom``, ``s16``."""
         kind, name = self.drives
         if kind == "link" and self.relative_to not in (None, "ground"):
             return f"{name}-{self.relative_to}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.file_keys import Key, ListOf, Measured, Number as NumberKey, Text
+from linkwork.foundation.internal import internal
 from linkwork.foundation.units import LENGTHS
 from linkwork.foundation.value_types import check_values, is_listed
 from linkwork.mechanism.dimensions import Number, Numbers
@@ -67,6 +68,7 @@ class Mass:
         check_values(self)
 
 
+@internal("acceleration")
 @dataclass(frozen=True, kw_only=True)
 class Gravity:
     """The acceleration of free fall.

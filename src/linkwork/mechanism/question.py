@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from linkwork.foundation.internal import internal
 from linkwork.foundation.value_types import check_values
 
 __all__ = ["HIDDEN", "LIMITS", "Question"]
@@ -17,6 +18,7 @@ LIMITS = {"dead points": "DEAD_POINT", "change points": "CHANGE_POINT"}
 HIDDEN = ("numbers", "charts", "limits", "input", "equations")
 
 
+@internal("problems", "given")
 @dataclass(frozen=True, kw_only=True)
 class Question:
     """A question with an answer that is computed, or a number that is given.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.file_keys import Key, Number as NumberKey, Text
+from linkwork.foundation.internal import internal
 from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.dimensions import Number, Numbers
 
@@ -20,6 +21,7 @@ STOP_KEYS = (
 )
 
 
+@internal("keys", "mistakes")
 @dataclass(frozen=True, kw_only=True)
 class Stop:
     """Stops that keep a quantity within bounds, in simulations.

@@ -17,6 +17,12 @@ class BlockSummary:
     """A block: the labels of equations that are solved together, and their unknowns.
 
     ``group``: the Assur group of the block.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> [block.unknowns for block in lw.example("double-four-bar").check().blocks]
+    [('θ2', 'θ3'), ('θ4', 'θ5')]
     """
 
     equations: tuple[str, ...]

@@ -14,6 +14,7 @@ from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.deferred import Deferred
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.internal import internal
 from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
@@ -62,6 +63,7 @@ class Branch:
     end: CircuitEnd
 
 
+@internal("weakness", "course")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Circuit:
     """The set of all positions that a mechanism can reach from one of them without disassembly.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.internal import internal
 from linkwork.foundation.newton_trouble import NewtonTrouble
 from linkwork.results.quantity import Kind, Units
 
@@ -53,6 +54,7 @@ class Remedy:
         return self.needed - self.now
 
 
+@internal("units", "kinds")
 @dataclass(frozen=True, kw_only=True)
 class Failure:
     """Why a position does not exist, or differs from the intended one.

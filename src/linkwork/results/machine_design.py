@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import read_only
+from linkwork.foundation.internal import internal
 from linkwork.results.summary import Summary
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
 _NONE = 1e-12  # of a quantity: rounding
 
 
+@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Flywheel:
     """The inertia that keeps the speed of an input even.
@@ -75,6 +77,7 @@ class Flywheel:
         return Summary(f"Flywheel for a fluctuation of {self.fluctuation:g}", rows)
 
 
+@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
 class MotorCheck:
     """A motor against the effort of an input at constant speed.
@@ -135,6 +138,7 @@ class MotorCheck:
         return Summary(f"The motor {'fits' if self.fits else 'is too weak'}", tuple(rows))
 
 
+@internal("summary")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Harmonics:
     """The Fourier sum of a quantity over a turn: mean + Σ a_k cos(k (φ - φ_k)).
@@ -200,6 +204,13 @@ class Counterweight:
     mass : float
     place : (float, float)
         In the frame of the link [length].
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar").changed(masses={"coupler": lw.Mass(mass=2, shape="rod")})
+    >>> [weight.link for weight in bar.counterweights(radius=20).weights]
+    ['crank', 'rocker']
     """
 
     link: str
@@ -209,6 +220,7 @@ class Counterweight:
     place: tuple[float, float]
 
 
+@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Counterweights:
     """Two counterweights that remove the shaking force of a four-bar.
@@ -252,6 +264,7 @@ class Counterweights:
         return Summary("Counterweights", tuple(rows))
 
 
+@internal("summary")
 @dataclass(frozen=True, kw_only=True, repr=False)
 class InflectionCircle:
     """The points of a link whose paths have no curvature at a position.

@@ -18,6 +18,7 @@ from linkwork.foundation.certification import Certification
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_name, find_spelling
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
@@ -35,6 +36,7 @@ __all__ = ["Limit", "LimitKind", "Motion", "OutputLimit"]
 _FEW_ROWS = 4000  # of motions that are drawn
 
 
+@internal("quantities", "units", "skeleton", "quantity", "own", "place")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Motion:
     """The positions of a mechanism over a table of N input values.

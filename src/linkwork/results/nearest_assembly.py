@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.internal import internal
 from linkwork.mechanism.skeleton import Skeleton
 from linkwork.results.quantity import Units
 
@@ -30,6 +31,7 @@ class LinkEnd:
     end: tuple[float, float]
 
 
+@internal("skeleton", "units", "apart")
 @dataclass(frozen=True, kw_only=True)
 class NearestAssembly:
     """The least-squares position: the smallest closure error found near the guess.
@@ -46,6 +48,13 @@ class NearestAssembly:
         Root of the sum of their squares [length].
     apart : tuple of LinkEnd
         Ends of links that do not reach their joint (points-and-links mechanisms).
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> short = lw.example("four-bar").with_dimensions({"A B": 20})
+    >>> round(short.nearest_assembly(at=180).gap, 1)  # mm
+    40.0
     """
 
     mechanism: str

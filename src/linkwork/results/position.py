@@ -12,6 +12,7 @@ from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.internal import internal
 from linkwork.foundation.presenting import presenter
 from linkwork.foundation.status import Status
 from linkwork.mechanism.skeleton import Skeleton
@@ -67,6 +68,13 @@ class NewtonStep:
     ``jacobian``: J, a row for each of them and a column for each unknown, angles in radians.
     ``changes``: Δ by unknown, in file units; none at the last iterate. ``step``: their largest
     weighted size.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> step = lw.example("four-bar").solve(at=60, with_steps=True).steps[0].steps[-1]
+    >>> f"{step.residual:.0e}"
+    '1e-14'
     """
 
     k: int
@@ -84,6 +92,13 @@ class NewtonTrail:
 
     In the steps, ``residual`` is the 2-norm of the block's real equations in their unit, ``step``
     the largest weighted change of an unknown. ``rows`` names the real equations.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> trail = lw.example("four-bar").solve(at=60, with_steps=True).steps[0]
+    >>> len(trail.steps)
+    5
     """
 
     equations: tuple[str, ...]
@@ -92,6 +107,7 @@ class NewtonTrail:
     status: Status
 
 
+@internal("quantities", "units", "skeleton", "own", "place")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Position:
     """A position of a mechanism at one input value.

@@ -12,6 +12,7 @@ from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.coded_enum import CodedEnum
 from linkwork.foundation.errors import UnknownNameError
 from linkwork.foundation.frozen import FrozenDict, read_only
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
 from linkwork.results.force import Force
 from linkwork.results.quantities.registry import nearest
@@ -45,12 +46,14 @@ class ForceStatus(CodedEnum):
         "at a dead point or change point the input has no finite effort: ask for a value beside it"
     )
     NO_POSITION = "there is no position: see its own status"
+    NO_LOAD = "a load has no finite value there: change its formula"
     HELD = (
         "friction holds the mechanism at rest: it takes any value up to its limit, and forces are "
         "not determined"
     )
 
 
+@internal("kinds")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Reactions:
     """Forces and moments of a mechanism, at one position or in the N rows of a motion.
@@ -74,6 +77,8 @@ class Reactions:
     undetermined, lifted, slipping : Mapping[str, array of bool]
         Where a self-stress changes a quantity; where a joint that can only push would have to pull;
         where a rolling wheel would need more adhesion.
+    undefined : Mapping[str, array of bool]
+        Where formulas of loads have no finite value, by the place of the load.
     proved : array of bool
         Whether it is proved that friction leaves an equilibrium, or where ``SELF_LOCKING``, none.
 
@@ -98,10 +103,11 @@ class Reactions:
     undetermined: Mapping[str, BoolArray]
     lifted: Mapping[str, BoolArray]
     slipping: Mapping[str, BoolArray]
+    undefined: Mapping[str, BoolArray]
     proved: BoolArray
 
     def __post_init__(self) -> None:
-        for name in ("inputs", "values", "undetermined", "lifted", "slipping"):
+        for name in ("inputs", "values", "undetermined", "lifted", "slipping", "undefined"):
             table = {key: read_only(array) for key, array in getattr(self, name).items()}
             object.__setattr__(self, name, FrozenDict(table))
         object.__setattr__(self, "proved", read_only(self.proved))

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import read_only
+from linkwork.foundation.internal import internal
 from linkwork.results.quantity import Quantity
 
 __all__ = ["Series"]
 
 
+@internal("quantity")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Series:
     """One quantity over the N rows of a motion.

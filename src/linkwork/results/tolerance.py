@@ -111,8 +111,8 @@ class Tolerance:
     contributions : tuple of Contribution
         The largest share first.
     worst_case : float
-        Σ |∂q/∂p| deviation + Σ clearance · force: the largest change to first order if every number
-        is off by its deviation and every pin lies at the edge of its hole.
+        ``Σ |∂q/∂p| deviation + Σ clearance · force``, the largest change to first order if every
+        number is off by its deviation and every pin lies at the edge of its hole.
     root_sum_square : float
         The standard deviation to first order, for independent numbers and pins that lie at the
         edge of their holes in any direction.

@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.drawing.captions import inputs_caption
 from linkwork.drawing.film import film
 from linkwork.drawing.moving_scene import moving_scene
-from linkwork.drawing.theme import LIGHT, Theme
+from linkwork.drawing.theme import THEMES, theme_named
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
@@ -50,13 +50,20 @@ class FilmOptions:
         Number of positions in the film; by default enough for about five seconds.
     dpi : float
         Pixels per inch; the longer side of the drawing is six inches.
-    theme : Theme
+    theme : str
+        ``light`` or ``dark``.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.FilmOptions(fps=25, rows=100).rows
+    100
     """
 
     fps: float = 25.0
     rows: int | None = None
     dpi: float = 110.0
-    theme: Theme = LIGHT
+    theme: str = "light"
 
 
 def check_animation(path: str | Path, options: FilmOptions | None = None) -> str:
@@ -169,7 +176,8 @@ def _film(
     backwards = any(part.backwards for part in motion.skeleton.driven[:1])
     turned = [falls != backwards for falls in falling(motion, rows)]
     scene = moving_scene(motion)
-    pictures = film(scene, rows, captions, turned, dpi=options.dpi, theme=options.theme)
+    theme = theme_named(options.theme, THEMES)
+    pictures = film(scene, rows, captions, turned, dpi=options.dpi, theme=theme)
 
     def told() -> Iterator[AnyArray]:
         for k, picture in enumerate(pictures, 1):

@@ -24,6 +24,7 @@ from tests.thinned import thinned
 from tests.viewer.live.conftest import FOUR_BAR
 from tests.viewer.unpacking import unpacked
 
+NO_LOOP = ("balanced-lamp", "door-closer", "double-pendulum", "pendulum")
 TITLES = [
     "Pin in slot", "Slider", "Cylinder", "Weld", "Gear pair", "Non-circular gears", "Belt or chain",
     "Rack and pinion", "Rolling wheel", "Cam", "Curve", "Spring", "Load",
@@ -156,6 +157,25 @@ def test_dragging_gives_cycles_and_one_step_of_history(bench: Workbench) -> None
     back = only(bench.handle(ask.Undo()), tell.FileState)
     assert (back.text, back.undo, back.redo) == (FOUR_BAR, "", "A B = 126")
     assert '"A B" = 126' in only(bench.handle(ask.Redo()), tell.FileState).text
+
+
+def test_rates_of_points_are_left_out_during_a_drag_that_does_not_show_them(
+    bench: Workbench,
+) -> None:
+    bench.opened()
+    pages = []
+    for live, rates in ((True, True), (True, False), (False, False)):
+        edit = ask.SetNumber(name="A B", value=121, live=live, rates=rates)
+        page = only(bench.handle(edit), tell.MotionFound).page
+        assert page is not None
+        pages.append(page)
+    (with_rates,), (without,), (final,) = (page.motions for page in pages)
+    for one, bare, last in zip(with_rates.points, without.points, final.points, strict=True):
+        assert len(bare.x.content) == len(one.x.content)
+        for name in ("dx", "dy", "ddx", "ddy"):
+            assert getattr(bare, name).content == ""
+            assert getattr(one, name).content != ""
+            assert getattr(last, name).content != ""
 
 
 def test_a_drag_that_is_never_let_go_is_kept(bench: Workbench) -> None:
@@ -577,7 +597,7 @@ def test_every_mechanism_of_the_library_opens_and_is_edited(name: str, tmp_path:
     bench = Workbench(MechanismFile(file), lw.loads)
     state = bench.opened()[1]
     assert isinstance(state, tell.FileState)
-    assert state.equations or name in ("balanced-lamp", "door-closer", "pendulum")  # no loop
+    assert state.equations or name in NO_LOOP
     plain = [n for n in state.numbers if not n.formula and n.table not in ("points", "guess")]
     for each in plain[:1]:
         events = bench.handle(ask.SetNumber(name=each.name, value=each.value * 1.0001 + 1e-4))

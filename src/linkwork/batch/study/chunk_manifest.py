@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -24,6 +24,7 @@ __all__ = [
     "Entry",
     "Metadata",
     "changed_files",
+    "chunks_with_entry",
     "read_entries",
     "write_entry",
     "write_whole",
@@ -142,10 +143,8 @@ def read_entries(store: Path) -> tuple[dict[int, Entry], dict[int, tuple[str, ..
     """The entries of chunks that are as they were written; the changed files of the others."""
     sound: dict[int, Entry] = {}
     damaged: dict[int, tuple[str, ...]] = {}
-    for path in sorted((store / LEDGER).glob(f"[0-9]*{_SUFFIX}")):
-        if not path.stem.isdecimal():
-            continue
-        found, chunk = _unsealed(path), int(path.stem)
+    for chunk, path in _entry_files(store):
+        found = _unsealed(path)
         if found is None:
             damaged[chunk] = (f"{LEDGER}/{path.name}",)
             continue
@@ -155,6 +154,17 @@ def read_entries(store: Path) -> tuple[dict[int, Entry], dict[int, tuple[str, ..
         else:
             sound[chunk] = entry
     return sound, damaged
+
+
+def chunks_with_entry(store: Path) -> set[int]:
+    """The chunks that are recorded as finished; their files are not read."""
+    return {chunk for chunk, _ in _entry_files(store)}
+
+
+def _entry_files(store: Path) -> Iterator[tuple[int, Path]]:
+    for path in sorted((store / LEDGER).glob(f"[0-9]*{_SUFFIX}")):
+        if path.stem.isdecimal():
+            yield int(path.stem), path
 
 
 def _sealed(values: Mapping[str, Any]) -> bytes:

@@ -144,18 +144,15 @@ def _teller(
     """A function that reports the chunks in ``done`` to ``progress``."""
     began = monotonic()
 
-    def designs() -> int:
-        return sum(len(study.designs_of(k)) for k in done)
-
     # designs of an earlier run do not count in the rate
-    before = designs()
+    before = study.count_in(done)
 
     def tell() -> None:
         if progress is not None:
             progress(
                 Progress(
                     total=study.plan.count,
-                    done=designs(),
+                    done=study.count_in(done),
                     before=before,
                     seconds=monotonic() - began,
                 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -97,6 +97,13 @@ class Study:
         """The designs of a chunk."""
         start = k * self.chunk_size
         return range(start, min(start + self.chunk_size, self.plan.count))
+
+    def count_in(self, chunks: AbstractSet[int]) -> int:
+        """The number of designs in some chunks."""
+        count = len(chunks) * self.chunk_size
+        if self.chunks - 1 in chunks:  # the last one may be smaller
+            count -= self.chunks * self.chunk_size - self.plan.count
+        return count
 
     def varied(self, k: int) -> dict[str, Array]:
         """The varied numbers of a chunk, in file units, (designs,) each."""

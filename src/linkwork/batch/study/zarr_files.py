@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -31,13 +32,11 @@ def check_packages() -> None:
     MissingPackageError
         If one is missing; with the install command.
     """
-    try:
-        import xarray  # noqa: F401 - for the units of quantities
-        import zarr  # noqa: F401
-    except ImportError:
+    # not imported here: an import that Ctrl-C ends may raise ImportError
+    if any(find_spec(name) is None for name in ("xarray", "zarr")):
         raise MissingPackageError(
             'studies are stored by zarr and xarray: pip install "linkwork[study]"'
-        ) from None
+        )
 
 
 class ZarrFiles:

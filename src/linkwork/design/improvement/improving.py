@@ -13,6 +13,7 @@ from linkwork.design.improvement.mechanism_fit import PathGoal, fit_numbers
 from linkwork.design.improvement.settings import Goal, Improvement
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, LinkworkError, MechanismError, Problem
+from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND, find_spelling
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
@@ -29,6 +30,7 @@ _FAR = 2.0  # longest numbers, by which others may change
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
 
+@internal("description")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImprovedDesign:
     """A mechanism with improved numbers.
@@ -47,6 +49,14 @@ class ImprovedDesign:
         Whether all rows of its table are proved to be on one branch.
     message : str
         Why it is not sound, and how the search ended.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> goal = {"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}
+    >>> best = lw.example("four-bar").improve(goal, vary=["A B", "O4 B"], starts=4)[0]
+    >>> sorted(best.numbers), best.sound
+    (['A B', 'O4 B'], True)
     """
 
     description: Description

@@ -24,6 +24,15 @@ class Defect:
     between : (int, int), optional
         The numbers of the positions between which it occurs.
     message : str
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> bar = lw.example("four-bar")
+    >>> here, there = bar.solve(at=0).points["B"], bar.configurations(at=90)["crossed"].points["B"]
+    >>> found = lw.Task.path([here, there]).defects_of(bar, (0, 90), point="B")
+    >>> [defect.kind.name for defect in found]
+    ['CIRCUIT']
     """
 
     kind: DefectKind

@@ -16,6 +16,7 @@ from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.summary import Summary
@@ -53,6 +54,13 @@ class Dyad:
         A bound of the errors of both pivots, and of how far a line is missed [length].
     message : str
         "proved", or why it is not.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> poses = [(0, 0, 0), (2, 1, 20), (3, 3, 50), (2, 5, 80), (0, 6, 100)]
+    >>> [(dyad.kind, dyad.proved) for dyad in lw.Task.motion(poses).solve().dyads]
+    [('RR', True), ('RR', True)]
     """
 
     kind: str
@@ -91,6 +99,7 @@ class JudgedDesigns:
     output: str
 
 
+@internal("group", "index", "drive", "linkage", "kinds", "design")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SynthesizedDesign:
     """One design with its verdict.
@@ -107,6 +116,14 @@ class SynthesizedDesign:
         Whether it is sound and among the wanted number of designs.
     score : float
         The weighted score of the ranking, 0 to 1.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> task = lw.Task.function("log10(x)", x=(1, 2), input=(45, 105), output=(0, 90))
+    >>> design = task.solve().delivered[0]
+    >>> design.number, design.defects
+    (1, ())
     """
 
     number: int
@@ -147,7 +164,7 @@ class SynthesizedDesign:
 
     @property
     def error(self) -> float:
-        """How far positions are missed: the largest distance, or the structural error."""
+        """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.given.miss[self.index])
         is_angle = self.group.output == "rocker"
         return self.group.task.angle.from_radians(miss) if is_angle else miss

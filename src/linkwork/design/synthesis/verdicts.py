@@ -18,7 +18,14 @@ __all__ = ["DefectKind", "Verdicts", "judge"]
 
 
 class DefectKind(Enum):
-    """What is wrong with a design; the value is what a count of them says."""
+    """What is wrong with a design; the value is what a count of them says.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> lw.DefectKind.CIRCUIT.value
+    'circuit changes'
+    """
 
     CIRCUIT = "circuit changes"
     BRANCH = "branch changes"

@@ -19,7 +19,7 @@ __all__ = ["COORDINATES", "Curve", "CurvedSlot", "coordinates", "turned_back"]
 
 COORDINATES = ListOf(ListOf(NumberKey("length"), "coordinate", 2, 2), "point", 3)
 
-_Pairs = tuple[tuple[Number, Number], ...]
+Pairs = tuple[tuple[Number, Number], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,7 @@ class Curve(NamedPart):
     point: str
     on: str
     origin: str
-    through: _Pairs
+    through: Pairs
     closed: bool = False
 
     @property
@@ -133,12 +133,12 @@ class Curve(NamedPart):
         return replace(same, through=turned_back(self.through, inversion.turn))
 
 
-def coordinates(pairs: _Pairs, linkage: Bodies) -> list[complex]:
+def coordinates(pairs: Pairs, linkage: Bodies) -> list[complex]:
     """Points given by numbers or formulas."""
     return [complex(linkage.numbers(x), linkage.numbers(y)) for x, y in pairs]
 
 
-def turned_back(pairs: _Pairs, turn: float) -> _Pairs:
+def turned_back(pairs: Pairs, turn: float) -> Pairs:
     """Coordinates in axes rotated by ``turn`` [rad]."""
     if not turn:
         return pairs

@@ -20,7 +20,7 @@ from linkwork.results.quantities.definition import (
 )
 from linkwork.results.quantity import Kind, Quantity, Rate
 
-__all__ = ["EVIDENCE", "Call", "Listed", "Quantities"]
+__all__ = ["EVIDENCE", "RATES", "Call", "Listed", "Quantities"]
 
 #: Numbers about a position: how well it closes, how it was found, what is proved of it.
 EVIDENCE = {
@@ -32,7 +32,8 @@ EVIDENCE = {
 }
 
 _CALL = re.compile(r"\s*(\w+)\s*\(\s*([^()<>=]*[^()<>=\s])\s*\)\s*")
-_RATES = {
+#: Rates that any quantity has, by the suffix of its name.
+RATES = {
     Rate.FIRST: "first derivative with respect to the input",
     Rate.SECOND: "second derivative with respect to the input",
     Rate.VELOCITY: "first derivative with respect to time; the input needs a speed",
@@ -197,7 +198,7 @@ class Quantities:
             yield Listed(name=asked.name, kind=kind, unit=unit, about=about)
         for name in self.evidence:
             yield Listed(name=name, kind=Kind.NUMBER.value, unit="", about=EVIDENCE[name])
-        for rate, about in _RATES.items():
+        for rate, about in RATES.items():
             if timed or not rate.by_time:
                 yield Listed(name=f"….{rate.value}", kind="rate", unit="", about=about)
         for quantity in every.MOTION_QUANTITIES:

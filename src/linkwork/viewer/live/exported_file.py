@@ -14,7 +14,6 @@ from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.drawing.mechanism_scene import scene_of
 from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.scene import Scene
-from linkwork.drawing.theme import DARK, LIGHT
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.results.csv_text import csv_text
 from linkwork.results.motion import Motion
@@ -105,7 +104,7 @@ def exported_file(
         elif suffix == "xlsx":
             content, notices = _workbook(mechanism, motion)
         else:
-            options = viewer.FilmOptions(theme=DARK if dark else LIGHT)
+            options = viewer.FilmOptions(theme="dark" if dark else "light")
             viewer.check_animation(f"film.{suffix}", options)
             content = viewer.animation({"": motion}, suffix, options=options, progress=progress)
     return ExportedFile(
