@@ -507,6 +507,7 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = truss("Ds[", np.random.default_rng(5))
+    monkeypatch.setattr(assembling, "roots_of_two_loops", lambda _: None)
     mechanism.configurations()
     for care in ("BOLD", "CAREFUL"):
         monkeypatch.setattr(isolated_roots, care, PathOptions(attempts=3))

@@ -16,6 +16,7 @@ from linkwork.numerics.homotopy.column_sums import columns_of, sums_hold
 from linkwork.numerics.homotopy.isolated_roots import isolated_roots
 from linkwork.numerics.homotopy.laman_number import laman_number
 from linkwork.numerics.homotopy.path_tracking import track
+from linkwork.numerics.homotopy.polynomial_system import distinct_solutions
 from linkwork.numerics.homotopy.solution_bound import (
     Products,
     Theorem,
@@ -114,7 +115,7 @@ def test_systems_of_small_integers_have_no_more_solutions_than_their_bound(seed:
     system = angles_only(closures, known)
     start = StartHomotopy.of(system, rng)
     ends = roots_module._classify_ends(system, start, track(start, start.starts(), CAREFUL))
-    x = roots_module._distinct(ends.x[ends.regular])
+    x = distinct_solutions(ends.x[ends.regular])
     rounding = 1e-16 * np.abs(system.left)
     proofs = prove_roots(system, x, rounding)
     bound = structure_of(system).bound_of(system, rounding, len(x))

@@ -25,6 +25,7 @@ from linkwork.numerics.block_solver import Block, Linearised, linearise_block
 from linkwork.numerics.homotopy.bilinear import prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
 from linkwork.numerics.homotopy.isolated_roots import isolated_roots
+from linkwork.numerics.homotopy.pencil_roots import roots_of_two_loops
 from linkwork.numerics.homotopy.polynomial_system import Roots
 from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
 from linkwork.numerics.homotopy.solution_bound import SolutionBound, bound_by_products
@@ -234,8 +235,12 @@ def _block_configurations(
     near = model.equations.start[block.unknowns]
     if form.table.loops.rows:
         spread = error_bound[:, block.variables[len(block.unknowns) :]]
-        closures = zip(*form.closures(known, spread), strict=True)
-        solved = [_solve_block(form, left, off) for left, off in closures]
+        # configurations of blocks that this one does not depend on leave its closures as they are
+        closures = list(zip(*form.closures(known, spread), strict=True))
+        keys = [(left.tobytes(), off.tobytes()) for left, off in closures]
+        different = dict(zip(keys, closures, strict=True))
+        once = {key: _solve_block(form, *pair) for key, pair in different.items()}
+        solved = [once[key] for key in keys]
     else:  # angles that follow from others without a loop
         solved = [_FOLLOWS] * len(v)
     rows = np.repeat(np.arange(len(v)), [len(part.x) for part in solved])
@@ -313,7 +318,8 @@ def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> _BlockR
         roots, bound = quadratic_roots(system), bound_by_products(system.products)
     else:
         family = structure_of(system)
-        roots = isolated_roots(system, family)
+        known = roots_of_two_loops(system) if system.loops == 2 else None
+        roots = isolated_roots(system, family, known)
         bound = family.bound_of(system, off, len(roots.x))
     proofs = prove_roots(system, roots.x, off)
     m = system.size

@@ -22,6 +22,7 @@ from linkwork.numerics.homotopy.dead_point_system import (
     norm_of,
 )
 from linkwork.numerics.homotopy.isolated_roots import SEED, isolated_roots
+from linkwork.numerics.homotopy.pencil_roots import dead_points_of_one_loop
 from linkwork.numerics.homotopy.polynomial_system import Roots
 from linkwork.numerics.homotopy.topology import Renaming, Topology
 
@@ -251,4 +252,5 @@ class DeadPointFamily:
 
 def dead_point_roots(system: DeadPointSystem) -> Roots:
     """All isolated dead points, complex ones among them."""
-    return isolated_roots(system, DeadPointFamily.of(system))
+    known = dead_points_of_one_loop(system) if system.loops == 1 else None
+    return isolated_roots(system, DeadPointFamily.of(system), known)

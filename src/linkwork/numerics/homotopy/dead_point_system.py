@@ -129,7 +129,7 @@ class DeadPointSystem:
         """F, (B, n), and its derivative, (B, n, n), at x (B, n)."""
         whole = np.ones((len(x), self.parts[2].stop), dtype=complex)
         whole[:, self._affine] = x
-        slopes = np.einsum("bi,eij->bej", whole, self.quadratic, optimize=True)
+        slopes = np.tensordot(whole, self.quadratic, axes=(1, 1))
         jacobian = np.zeros((len(x), x.shape[1], whole.shape[1]), dtype=complex)
         lines = len(self.linear)
         jacobian[:, :lines] = self.linear

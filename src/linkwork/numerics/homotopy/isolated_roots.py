@@ -25,8 +25,10 @@ from linkwork.marching.solution_path import (
 )
 from linkwork.numerics.homotopy.path_tracking import Homotopy, Paths, track
 from linkwork.numerics.homotopy.polynomial_system import (
+    SAME_ROOT,
     PolynomialSystem,
     Roots,
+    distinct_solutions,
     nearest_solution,
     polish_roots,
 )
@@ -47,7 +49,6 @@ __all__ = [
 #: All random numbers follow from this one, so that every run gives the same answer.
 SEED = 20_210_501
 
-_SAME_ROOT = 1e-6  # two solutions are the same one
 _FINITE = 1e-8  # smallest homogenising coordinate, of vectors of length 1, of a finite solution
 _FADING = 0.5  # a singular path whose homogenising coordinate shrinks so much runs to infinity
 _FINITE_MULTIPLE = 1e-5  # the smallest one of a finite multiple solution, which is known roughly
@@ -144,6 +145,11 @@ class _Ends:
     failed: BoolArray
 
 
+def _all_regular(x: ComplexArray) -> _Ends:
+    no = np.zeros(len(x), dtype=bool)
+    return _Ends(x=x, regular=~no, infinite=no, singular=no, failed=no)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solved(Generic[S]):
     """A random member of a family with its solutions; ``sure`` that these are all."""
@@ -161,14 +167,17 @@ class Solved(Generic[S]):
 _KNOWN: dict[RootFamily[Any], Solved[Any]] = {}
 
 
-def isolated_roots(system: S, family: RootFamily[S]) -> Roots:
+def isolated_roots(system: S, family: RootFamily[S], known: ComplexArray | None = None) -> Roots:
     """All isolated solutions of a member of a family.
 
     Paths that were lost, or that met, are followed again with more care and along other systems.
     Where fewer solutions are found than random systems of the family have, a second set of paths
-    has to confirm it.
+    has to confirm it. No member has more isolated solutions than almost all have: if regular ones
+    ``known`` (R, n) are as many, these are all, and no path is followed.
     """
     generic = random_member(family)
+    if known is not None and len(known) == len(generic.x):
+        return _roots(system, _all_regular(known), generic)
     rng = family.generator(1)
     expected = len(generic.x)
     best: _Ends | None = None
@@ -192,7 +201,7 @@ def _quality(ends: _Ends) -> tuple[int, int]:
 def _agree(a: _Ends, b: _Ends) -> bool:
     """Whether two sets of paths found the same regular solutions."""
     x, y = a.x[a.regular], b.x[b.regular]
-    return len(x) == len(y) == len(_distinct(np.concatenate([x, y])))
+    return len(x) == len(y) == len(distinct_solutions(np.concatenate([x, y])))
 
 
 def random_member(family: RootFamily[S]) -> Solved[S]:
@@ -218,7 +227,7 @@ def _read_member(family: RootFamily[S]) -> Solved[S] | None:
         if len(x):
             with np.errstate(all="ignore"):  # of a file that is damaged
                 x, steps = polish_roots(system, family.rename(x, renaming))
-        if (steps >= 0).all() and len(_distinct(x)) == len(x):
+        if (steps >= 0).all() and len(distinct_solutions(x)) == len(x):
             return Solved(system=system, x=x, sure=kept.sure)
     return None
 
@@ -236,7 +245,7 @@ def solve_random_member(family: RootFamily[S], purpose: int = 0) -> Solved[S]:
         start = family.from_products(system, rng)
         ends = _classify_ends(system, start, track(start, start.starts(), CAREFUL))
         found = ends.x[ends.regular]
-        x = _distinct(np.concatenate([x, found])) if attempt else _distinct(found)
+        x = distinct_solutions(np.concatenate([x, found])) if attempt else distinct_solutions(found)
         clean += not (ends.failed | ends.singular | _meeting(ends)).any()
         if (clean and len(x)) or clean == _LOOPS:
             break
@@ -252,9 +261,9 @@ def _close_paths(family: RootFamily[S], known: Solved[S], rng: np.random.Generat
         # a closed path of systems permutes the solutions, and so may lead to missing ones
         away = family.random(rng)
         there = _follow_paths(family, known, away, rng, CAREFUL)
-        back = Solved(system=away, x=_distinct(there.x[there.regular]))
+        back = Solved(system=away, x=distinct_solutions(there.x[there.regular]))
         ends = _follow_paths(family, back, known.system, rng, CAREFUL)
-        x = _distinct(np.concatenate([known.x, ends.x[ends.regular]]))
+        x = distinct_solutions(np.concatenate([known.x, ends.x[ends.regular]]))
         whole = len(x) == len(known.x) and there.regular.all() and ends.regular.all()
         quiet = quiet + 1 if whole else 0
         tries += 1
@@ -285,10 +294,8 @@ def _follow_paths(
         joined = Paths(w=w, near=near, state=state, steps=paths.steps + once_more.steps)
         ends = _classify_ends(goal, homotopy, joined)
         again = ends.failed | _meeting(ends)
-    if not again.any():
-        return ends
-    return _Ends(
-        x=ends.x,
+    return replace(
+        ends,
         regular=ends.regular & ~again,
         infinite=ends.infinite & ~again,
         singular=ends.singular & ~again,
@@ -349,24 +356,14 @@ def _near_another(x: ComplexArray) -> BoolArray:
         return np.zeros(len(x), dtype=bool)
     size = 1.0 + np.abs(x).max(axis=1)
     gap = np.abs(x[:, None, :] - x[None, :, :]).max(axis=2)
-    close = gap < _SAME_ROOT * np.minimum(size[:, None], size[None, :])
+    close = gap < SAME_ROOT * np.minimum(size[:, None], size[None, :])
     np.fill_diagonal(close, False)
     near: BoolArray = close.any(axis=1)
     return near
 
 
-def _distinct(x: ComplexArray, same: float = _SAME_ROOT) -> ComplexArray:
-    """The rows without repetitions, first ones kept."""
-    kept: list[int] = []
-    for k in range(len(x)):
-        size = 1.0 + np.abs(x[k]).max()
-        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
-            kept.append(k)
-    return x[kept]
-
-
 def _roots(system: S, ends: _Ends, generic: Solved[S]) -> Roots:
-    multiple = _distinct(ends.x[ends.singular], 1e-2)
+    multiple = distinct_solutions(ends.x[ends.singular], 1e-2)
     curved = np.array([_on_a_curve(system, x) for x in multiple], dtype=bool)
     return Roots(
         x=ends.x[ends.regular],

@@ -10,8 +10,17 @@ import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, CountArray
 
-__all__ = ["PolynomialSystem", "Roots", "nearest_solution", "polish_roots", "solve_linear"]
+__all__ = [
+    "SAME_ROOT",
+    "PolynomialSystem",
+    "Roots",
+    "distinct_solutions",
+    "nearest_solution",
+    "polish_roots",
+    "solve_linear",
+]
 
+SAME_ROOT = 1e-6  # two solutions are the same one
 _POLISH = 12  # steps of Newton's method at most
 
 
@@ -76,6 +85,16 @@ def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArra
         if not len(live):
             break
     return x, steps
+
+
+def distinct_solutions(x: ComplexArray, same: float = SAME_ROOT) -> ComplexArray:
+    """The rows of (B, n) without repetitions, first ones kept."""
+    kept: list[int] = []
+    for k in range(len(x)):
+        size = 1.0 + np.abs(x[k]).max()
+        if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
+            kept.append(k)
+    return x[kept]
 
 
 def solve_linear(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
