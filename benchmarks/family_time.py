@@ -56,7 +56,7 @@ def measure(repeats: int = 9) -> bool:
 
 def _effort(repeats: int) -> bool:
     """Slider-cranks with the torque at the crank, against the same family without it."""
-    family = _loaded_slider_cranks(20_000)
+    family = _loaded_slider_cranks(100_000)
     without = partial(family.reduced, ["max(d)"], threads=1)
     with_effort = partial(family.reduced, ["max(d)", "max(crank.effort)"], threads=1)
     ratios = _ratios(with_effort, without, repeats, time.process_time)

@@ -46,8 +46,11 @@ def bar(text: str, ratios: Sequence[float], limit: float) -> bool:
     """Print the median of ratios with its spread against a limit; tell whether it holds."""
     middle = statistics.median(ratios)
     held = middle <= limit
-    print(
-        f"  {text:<52} {middle:8.3f}  ({min(ratios):.3f} … {max(ratios):.3f})"
-        f"  bar {limit:g}  {'ok' if held else 'MISSED'}"
-    )
+    low, high = (_ratio(ratio) for ratio in (min(ratios), max(ratios)))
+    spread = f"  ({low} … {high})" if len(ratios) > 1 else ""
+    print(f"  {text:<52} {_ratio(middle):>8}{spread}  bar {limit:g}  {'ok' if held else 'MISSED'}")
     return held
+
+
+def _ratio(ratio: float) -> str:
+    return f"{ratio:.3f}" if ratio >= 0.001 else f"{ratio:.1e}"

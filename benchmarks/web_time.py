@@ -131,7 +131,7 @@ def _visits(program: str, address: str) -> Iterator[tuple[str, float]]:
             yield f"first proven cycle, {visit} visit [s]", _opened(page, address, "four-bar")
             if visit == "first":
                 yield "first paint, first visit [s]", page.evaluate(_PAINTED) / 1000
-            page.wait_for_timeout(3000)  # the modules are kept for the next visit
+            page.wait_for_timeout(3000)  # the snapshot is kept for the next visit
             yield f"memory of the page's process, {visit} visit [MB]", private_memory("renderer")
             yield f"transferred at the {visit} visit [MB]", (_Host.sent - before) / 1e6
             page.close()

@@ -10,6 +10,7 @@ export interface SetNumber {
   value: number | string;
   any_formula?: boolean;
   live?: boolean;
+  rates?: boolean;
 }
 
 export interface MovePoint {
@@ -28,6 +29,7 @@ export interface MovePoints {
   places: Record<string, readonly [number, number]>;
   keep?: readonly (string)[];
   live?: boolean;
+  rates?: boolean;
 }
 
 export interface SetInput {
@@ -240,6 +242,7 @@ export interface Simulate {
   id?: number;
   until: number | string;
   start_speed?: number | string;
+  start_speeds?: Record<string, number | string> | null;
   at?: Record<string, number | string> | null;
   change_points?: string;
   step?: number | string | null;

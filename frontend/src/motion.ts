@@ -57,6 +57,9 @@ export class MotionView {
   /** The unit of the input in derivatives. */
   readonly derivativeUnit: string;
 
+  /** Whether rates of points have been read. */
+  ratesRead = false;
+
   constructor(
     readonly data: MotionData,
     units: Pick<PageData, "length_unit" | "derivative_unit">,
@@ -68,7 +71,7 @@ export class MotionView {
     const own: Own = (column) => unpacked(column, this.found);
     this.order = Array.from(dense(data.order));
     this.series = data.columns.map((column) => seriesOf(column, own));
-    this.points = data.points.map((point) => pointOf(point, own));
+    this.points = data.points.map((point) => pointOf(point, own, () => (this.ratesRead = true)));
     this.turns = data.turns.map((turn) => own(turn.angle));
     this.status = dense(evidence.status);
     this.certification = dense(evidence.certification);
@@ -178,9 +181,10 @@ function seriesOf(column: Column, own: Own): Series {
   };
 }
 
-function pointOf(point: PointData, own: Own): Point {
-  const rates = lazily(() => ({ dx: own(point.dx), dy: own(point.dy) }));
-  const second = lazily(() => ({ ddx: own(point.ddx), ddy: own(point.ddy) }));
+/** `read` hears of every rate that is read. */
+function pointOf(point: PointData, own: Own, read: () => void): Point {
+  const rates = lazily(() => (read(), { dx: own(point.dx), dy: own(point.dy) }));
+  const second = lazily(() => (read(), { ddx: own(point.ddx), ddy: own(point.ddy) }));
   return {
     name: point.name,
     shown: point.shown,

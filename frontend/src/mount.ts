@@ -58,6 +58,8 @@ export interface Mounted {
   /** All quantities of the displayed row. */
   readonly values: Readonly<Record<string, number>>;
   readonly charts: Charts;
+  /** Whether rates of points are shown, which the updates of a drag otherwise lack. */
+  readonly rates: boolean;
   /** The elements that accept additions. */
   readonly places: Places;
   readonly presentation: Presentation;
@@ -134,6 +136,8 @@ class Page implements Mounted {
   private readonly words: InWords;
   private readonly questions: Questions;
   private readonly reword = new Slowly(SPOKEN_EVERY, () => this.describe());
+  /** Whether rates of points were shown before this update of a drag. */
+  private rated = false;
   private views: (MotionView | undefined)[] = [];
   private motion = 0;
   private frame = 0;
@@ -207,6 +211,7 @@ class Page implements Mounted {
       this.pace = Math.min(UPDATED_WITHIN, Math.max(UPDATED_WITHIN / RESTS_AFTER, now - this.steady));
       this.steady = now;
     }
+    this.rated = steady && this.rates;
     this.views = [];
     if (!steady) this.dress();
     if (!steady) this.layOut();
@@ -225,6 +230,10 @@ class Page implements Mounted {
   get points(): Record<string, readonly [number, number]> {
     const row = this.row;
     return Object.fromEntries(this.view.points.map(({ name, x, y }) => [name, [x[row]!, y[row]!] as const]));
+  }
+
+  get rates(): boolean {
+    return this.rated || this.views.some((view) => view?.ratesRead);
   }
 
   play(on: boolean): void {

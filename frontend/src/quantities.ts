@@ -97,9 +97,15 @@ function jetOf(view: MotionView, own: string): Jet | null {
   const point = view.points.find((one) => one.name === name);
   if (!point || !(own.endsWith(".x") || own.endsWith(".y"))) return null;
   const length = view.lengthUnit;
-  const shown = `${point.shown}.${axis}`;
-  if (axis === "x") return { shown, unit: length, of: length, values: point.x, first: point.dx, second: point.ddx };
-  return { shown, unit: length, of: length, values: point.y, first: point.dy, second: point.ddy };
+  return {
+    ...{ shown: `${point.shown}.${axis}`, unit: length, of: length, values: axis === "x" ? point.x : point.y },
+    get first() {
+      return axis === "x" ? point.dx : point.dy;
+    },
+    get second() {
+      return axis === "x" ? point.ddx : point.ddy;
+    },
+  };
 }
 
 /** The values of a rate and their unit. */

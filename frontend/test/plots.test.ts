@@ -55,6 +55,19 @@ describe("a design before that did not move", () => {
   });
 });
 
+describe("rates of points", () => {
+  it("are known to have been read, also where they were not sent", () => {
+    const view = motion();
+    expect(quantityOf(view, "A.y")!.values[1]).toBe(view.points[0]!.y[1]);
+    expect(view.ratesRead).toBe(false);
+    const [point] = motion().data.points;
+    const none: PackedColumn = { step: 1, order: 0, content: "", gaps: [] };
+    const bare = motion({ points: [{ ...point!, dx: none, dy: none, ddx: none, ddy: none }] });
+    expect([...bare.points[0]!.dx]).toEqual(Array(ROWS).fill(NaN));
+    expect(bare.ratesRead).toBe(true);
+  });
+});
+
 describe("quantities of a page", () => {
   const view = motion();
 

@@ -22,6 +22,7 @@ from linkwork.design.differentiated_forces import LoadedRows
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.loops import Loops
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model, model_of
@@ -35,7 +36,7 @@ from tests.oracles.stated_quantities import StatedRow
 
 __all__ = ["EVERY", "gradient_campaign"]
 
-#: All driven mechanisms of the library, then the same with random loads.
+#: All driven mechanisms of the library, and the same with random loads.
 EVERY = 2 * len(driven_examples())
 
 _AGREE = 1e-9  # of the scale of a derivative
@@ -95,7 +96,7 @@ def gradient_campaign(part: int) -> tuple[Counter[str], list[str]]:
     names = driven_examples()
     mechanism, forced = read_example(names[part % len(names)]), part >= len(names)
     if forced:
-        if not isinstance(mechanism.description, Linkage):
+        if not isinstance(mechanism.description, Linkage | Loops):
             return counts, []
         mechanism = loaded(mechanism, seed=part)
     with np.errstate(all="ignore"):

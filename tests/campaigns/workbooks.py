@@ -16,7 +16,10 @@ from typing import Any
 
 import openpyxl
 
+import linkwork as lw
+from linkwork.mechanism.linkage import Linkage
 from tests.export.coarse import coarse
+from tests.forces.random_loads import loaded
 from tests.library_mechanisms import driven_examples, read_example
 
 __all__ = ["workbook_campaign"]
@@ -38,7 +41,7 @@ def workbook_campaign(count: int) -> tuple[Counter[str], list[str]]:
     with TemporaryDirectory() as given:
         folder = Path(given)
         for name in names:
-            mechanism = coarse(read_example(name), _STEPS)
+            mechanism = coarse(_with_loads(read_example(name)), _STEPS)
             mechanism.to_excel(folder / f"{name}.xlsx", mechanism.sweep())
             _write_changed(folder / f"{name}.xlsx", folder / f"{name}{_CHANGED}.xlsx")
         out = _recalculated(folder)
@@ -50,6 +53,14 @@ def workbook_campaign(count: int) -> tuple[Counter[str], list[str]]:
             wrong += _proofs(changed, counts) if changed.exists() else []
             false += [f"{name} {what}" for what in wrong]
     return counts, false
+
+
+def _with_loads(mechanism: lw.Mechanism) -> lw.Mechanism:
+    """A linkage with random loads, unless it has its own, so that it has sheets of forces."""
+    given = mechanism.description
+    if not isinstance(given, Linkage) or given.loaded or given.inputs[0].law is not None:
+        return mechanism
+    return loaded(mechanism, seed=len(given.points))
 
 
 def _recalculated(folder: Path) -> Path:

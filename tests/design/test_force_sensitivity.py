@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -74,6 +74,32 @@ FORCES = [
 
 #: At rest, where friction holds a range of efforts.
 STILL = (MACHINE + FRICTION).replace('speed = "300 rpm"\n', "").replace("damping = 0.01", "")
+# a crank at a point that the file does not name, and a block on an inclined line
+HIDDEN = """
+format = 1
+length = "mm"
+[dimensions]
+a = 40
+b = 120
+"α" = 25
+[loops]
+main = "a*e^(i*θ2) + b*e^(i*θ3) = d*e^(i*α)"
+[guess]
+"θ2" = 60
+"θ3" = 10
+d = 130
+[input]
+variable = "θ2"
+[points]
+O = "0"
+B = "d*e^(i*α)"
+[links]
+ground = ["O"]
+block = ["B"]
+[[loads]]
+point = "B"
+force = [1, 2]
+"""
 RUBBING = ["A.friction", "efficiency", "friction_power"]
 HELD = ["crank.effort", "crank.effort.backward", "efficiency", "A.friction", "d.normal"]
 
@@ -145,8 +171,33 @@ def test_forces_without_known_derivatives_are_refused_with_their_reason() -> Non
         rubbing.sensitivity(f"{next(iter(start))}.effort", at=start)
     loops = lw.example("rapier-drive").changed(masses={"rod": lw.Mass(mass=1.0, shape="rod")})
     assert np.isfinite(float(loops.sensitivity("θ12.effort", at=60)["a2"]))
-    with pytest.raises(InputError, match="links read from the loops: give points and links"):
-        loops.sensitivity("A.force.x", at=60)
+    hidden = lw.loads(HIDDEN)
+    assert np.isfinite(float(hidden.forces(at=60)["B.force.x"]))
+    with pytest.raises(InputError, match="a pin P1 that is no point of the file: add it to"):
+        hidden.sensitivity("B.force.x", at=60)
+
+
+def test_reactions_of_loops_have_the_derivatives_of_those_of_links() -> None:
+    """The same rapier drive by loops and by links; its slider's line has no points in the loops."""
+    given: dict[str, Any] = {
+        "masses": {
+            "crank": lw.Mass(mass=1, center=(3, 1), inertia=5),
+            "rod": lw.Mass(mass=2, center=(30, 4), inertia=50),
+        },
+        "gravity": lw.Gravity(),
+        "loads": [lw.Load(point="E", force=(-20, 5))],
+    }
+    loops = lw.example("rapier-drive").changed(**given)
+    links = lw.example("rapier-drive-links").changed(**given)
+    numbers = ["a1", "a2", "a3", "a4", "a5", "b4", "d1"]
+    pins = (f"{pin}.force.{axis}" for pin in ("A0", "A", "B", "C", "C0", "D") for axis in "xy")
+    for name in pins:
+        found, wanted = (each.sensitivity(name, at=50, by=numbers) for each in (loops, links))
+        size = max(abs(float(wanted[number])) for number in numbers)
+        for number in numbers:
+            assert float(found[number]) == pytest.approx(
+                float(wanted[number]), rel=0, abs=1e-10 * size
+            )
 
 
 def test_a_machine_without_loads_has_no_forces_to_differentiate() -> None:

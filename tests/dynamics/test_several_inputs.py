@@ -114,14 +114,39 @@ def test_a_closed_loop_keeps_its_balance_and_its_units() -> None:
     assert metres["disagreement"].max() < 1e-11
 
 
-def test_a_stop_ends_the_motion_where_it_is_hit() -> None:
-    """Shocks of several inputs are not computed: time and place are said."""
-    stop = lw.Stop(of="d", start=4.9)
+def test_a_cart_bounces_off_a_stop_and_its_pendulum_swings() -> None:
+    """M = [[4, 1], [1, 1]] below: the impulse on the cart alone leaves 1 m/s and -2 rad/s."""
+    stop = lw.Stop(of="d", start=4.9, restitution=1)
     motion = lw.linkage(**CART, stops=[stop]).simulate(
-        until=1, at={"d": 5, "bar": -90}, start_speed={"d": -1}
+        until=0.2, step=0.1, at={"d": 5, "bar": -90}, start_speed={"d": -1}
     )
+    (hit,) = np.flatnonzero([word == "stop of d" for word in motion.limit])
+    assert motion["t"][hit] == pytest.approx(0.1, abs=1e-12)
+    assert motion["d.velocity"][hit] == pytest.approx(-1, abs=1e-12)
+    energy = motion["kinetic_energy"] + motion["stored_energy"]
+    assert energy == pytest.approx(energy[0], rel=1e-12)
+    oracle = solve_ivp(
+        _free_cart, (0, 0.1), [4.9, -math.pi / 2, 1, -2], "DOP853", rtol=1e-13, atol=1e-13
+    )
+    last = [motion["d"][-1], math.radians(motion["bar"][-1]), motion["d.velocity"][-1]]
+    assert last == pytest.approx(oracle.y[:3, -1], abs=1e-10)
+
+
+def _free_cart(_: float, y: Any) -> list[float]:
+    _, angle, v, w = y
+    masses = [[4, -math.sin(angle)], [-math.sin(angle), 1]]
+    right = [math.cos(angle) * w**2, -G * math.cos(angle)]
+    return [v, w, *np.linalg.solve(masses, right)]
+
+
+def test_a_motion_that_stays_at_a_stop_ends_there() -> None:
+    """Contacts of several inputs are not computed: time and place are said."""
+    push = lw.Load(point="B", link="cart", force=(-1, 0))
+    cart = lw.linkage(**CART, stops=[lw.Stop(of="d", start=4.9)], loads=[push])
+    motion = cart.simulate(until=1, at={"d": 5, "bar": -90}, start_speed={"d": -1})
     assert motion.message.startswith("the motion ends at t = 0.")
     assert "d = 4.9 m" in motion.message
+    assert "it stays at the stop of d" in motion.message
     assert "stop of d" in motion.limit
     assert not motion.found[-1]
 
@@ -157,3 +182,118 @@ def test_what_is_not_simulated_is_refused(
     """Each with its reason."""
     with pytest.raises(lw.InputError, match=said):
         lw.linkage(**(CART | change)).simulate(until=1, **asked)
+
+
+def _driven_cart(**more: Any) -> lw.Mechanism:
+    """The cart moves 1 m by a law and stays, while its pendulum is free."""
+    law = [lw.LawSegment(law="3-4-5", over=1, by=1), lw.LawSegment(law="dwell", over=1)]
+    given: dict[str, Any] = {"begin": 5, "law": law} | more
+    bar = lw.Input(link="bar", start=-90, stop=-90)
+    return lw.linkage(**(CART | {"inputs": (lw.Input(slider="d", **given), bar)}))
+
+
+def _on_driven_cart(t: float, y: Any) -> list[float]:
+    """Angle, speed, and work of the drive of a pendulum of 1 kg, 1 m on a cart of 3 kg."""
+    angle, rate, _ = y
+    x = min(t, 1.0)
+    speed = 30 * x**2 - 60 * x**3 + 30 * x**4
+    bend = 60 * x - 180 * x**2 + 120 * x**3
+    turn = bend * math.sin(angle) - G * math.cos(angle)
+    force = 4 * bend - math.sin(angle) * turn - math.cos(angle) * rate**2
+    return [rate, turn, force * speed]
+
+
+def test_a_pendulum_on_a_cart_that_a_law_drives_is_that_of_newton() -> None:
+    """By SciPy from equations written here; the drive's work is the energy that is gained."""
+    motion = _driven_cart().simulate(until=2, step=0.25, start_speed={"bar": "1 rad/s"})
+    oracle = solve_ivp(
+        _on_driven_cart, (0, 2), [-math.pi / 2, 1, 0], "DOP853", motion["t"],
+        rtol=1e-13, atol=1e-13, max_step=0.05,
+    )  # fmt: skip
+    assert np.radians(motion["bar"]) == pytest.approx(oracle.y[0], abs=1e-10)
+    assert motion["bar.velocity"] == pytest.approx(oracle.y[1], abs=1e-10)
+    energy = motion["kinetic_energy"] + motion["stored_energy"]
+    assert energy - energy[0] == pytest.approx(oracle.y[2], abs=1e-10)
+    # the cart follows its law exactly, and its force does all the work
+    assert motion["d"][[0, 2, 8]] == pytest.approx([5, 5.5, 6], abs=1e-15)
+    drawn = [_on_driven_cart(t, y)[2] for t, y in zip(motion["t"], oracle.y.T, strict=True)]
+    assert motion["d.effort"] * motion["d.velocity"] == pytest.approx(drawn, abs=1e-9)
+    assert np.abs(motion["bar.effort"]).max() < 1e-13
+    assert np.abs(motion["power"] - motion["energy_rate"]).max() < 1e-12
+
+
+def test_a_formula_of_the_time_drives_a_crank_of_a_five_bar() -> None:
+    """Against the same motion with both cranks driven, by the law of this one and the table."""
+    left = lw.Input(link="left", law="120 + 20*sin(180*t)", start=0, stop=1)
+    right = lw.Input(link="right", start=66, stop=66)
+    arm = _arm(1.0, "m", loads=(), inputs=(left, right))
+    motion = arm.simulate(until=0.1, step=0.05)
+    law = 120 + 20 * np.sin(np.pi * motion["t"])
+    assert motion["left"] == pytest.approx(law, abs=1e-11)
+    assert motion["disagreement"].max() < 1e-11
+    assert np.abs(motion["right.effort"]).max() < 1e-10
+    rate = motion["load_power"] + motion["power"] - motion["energy_rate"]
+    assert np.abs(rate).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("change", "asked", "said"),
+    [
+        ({}, {"until": 3}, "the law of d ends at 2 s, before 3 s: add a segment"),
+        ({}, {"start_speed": {"d": 1}}, "start speed: a law drives d, which has its speed"),
+        ({}, {"at": {"d": 5.5}}, "a law drives d, which begins where the law does: leave it out"),
+        ({}, {"at": 5.5}, "name the input that begins at 5.5, for example d=5.5"),
+        ({}, {"at": {"bra": 1}}, '"bra" is not an input'),
+        (
+            {"law": [lw.LawSegment(law="constant", over=1, by=1),
+                     lw.LawSegment(law="dwell", over=1)]},
+            {},
+            "the law of d changes its speed at once at 1 s, a shock for the free inputs",
+        ),
+        (
+            {"law": "5 + t^3", "start": 0.5, "stop": 2, "begin": None},
+            {},
+            "the law of d begins at 0.5 s, after the simulation: let its formula begin at 0",
+        ),
+    ],
+)  # fmt: skip
+def test_laws_that_do_not_fit_a_simulation_are_refused(
+    change: dict[str, Any], asked: dict[str, Any], said: str
+) -> None:
+    """Each with its time or its input."""
+    with pytest.raises(lw.InputError) as caught:
+        _driven_cart(**change).simulate(**({"until": 2} | asked))
+    assert said in str(caught.value)
+
+
+def test_a_double_pendulum_has_four_equilibria() -> None:
+    """ω² = (2 ± √2) g/l about the hanging one, with signs for bars that stand."""
+    found = lw.example("double-pendulum").equilibria()
+    places = [(each.values["upper"], each.values["lower"]) for each in found]
+    signs = [(-1, -1), (-1, 1), (1, -1), (1, 1)]
+    assert np.array(places) == pytest.approx(90 * np.array(signs), abs=1e-9)
+    assert [each.stable for each in found] == [True, False, False, False]
+    # K = -g diag(2 sin a, sin b), M = [[2, cos(a - b)], [cos(a - b), 1]]
+    for each, (a, b) in zip(found, signs, strict=True):
+        masses = np.array([[2, a * b], [a * b, 1]])
+        squares = np.linalg.eigvals(np.linalg.solve(masses, -G * np.diag([2 * a, b])))
+        rates = np.sort(np.sign(squares) * np.sqrt(np.abs(squares))) / (2 * math.pi)
+        assert each.frequencies == pytest.approx(rates, rel=1e-9)
+        assert each.frequency == each.frequencies[0]
+
+
+@pytest.mark.extended
+def test_equilibria_of_a_five_bar_are_at_rest() -> None:
+    """A motion that starts at rest there does not begin to move; at the others a law is refused."""
+    spring = lw.Spring(name="s", between=("A", "B"), stiffness=200, free=1)
+    free = [lw.Input(link="left"), lw.Input(link="right")]
+    arm = _arm(1.0, "m", loads=(), springs=[spring], inputs=free)
+    stable = [each for each in arm.equilibria() if each.stable]
+    assert len(stable) >= 2
+    for each in stable[:2]:
+        at = {name: each.values[name] for name in ("left", "right")}
+        motion = arm.simulate(until=0.5, step=0.5, at=at)
+        assert np.abs(motion["left.acceleration"]).max() < 1e-9
+        assert motion["left"] == pytest.approx(at["left"], abs=1e-9)
+    with pytest.raises(lw.InputError, match="leave it out for equilibria"):
+        _driven_cart().equilibria()

@@ -42,23 +42,30 @@ def reactions(sheet: Spreadsheet) -> tuple[dict[str, float], list[float]]:
     return found, sums
 
 
+def belts_of(mechanism: lw.Mechanism) -> tuple[lw.Belt, ...]:
+    return described_as(Linkage, mechanism).belts
+
+
 def check(sheet: Spreadsheet, mechanism: lw.Mechanism) -> None:
     """Efforts of all rows, and all reactions of the selected one."""
     motion = mechanism.sweep(certify=False)
     forces = mechanism.forces(motion=motion)
-    (effort,) = forces.efforts
-    wanted = np.asarray(forces[effort])
-    found = np.array(sheet.column("Forces", effort), dtype=float)
     # the efforts of a balanced mechanism are differences of larger numbers
     loads = [np.abs(v).max() for name, v in forces.values.items() if ".load." in name]
-    size = max([np.abs(wanted).max(), *loads])
-    assert found == pytest.approx(wanted, rel=0, abs=_NEAR * size)
+    for effort in forces.efforts:
+        wanted = np.asarray(forces[effort])
+        found = np.array(sheet.column("Forces", effort), dtype=float)
+        size = max([np.abs(wanted).max(), *loads])
+        assert found == pytest.approx(wanted, rel=0, abs=_NEAR * size), effort
     row = int(sheet["Equilibrium", "B3"]) - 1
     by_name, sums = reactions(sheet)
+    # every pin, guide, contact and weld, and the efforts; a belt has its pull, of which both
+    # tensions are read, and the first link of a pin of three is a sum
     own = [name for name in forces.values if name in by_name]
-    # every pin, guide and weld, and the effort
-    assert {"effort"} < {part for name in own for part in name.split(".")[1:2]}
-    assert len(own) >= len(by_name) - 2  # the first link of a pin of three is a sum
+    assert {part for part in by_name if part not in own} <= {
+        f"{belt.name}.{word}" for belt in belts_of(mechanism) for word in ("pull", "mean")
+    }
+    assert set(forces.efforts) < set(own)
     largest = max(abs(by_name[name]) for name in own)
     for name in own:
         value = float(np.asarray(forces[name])[row])
@@ -66,15 +73,26 @@ def check(sheet: Spreadsheet, mechanism: lw.Mechanism) -> None:
     assert sums == pytest.approx([0.0] * len(sums), abs=_NEAR * largest * 100)
 
 
+#: Loads of their own, sliders, slots, welds; teeth, strands, wheels; inputs of every kind.
+NAMES = (
+    "crank-press", "balanced-lamp", "scotch-yoke", "geared-five-bar", "crossed-belt",
+    "rack-and-pinion", "landing-gear", "five-bar-robot",
+)  # fmt: skip
+MORE = (
+    "four-bar", "whitworth", "elliptic-trammel", "cardan-circles", "belt-drive", "planetary-gear",
+    "rack-steering", "rolling-inside", "rolling-wheel", "sun-and-planet", "scissor-lift",
+    "double-pendulum", "excavator", "kempe-translator", "planetary-differential", "three-rpr",
+)  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    "name",
-    ["crank-press", "balanced-lamp", "four-bar", "whitworth", "scotch-yoke", "elliptic-trammel"],
+    "name", [*NAMES, *(pytest.param(name, marks=pytest.mark.extended) for name in MORE)]
 )
 def test_forces_are_linkworks(name: str, tmp_path: Path) -> None:
     mechanism = lw.example(name)
     if not described_as(Linkage, mechanism).loaded:
         mechanism = loaded(mechanism, seed=3)
-    mechanism = coarse(mechanism, 6)
+    mechanism = coarse(mechanism, 3)
     check(written(tmp_path, mechanism), mechanism)
 
 
@@ -92,20 +110,49 @@ def test_forces_follow_a_changed_mass_load_and_dimension(tmp_path: Path) -> None
     check(sheet, changed)
 
 
+def test_forces_follow_a_changed_pressure_angle(tmp_path: Path) -> None:
+    five_bar = coarse(loaded(lw.example("geared-five-bar"), seed=5), 3)
+    (gear,) = described_as(Linkage, five_bar).gears
+    sheet = written(tmp_path, five_bar)
+    sheet.set(f"{gear.name}_pressure", 27.0)
+    check(sheet, five_bar.changed(gears=[replace(gear, pressure_angle=27)]))
+
+
+def test_strands_follow_a_changed_pretension(tmp_path: Path) -> None:
+    drive = coarse(loaded(lw.example("belt-drive"), seed=5), 3)
+    (belt,) = belts_of(drive)
+    drive = drive.changed(belts=[replace(belt, pretension=40)])
+    sheet = written(tmp_path, drive)
+    check(sheet, drive)
+    sheet.set(f"{belt.name}_pretension", 90.0)
+    check(sheet, drive.changed(belts=[replace(belt, pretension=90)]))
+
+
+def test_each_of_several_inputs_follows_a_changed_mass(tmp_path: Path) -> None:
+    robot = coarse(loaded(lw.example("five-bar-robot"), seed=5), 3)
+    masses = dict(described_as(Linkage, robot).masses)
+    link = next(iter(masses))
+    sheet = written(tmp_path, robot)
+    sheet.set(f"mass_{link}", 7.0)
+    check(sheet, robot.changed(masses={**masses, link: replace(masses[link], mass=7.0)}))
+
+
 def test_a_mechanism_whose_forces_have_no_cells_says_so(tmp_path: Path) -> None:
-    gears = coarse(loaded(lw.example("geared-five-bar")), 3)
+    cam = coarse(loaded(lw.example("eccentric-cam")), 3)
     path = tmp_path / "forces.xlsx"
-    gears.to_excel(path, gears.sweep(certify=False))
+    cam.to_excel(path, cam.sweep(certify=False))
     sheet = Spreadsheet(path)
     assert "Forces" not in sheet.book.sheetnames
     texts = [str(cell.value) for row in sheet.book["About"].iter_rows() for cell in row]
-    assert any("no sheets of forces: forces of gear pairs have no cells" in t for t in texts)
+    (cam_part,) = described_as(Linkage, cam).cams
+    message = f"no sheets of forces: the forces of {cam_part.label} (cam) have no cells"
+    assert any(message in text for text in texts)
 
 
 @pytest.mark.parametrize("links", [("ground", "rocker"), ("coupler", "crank")])
 def test_torsion_springs_have_cells(links: tuple[str, str], tmp_path: Path) -> None:
     spring = lw.Spring(name="torsion", links=links, stiffness=9000, free=40, damping=80)
-    mechanism = coarse(loaded(lw.example("four-bar"), seed=2), 6).changed(springs=[spring])
+    mechanism = coarse(loaded(lw.example("four-bar"), seed=2), 3).changed(springs=[spring])
     sheet = written(tmp_path, mechanism)
     check(sheet, mechanism)
     stiffer = mechanism.changed(springs=[replace(spring, stiffness=12000)])

@@ -18,7 +18,7 @@ from linkwork.textfile.renaming import rename
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.writer import write_text
 from tests.described import described_as
-from tests.forces.random_loads import loaded
+from tests.forces.random_loads import loaded, rubbed
 
 CRANK, ROD, LOAD = 200.0, 800.0, 100.0
 
@@ -240,22 +240,6 @@ RUBBING = (
 )  # fmt: skip
 
 
-def rubbed(mechanism: lw.Mechanism, mu: float) -> lw.Mechanism:
-    """A copy with friction in every joint that can have it."""
-    given = described_as(Linkage, mechanism)
-    size = mechanism.model.equations.length_scale
-    friction: dict[str, lw.Friction] = {}
-    for point in given.points:
-        if len(list(given.bodies_at(point))) > 1:
-            friction[point] = lw.Friction(mu=mu, radius=0.02 * size)
-    for part in given.parts:
-        sizes = part.friction_sizes
-        if part.names and sizes is not None:
-            kept = {"radius": 0.01 * size} if "radius" in sizes else {}
-            friction[part.label] = lw.Friction(mu=mu, **kept)
-    return mechanism.changed(friction=friction)
-
-
 @pytest.mark.parametrize("name", RUBBING)
 def test_two_ways_agree_with_friction_in_every_joint(name: str) -> None:
     mechanism = rubbed(loaded(lw.example(name), seed=len(name)), 0.1)
@@ -270,6 +254,38 @@ def test_two_ways_agree_with_friction_in_every_joint(name: str) -> None:
     # the ways are independent: without the friction in the sum of works they differ
     terms = (power, loads, rate, friction)
     assert abs(power + loads - friction - rate) < 1e-11 * sum(map(abs, terms))
+
+
+def _rubbing_in(length: str, size: float) -> lw.Reactions:
+    """A slider-crank with a geared wheel and friction everywhere, in units of 1/size mm."""
+    friction = {p: lw.Friction(mu=0.1, radius=6 * size) for p in "AB"}
+    return lw.linkage(
+        length=length,
+        points={name: (x * size, y * size) for name, (x, y) in {
+            "O": (0, 0), "T": (10, 0), "A": (30, 25), "B": (140, 0), "Q": (0, -60)}.items()},
+        links={"ground": ["O", "T", "Q"], "crank": ["O", "A"], "rod": ["A", "B"], "block": ["B"],
+               "wheel": ["Q"]},
+        gears=[lw.Gear(name="mesh", wheels=("crank", "wheel"), centers=("O", "Q"),
+                       radii=(20 * size, 40 * size))],
+        sliders=[lw.Slider(name="d", link="block", points=("B",), on="ground", line=("O", "T"))],
+        loads=[lw.Load(point="B", link="block", force=(-80, 5)),
+               lw.Load(link="wheel", torque=-2000 * size)],
+        friction={**friction, "d": lw.Friction(mu=0.12, length=40 * size),
+                  "mesh": lw.Friction(mu=0.06, radius=2 * size)},
+        inputs=lw.Input(link="crank", start=0, stop=360, step=15),
+    ).forces()  # fmt: skip
+
+
+def test_the_unit_of_length_changes_no_friction() -> None:
+    """Moments are small numbers in metres; they are solved as precisely as forces."""
+    millimetres, metres = _rubbing_in("mm", 1.0), _rubbing_in("m", 1e-3)
+    for name, values in millimetres.values.items():
+        if name == "disagreement":
+            continue
+        factor = 1e-3 if "mm" in millimetres.units[name] else 1.0
+        wanted = factor * np.asarray(values)
+        near = 1e-13 * np.abs(wanted).max()
+        assert np.asarray(metres[name]) == pytest.approx(wanted, rel=0, abs=near), name
 
 
 def test_friction_of_stressed_joints_leaves_the_effort_undetermined() -> None:

@@ -297,6 +297,57 @@ def test_loops_that_read_as_a_linkage_have_its_reactions() -> None:
             assert loops[name] == pytest.approx(links[name], abs=1e-10)
 
 
+BLOCK = """
+format = 1
+length = "mm"
+[dimensions]
+a = 40
+b = 120
+[loops]
+main = "a*e^(i*θ2) + b*e^(i*θ3) = d"
+[guess]
+"θ2" = 60
+"θ3" = -17
+d = 135
+[input]
+variable = "θ2"
+[points]
+O = "0"
+A = "a*e^(i*θ2)"
+B = "d"
+[links]
+ground = ["O"]
+crank = ["O", "A"]
+rod = ["A", "B"]
+block = ["B"]
+[masses]
+block = { mass = 2 }
+"""
+
+
+def test_loops_with_a_link_of_one_point_are_loaded_there() -> None:
+    crank = lw.loads(BLOCK + '[[loads]]\npoint = "B"\nforce = [-10, 0]\n').forces(at=90)
+    # virtual work: the block goes back by the crank's length per radian
+    assert crank["θ2.effort"] == pytest.approx(-10 * 40)
+    assert crank["disagreement"] < 1e-13
+    # the rod comes from above and pushes the block along itself; the line holds it up
+    assert crank["d.normal"] == pytest.approx(10 * 40 / math.sqrt(120**2 - 40**2))
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        (f'{BLOCK}[[loads]]\nlink = "block"\ntorque = 3\n', "loads[1].link"),
+        (f'{BLOCK}[[loads]]\npoint = "B"\nforce = [1, 0]\nwith = "block"\n', "loads[1].with"),
+        (BLOCK.replace("mass = 2", "mass = 2, inertia = 5"), "masses.block.inertia"),
+    ],
+)
+def test_loops_do_not_tell_the_rotation_of_a_link_of_one_point(text: str, key: str) -> None:
+    with pytest.raises(MechanismError, match="has only one point") as refused:
+        lw.loads(text)
+    assert key in str(refused.value)
+
+
 def test_a_family_has_the_forces_of_its_designs() -> None:
     press = lw.example("crank-press")
     efforts = press.family({"O A": [55.0, 60.0]}).sweep()["crank.effort"]

@@ -388,9 +388,28 @@ def test_door_closer_falls_as_two_exponentials() -> None:
     t = motion["t"]
     begin = math.pi / 2 - free
     angle = free + begin * (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow)
-    closed = t[motion["door"] <= 0][0]
+    closed = t[motion["door"] <= 1e-12][0]
     same(motion["door"], np.where(t < closed, angle, 0), 2)
     assert [word for word in motion.limit if word] == ["stop of door"]
+
+
+@law("toggle-latch")
+def test_toggle_latch_rests_on_both_sides_of_its_centre() -> None:
+    """d = r cos θ + √(l² - r² sin² θ); V = k/2 (180 - d - free)², A = m r²/3 + M d'²."""
+    latch = lw.example("toggle-latch")
+    rest = math.degrees(math.acos((40**2 + 90**2 - 60**2) / (2 * 40 * 90)))
+    found = sorted(latch.equilibria(), key=lambda each: each.input)
+    same([each.input for each in found], [-rest, 0, rest], 180)
+    assert [each.stable for each in found] == [True, False, True]
+    # at the free length V'' = k d'²; in line V'' = -k (90 - 80) (r + r²/l)
+    sine = math.sin(math.radians(rest))
+    slope = 40 * sine * 90 / (90 - 40 * math.cos(math.radians(rest)))
+    inertia = 0.2 * 40**2 / 3
+    swing = math.sqrt(2 * 1000 * slope**2 / (inertia + 0.3 * slope**2)) / (2 * math.pi)
+    growth = math.sqrt(2 * 1000 * 10 * (40 + 40**2 / 60) / inertia) / (2 * math.pi)
+    same([each.frequency for each in found], [swing, -growth, swing], swing, within=1e-10)
+    motion = latch.simulate(1, at=-1)
+    same(motion["crank"][-1], -rest, 180)
 
 
 @law("compressor")

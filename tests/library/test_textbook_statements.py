@@ -69,6 +69,7 @@ TEXTBOOK = {
     ),
     "balanced-lamp": (1, 1, "open two-link chain", "", 1),
     "door-closer": (1, 1, "open two-link chain", "", 1),
+    "toggle-latch": (1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns", 2),
     "pendulum": (1, 1, "open two-link chain", "", 1),
     "compressor": (1, 1, "slider-crank chain (RRRP)", "slider-crank: the driven link turns", 2),
     "beam-engine": (

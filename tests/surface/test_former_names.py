@@ -71,7 +71,8 @@ def test_sweep_beside_is_now_approximate_sweep() -> None:
         former = bar.sweep_beside()
     told = "sweep_beside() is now approximate_sweep(); the former name is removed in version 0.4"
     assert [(str(w.message), w.filename) for w in seen] == [(told, __file__)]
-    assert former["coupler"].tolist() == bar.approximate_sweep()["coupler"].tolist()
+    # compiled code, which the second call may find, rounds differently
+    assert former["coupler"] == pytest.approx(bar.approximate_sweep()["coupler"], rel=1e-12)
     assert inspect.signature(bar.sweep_beside) == inspect.signature(bar.approximate_sweep)
 
 

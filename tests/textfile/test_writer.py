@@ -87,7 +87,10 @@ def test_a_failed_save_leaves_the_old_file_alone(
     monkeypatch.setattr(os, "replace", full)
     with pytest.raises(InputError) as caught:
         save(read_text(SAMPLES["cubic"]).description, path)
-    assert str(caught.value) == f'"{path}" cannot be written: No space left on device'
+    assert str(caught.value) == (
+        f'cannot write "{path}": No space left on device: make room there, or write to '
+        "another place"
+    )
     assert path.read_text() == "old"
     assert [each.name for each in tmp_path.iterdir()] == ["cubic.toml"]
 
@@ -96,7 +99,7 @@ def test_saving_into_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> No
     path = tmp_path / "none" / "cubic.toml"
     with pytest.raises(InputError) as caught:
         save(read_text(SAMPLES["cubic"]).description, path)
-    assert str(caught.value) == f'"{path}" cannot be written: No such file or directory'
+    assert str(caught.value) == f'cannot write "{path}": No such file or directory'
 
 
 def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:

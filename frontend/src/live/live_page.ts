@@ -116,7 +116,13 @@ export class LivePage {
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
-    this.latest = new Latest((request) => this.send(request));
+    this.latest = new Latest((request) => this.send(this.withRates(request)));
+  }
+
+  /** Intermediate answers have rates of points only while they are shown. */
+  private withRates(request: LiveRequest): LiveRequest {
+    const moves = request.kind === "set_number" || request.kind === "move_points";
+    return moves ? { ...request, rates: this.page?.rates ?? true } : request;
   }
 
   private desk(): Desk {

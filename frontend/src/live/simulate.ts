@@ -43,7 +43,7 @@ export class SimulatePanel {
     private readonly desk: Desk,
     private readonly hooks: Hooks,
   ) {
-    html("p", { class: "lw-lead" }, this.element, "The input is free: masses, loads, springs, a motor and stops move the mechanism from its start.");
+    html("p", { class: "lw-lead" }, this.element, "Inputs without a law are free: masses, loads, springs, a motor and stops move the mechanism from its start.");
     this.form = html("form", { class: "lw-form", "aria-label": "Simulation" }, this.element);
     const field = (label: string, value: string, placeholder = ""): HTMLInputElement => {
       const input = html("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder }, html("label", {}, this.form, label));
@@ -137,13 +137,18 @@ export class SimulatePanel {
   private start(): void {
     const { until, start_speed, step } = this.fields;
     const at: Record<string, number | string> = {};
-    for (const input of this.starts.querySelectorAll("input")) if (input.value.trim()) at[input.dataset.input!] = typed(input.value);
+    const speeds: Record<string, number | string> = {};
+    for (const input of this.starts.querySelectorAll("input")) {
+      if (input.value.trim()) (input.dataset.input ? at : speeds)[(input.dataset.input ?? input.dataset.speed)!] = typed(input.value);
+    }
+    const several = this.fields.start_speed.parentElement!.hidden;
     this.clear();
     this.begun();
     this.desk.ask({
       kind: "simulate",
       until: typed(until.value),
-      ...(start_speed.value.trim() ? { start_speed: typed(start_speed.value) } : {}),
+      ...(several && Object.keys(speeds).length ? { start_speeds: speeds } : {}),
+      ...(!several && start_speed.value.trim() ? { start_speed: typed(start_speed.value) } : {}),
       ...(step.value.trim() ? { step: typed(step.value) } : {}),
       ...(Object.keys(at).length ? { at } : {}),
       change_points: this.straight.value,
@@ -176,15 +181,20 @@ export class SimulatePanel {
     this.mark(false);
   }
 
-  /** A start for every input of the file. */
+  /** A start for every input of the file, and of several their start speeds. */
   private inputs(file: FileState): void {
     const wanted = file.inputs.map(({ name, unit }) => `${name} ${unit}`).join("\n");
     if (this.starts.dataset.made === wanted) return;
     this.starts.dataset.made = wanted;
     this.starts.replaceChildren();
+    const several = file.inputs.length > 1;
+    this.fields.start_speed.parentElement!.hidden = several;
     for (const { name, unit } of file.inputs) {
       const label = html("label", {}, this.starts, `Start of ${name}${unit ? ` [${unit}]` : ""}`);
       html("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: "as drawn", "data-input": name }, label);
+      if (!several) continue;
+      const speed = html("label", {}, this.starts, `Start speed of ${name}`);
+      html("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: "0, 60 rad/s", "data-speed": name }, speed);
     }
   }
 

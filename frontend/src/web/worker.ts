@@ -2,7 +2,9 @@
 
 import type { Engine, Files } from "./engine";
 import type { Kept } from "./keeping";
-import { storedEntries } from "./stored_zip";
+import { release } from "./memory";
+import { forgetSnapshot, keepSnapshot, keptSnapshot, snapshotOf, type Memory } from "./snapshot";
+import { StoredZip, type Stored } from "./stored_zip";
 
 /** From the page: the start, then requests as JSON. */
 export interface Start {
@@ -10,9 +12,9 @@ export interface Start {
   readonly files: Files;
   readonly fragment: string;
   readonly kept: Kept | null;
-  /** Whether the page can keep archives for its next start. */
-  readonly prepare: boolean;
-  /** The address of Python's machine code, if it is not among the files. */
+  /** The name of the cache that keeps Python's memory for later visits, if there is one. */
+  readonly store: string | null;
+  /** The address of Python's machine code, if the browser keeps it compiled. */
   readonly machine: string | null;
 }
 
@@ -25,9 +27,9 @@ export interface Doing {
 export interface Failed {
   readonly failed: string;
 }
-/** Archives by name that start faster. */
-export interface Prepared {
-  readonly prepared: Files;
+/** The start from a snapshot has failed: another worker without it begins again with these requests. */
+export interface Again {
+  readonly again: string[];
 }
 
 interface PyFunction {
@@ -35,16 +37,18 @@ interface PyFunction {
   callPromising(...given: unknown[]): Promise<unknown>;
 }
 
-/** Files in memory; `canOwn`: the content is not copied. */
-interface FileSystem {
-  mkdirTree(path: string): void;
-  readFile(path: string): Uint8Array;
-  unlink(path: string): void;
-  writeFile(path: string, content: Uint8Array, options?: { canOwn: boolean }): void;
+/** Files that stay where they are: they are read part by part. */
+interface OutsideFiles {
+  reader: { readAsArrayBuffer(part: Stored): ArrayBuffer };
 }
 
-interface Python {
-  runPythonAsync(code: string): Promise<unknown>;
+interface FileSystem {
+  readonly filesystems: { readonly WORKERFS: OutsideFiles };
+  mount(kind: object, options: { blobs: readonly { name: string; data: Stored }[] }, place: string): void;
+}
+
+interface Python extends Memory {
+  runPython(code: string): unknown;
   registerJsModule(name: string, module: object): void;
   globals: { get(name: string): PyFunction };
   FS: FileSystem;
@@ -53,8 +57,10 @@ interface Python {
 declare const loadPyodide: (options: object) => Promise<Python>;
 declare const self: {
   onmessage: (message: MessageEvent<Start | string>) => void;
-  postMessage(message: string | Doing | Failed | Prepared, transfer?: ArrayBuffer[]): void;
+  postMessage(message: string | Doing | Failed | Again): void;
   fetch: (url: URL | string) => Promise<Response>;
+  /** Of Emscripten: begins before Python does. */
+  _createPyodideModule: (settings: object) => Promise<object>;
 };
 
 /** Pyodide asks for its files under this address; nothing leaves the worker. */
@@ -62,19 +68,31 @@ const HOME = "https://linkwork.invalid/";
 
 const PACKAGES = "/lib/python3.13/site-packages";
 
-const ARCHIVES = ["python_stdlib.zip", "site.zip"];
-const PACKED = "/tmp/site.zip";
-const PREPARED = "/tmp/prepared.zip";
+/** Machine code of NumPy that is loaded before Python starts: only thus it has the same addresses at every visit. */
+const LIBRARIES = /^numpy\/(_core\/_multiarray_umath|linalg\/_umath_linalg)\..*\.so$/;
 
-/** Time without requests before archives are prepared [ms]. */
-const REST = 3000;
+/** For a start from a snapshot, on a busy machine [ms]. */
+const PATIENCE = 20_000;
 
-const BEGIN = `
-from linkwork_page import take, tell, turn
+const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
 from linkwork.viewer.live.browser_desk import BrowserDesk
+`;
+
+/** What a first cycle imports and prepares is part of the snapshot, too. */
+const REHEARSE = `
+import gc
+
+desk = BrowserDesk(loads, example_text, lambda event: None, lambda: ())
+desk.begin("#example=four-bar")
+del desk
+gc.collect()
+`;
+
+const BEGIN = `
+from linkwork_page import take, tell, turn
 
 
 def pause():
@@ -86,82 +104,70 @@ desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
 `;
 
-const PREPARE = `
-from pathlib import Path
-
-from linkwork.viewer.live.bytecode import with_bytecode
-
-STDLIB = Path("/lib/python313.zip")
-
-steps = {
-    "python_stdlib.zip": with_bytecode(STDLIB, STDLIB, Path("${PREPARED}")),
-    "site.zip": with_bytecode(Path("${PACKED}"), Path("${PACKAGES}"), Path("${PREPARED}")),
-}
-
-
-def prepare(name):
-    return next(steps[name], 0) is None
-`;
-
 let messages: string[] = [];
 let work: (() => Promise<unknown>) | null = null;
 let busy = false;
+/** Where a snapshot is kept from which this worker has started. */
+let restored: Cache | null = null;
 
 self.onmessage = ({ data }) => {
   if (typeof data === "string") {
     messages.push(data);
     void answer();
   } else {
-    start(data).catch((error: unknown) => self.postMessage({ failed: String(error) }));
+    start(data).catch(async (error: unknown) => {
+      if (restored) await startAgain(restored);
+      else self.postMessage({ failed: String(error) });
+    });
   }
 };
 
-async function start({ engine, files, fragment, kept, prepare, machine }: Start): Promise<void> {
+async function start({ engine, files, fragment, kept, store, machine }: Start): Promise<void> {
   say("Starting Python …", 0.35);
-  const { fetch } = self;
-  self.fetch = async (url: URL | string) => (machine && String(url).endsWith(".wasm") ? fetch(machine) : own(String(url), files));
-  const python = await loadPyodide({ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME });
-  say("Loading the solver …", 0.7);
-  for (const { name, content } of storedEntries(files["site.zip"]!)) {
-    const path = `${PACKAGES}/${name}`;
-    python.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
-    python.FS.writeFile(path, content, { canOwn: true });
+  const cache = store === null ? null : await caches.open(store);
+  const before = cache && (await keptSnapshot(cache));
+  restored = before && cache;
+  // Pyodide waits for ever where its machine code does not fit into the memory
+  const late = restored && setTimeout(startAgain, PATIENCE, restored);
+  const site = new StoredZip(files["site.zip"]!);
+  if (!before) await site.bringIn();
+  const entries = await site.entries();
+  const libraries = new Map([...entries].flatMap(([name, file]) => (LIBRARIES.test(name) ? [[`${PACKAGES}/${name}`, file]] : [])));
+  const { fetch, _createPyodideModule: create } = self;
+  self.fetch = async (url) => (machine && String(url).endsWith(".wasm") ? fetch(machine) : own(String(url), files, libraries));
+  self._createPyodideModule = (settings) => create(Object.assign(settings, { dynamicLibraries: [...libraries.keys()] }));
+  const python = await loadPyodide({
+    ...{ indexURL: HOME, lockFileContents: engine.lock, packageBaseUrl: HOME },
+    ...(before ? { _loadSnapshot: before } : { _makeSnapshot: cache !== null }),
+  });
+  const { WORKERFS } = python.FS.filesystems;
+  WORKERFS.reader = { readAsArrayBuffer: (part) => part.read() };
+  python.FS.mount(WORKERFS, { blobs: [...entries].map(([name, data]) => ({ name, data })) }, PACKAGES);
+  if (before) release(before.buffer);
+  else {
+    say("Loading the solver …", 0.7);
+    python.runPython(IMPORT);
   }
-  if (prepare) python.FS.writeFile(PACKED, new Uint8Array(files["site.zip"]!), { canOwn: true });
-  for (const name of Object.keys(files)) delete files[name];
+  if (cache && !before) python.runPython(REHEARSE);
+  const snapshot = cache && !before ? snapshotOf(python, [...libraries.keys()]) : null;
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
-  await python.runPythonAsync(BEGIN);
+  python.runPython(BEGIN);
+  if (late) clearTimeout(late);
   say("Solving …", 0.9);
   const [begin, one] = [python.globals.get("begin"), python.globals.get("work")];
   begin(fragment, kept?.name ?? "", kept?.saved ?? "", kept?.text ?? "");
   // with stack switching, long work lets newer messages in
   work = "Suspending" in WebAssembly ? () => one.callPromising() : () => Promise.resolve(one());
   await answer();
-  if (prepare) await prepareArchives(python);
+  site.leaveOutside();
+  if (cache && snapshot) await keepSnapshot(cache, snapshot);
 }
 
-/** Write archives with compiled modules, a module at a time while nothing is asked. */
-async function prepareArchives(python: Python): Promise<void> {
-  await new Promise((done) => setTimeout(done, REST));
-  await python.runPythonAsync(PREPARE);
-  const step = python.globals.get("prepare");
-  const names = [...ARCHIVES];
-  const goOn = (): void => {
-    const [name] = names;
-    if (name === undefined) python.FS.unlink(PACKED);
-    else if (busy) setTimeout(goOn, REST);
-    else {
-      if (!step(name)) {
-        const content = python.FS.readFile(PREPARED).buffer as ArrayBuffer;
-        python.FS.unlink(PREPARED);
-        self.postMessage({ prepared: { [name]: content } }, [content]);
-        names.shift();
-      }
-      setTimeout(goOn);
-    }
-  };
-  goOn();
+/** Let another worker start without the snapshot. */
+async function startAgain(store: Cache): Promise<void> {
+  await forgetSnapshot(store);
+  self.postMessage({ again: messages });
 }
 
 /** Answer all requests, one at a time. */
@@ -171,6 +177,7 @@ async function answer(): Promise<void> {
   try {
     while (await work()) await turn();
   } catch (error) {
+    if (restored) await forgetSnapshot(restored);
     self.postMessage({ failed: String(error) });
   }
   busy = false;
@@ -188,11 +195,10 @@ function turn(): Promise<void> {
   });
 }
 
-function own(url: string, files: Files): Response {
+function own(url: string, files: Files, libraries: ReadonlyMap<string, Stored>): Response {
   const name = url.slice(HOME.length);
-  const kind = name.endsWith(".wasm") ? "application/wasm" : "application/octet-stream";
-  const content = url.startsWith(HOME) ? files[name] : undefined;
-  return content ? new Response(content, { headers: { "content-type": kind } }) : new Response(null, { status: 404 });
+  const content = files[name] ?? libraries.get(name)?.read();
+  return content ? new Response(content) : new Response(null, { status: 404 });
 }
 
 function say(doing: string, done: number): void {

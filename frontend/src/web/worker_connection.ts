@@ -2,10 +2,10 @@
 
 import type { Transport, TransportHooks } from "../live/transport";
 import type { FileState, LiveEvent, LiveRequest } from "../messages";
-import { keepPrepared, type Engine, type Found } from "./engine";
+import type { Engine, Found } from "./engine";
 import { keep, keptWork } from "./keeping";
 import { Saving } from "./saving";
-import type { Doing, Failed, Prepared, Start } from "./worker";
+import type { Again, Doing, Failed, Start } from "./worker";
 
 export class WorkerConnection implements Transport {
   private readonly saving = new Saving();
@@ -19,22 +19,27 @@ export class WorkerConnection implements Transport {
   constructor(private readonly hooks: TransportHooks) {}
 
   /** Start the worker; `doing` gets what it does until the first events arrive. */
-  start(engine: Engine, { files, prepare, machine }: Found, doing: (what: Doing) => void): void {
-    const { "worker.js": script, ...rest } = files;
-    const url = URL.createObjectURL(new Blob([script!], { type: "text/javascript" }));
-    this.worker = new Worker(url);
-    this.worker.onmessage = ({ data }: MessageEvent<string | Doing | Failed | Prepared>) => {
+  start(engine: Engine, found: Found, doing: (what: Doing) => void): void {
+    const { "worker.js": script, ...files } = found.files;
+    const url = URL.createObjectURL(script!);
+    const worker = new Worker(url);
+    this.worker = worker;
+    worker.onmessage = ({ data }: MessageEvent<string | Doing | Failed | Again>) => {
       if (typeof data === "string") this.told(JSON.parse(data) as LiveEvent);
       else if ("doing" in data) doing(data);
       else if ("failed" in data) this.failed(data.failed);
-      else void keepPrepared(engine, data.prepared);
+      else {
+        worker.terminate();
+        this.early.push(...data.again);
+        this.start(engine, found, doing);
+      }
     };
-    this.worker.onerror = (event) => this.failed(event.message);
+    worker.onerror = (event) => this.failed(event.message);
     const kept = keptWork();
     this.saved = kept?.saved ?? null;
-    const start: Start = { engine, files: rest, fragment: location.hash, kept, prepare, machine };
-    this.worker.postMessage(start, Object.values(rest));
-    for (const message of this.early.splice(0)) this.worker.postMessage(message);
+    const { store, machine } = found;
+    worker.postMessage({ engine, files, fragment: location.hash, kept, store, machine } satisfies Start);
+    for (const message of this.early.splice(0)) worker.postMessage(message);
   }
 
   ask(request: LiveRequest): number {

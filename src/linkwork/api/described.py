@@ -34,7 +34,7 @@ class DescribedMechanism:
     """
 
     def __init__(self, description: Description, read: textfile.ReadFile | None = None) -> None:
-        self.description = description
+        self.description, self._read = description, read
         try:
             self.model = motion.as_described(description)
         except MechanismError as error:

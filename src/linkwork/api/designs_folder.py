@@ -12,7 +12,7 @@ from linkwork.design.synthesis.designs_table import designs_table
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
+from linkwork.foundation.paths import as_path, unwritten
 from linkwork.results.csv_text import csv_text
 from linkwork.textfile.writer import save_text, write_text
 from linkwork.viewer.designs_page import designs_page
@@ -110,7 +110,7 @@ def prepare_folder(root: Path, options: FolderOptions) -> None:
         if options.refused:
             (root / _REFUSED).mkdir(exist_ok=True)
     except OSError as error:
-        raise InputError(f'cannot write "{root}": {error.strerror or error}') from None
+        raise unwritten(root, error) from None
 
 
 def _file_name(found: Synthesis, design: SynthesizedDesign) -> str:

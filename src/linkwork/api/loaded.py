@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from linkwork import dynamics, forces
 from linkwork.api.solvable import SolvableMechanism
+from linkwork.foundation.errors import key_text
 from linkwork.mechanism.dimensions import Number
 
 if TYPE_CHECKING:
@@ -20,6 +21,12 @@ __all__ = ["LoadedMechanism"]
 
 class LoadedMechanism(SolvableMechanism):
     """The part of :class:`~linkwork.api.mechanism.Mechanism` that computes forces."""
+
+    def _place(self, key: Sequence[str | int]) -> str:
+        """Where a key of the description is found: file and line, if it was read."""
+        if self._read is None:
+            return key_text(key)
+        return f"{self._read.name} line {self._read.lines.line(tuple(key))}, {key_text(key)}"
 
     def forces(
         self,
@@ -61,10 +68,10 @@ class LoadedMechanism(SolvableMechanism):
         """
         if at is not None:
             return forces.forces_of_position(
-                self.model, self.solve(at, configuration=configuration)
+                self.model, self.solve(at, configuration=configuration), self._place
             )
         rows = self.sweep(configuration=configuration) if motion is None else motion
-        return forces.forces_of_motion(self.model, rows)
+        return forces.forces_of_motion(self.model, rows, self._place)
 
     def stalls(
         self, *, configuration: str | None = None, motion: Motion | None = None
@@ -111,9 +118,9 @@ class LoadedMechanism(SolvableMechanism):
         """The motion in time under masses, loads, springs, a motor and stops; see
         :mod:`linkwork.dynamics`.
 
-        All inputs are free: they start at ``at`` with ``start_speed``. Friction of joints takes the
-        energy ``friction_work`` of the motion, and can hold the mechanism at rest; with several
-        inputs it is refused.
+        Inputs with a law follow it, the others are free: they start at ``at`` with
+        ``start_speed``. Friction of joints takes the energy ``friction_work`` of the motion, and
+        can hold the mechanism at rest; with several inputs it is refused.
 
         Parameters
         ----------
@@ -141,8 +148,8 @@ class LoadedMechanism(SolvableMechanism):
         Raises
         ------
         InputError
-            If nothing has mass, there is not one input, or a law drives it; for friction in joints
-            whose forces redundant links leave undetermined.
+            If nothing has mass, there is no input, or laws drive all of them; for friction in
+            joints whose forces redundant links leave undetermined.
 
         Examples
         --------
@@ -164,6 +171,7 @@ class LoadedMechanism(SolvableMechanism):
             start_speed=start_speed,
             change_points=change_points,
             certify=certify,
+            place=self._place,
             progress=progress,
         )
 

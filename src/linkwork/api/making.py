@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.field_types import made_of
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loops import Loops, PlainEquations
-from linkwork.textfile.library import example_text
+from linkwork.textfile.library import example_text, examples
 
 __all__ = ["example", "linkage", "load", "loads", "loops", "plain_equations"]
 
@@ -35,6 +36,8 @@ def load(path: str | Path) -> Mechanism:
     ------
     MechanismFileError
         With every problem found: file, line, key; or what is wrong with the link.
+    InputError
+        If there is no such file, but an example of this name.
 
     Examples
     --------
@@ -47,7 +50,12 @@ def load(path: str | Path) -> Mechanism:
     >>> lw.load(lw.example("four-bar").link()).name
     'Four-bar linkage, open'
     """
-    read = textfile.read_text(*textfile.source_text(str(as_path(path))))
+    given = str(as_path(path))
+    if given in examples() and not os.path.exists(given):
+        raise InputError(
+            f'there is no file "{given}"; for the example of this name: lw.example("{given}")'
+        )
+    read = textfile.read_text(*textfile.source_text(given))
     return Mechanism(read.description, read)
 
 

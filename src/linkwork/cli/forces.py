@@ -21,13 +21,10 @@ from linkwork.cli.options import (
     json_option,
     set_option,
 )
-from linkwork.cli.output_file import check_outputs, write_text
-from linkwork.cli.terminal import print_json, print_lines, progress
-from linkwork.drawing.charts.plotting import motion_plot
+from linkwork.cli.output_file import check_outputs, write_table
+from linkwork.cli.terminal import print_json, print_lines, print_page, progress
 from linkwork.drawing.scene_options import SceneOptions
-from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
-from linkwork.results.motion import Motion
 from linkwork.results.reactions import ForceStatus
 from linkwork.results.stall import Stall
 
@@ -69,14 +66,12 @@ def forces(
       linkwork forces press.toml --columns crank.effort --plot torque.png
       linkwork forces press.toml --csv forces.csv
     """
-    if as_json and csv == "-":
-        raise InputError("--json and --csv - both use standard output: name a file for the table")
     for name in (draw, plot):
         if name is not None:
             picture.check_picture(name)
     if at and plot is not None:
         raise InputError("--plot shows a whole motion: leave out --at")
-    check_outputs(file, csv, draw, plot)
+    check_outputs(file, csv, draw, plot, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     motion = None
@@ -91,17 +86,11 @@ def forces(
     else:
         found = mechanism.forces(values, configuration=configuration)
     table = found.table(*names)
-    written = []
-    if csv == "-":
-        for line in csv_lines(table):
-            click.echo(line, nl=False)
-    elif csv is not None:
-        write_text(csv, csv_lines(table))
-        written.append(f"Wrote {csv}: {len(found)} rows.")
+    written = write_table(csv, table)
     if draw is not None:
         written.append(_drawn(mechanism, values, configuration, draw))
     if plot is not None and motion is not None:
-        written.append(_plotted(motion, names or found.efforts, plot))
+        written.append(picture.write_plot(motion, names or found.efforts, plot))
     if as_json:
         print_json(reactions_data(found, table, stalls))
     elif csv != "-":
@@ -110,7 +99,7 @@ def forces(
             if motion is None
             else motion_forces_lines(found, motion, names, stalls)
         )
-        print_lines([*page, *(["", *written] if written else [])])
+        print_page(page, written)
     if motion is not None and not motion.found.all():
         print_lines(failure_line(motion), err=True)
         context.exit(1)
@@ -127,11 +116,3 @@ def _drawn(
     with progress("drawing"):
         picture.write(mechanism.scene(values, configuration=configuration, options=options), path)
     return f"Wrote {path}: the forces of pins and loads."
-
-
-def _plotted(motion: Motion, names: tuple[str, ...], path: str) -> str:
-    if not motion.found.any():
-        return f"Did not write {path}: there is no position to plot."
-    with progress("drawing"):
-        picture.write(motion_plot(motion, names), path)
-    return f"Wrote {path}: {', '.join(names)} over the input."

@@ -25,6 +25,9 @@ __all__ = ["motion_forces_lines", "position_forces_lines", "reactions_data"]
 
 _TOTALS = ("shaking", "power", "kinetic_energy", "stored_energy", "load_power", "energy_rate")
 _LOSSES = ("friction_power", "efficiency")
+_NONE = (
+    ForceStatus.NO_POSITION, ForceStatus.NO_RATES, ForceStatus.SELF_LOCKING, ForceStatus.NO_LOAD
+)  # fmt: skip
 
 
 def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[str]:
@@ -33,8 +36,8 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
         {name: float(value) for name, value in found.inputs.items()}, found.input_units
     )
     lines = title_lines(found.mechanism)
-    if found.status in (ForceStatus.NO_POSITION, ForceStatus.NO_RATES, ForceStatus.SELF_LOCKING):
-        why = [("why", found.status.value)]
+    if found.status in _NONE:
+        why = [("why", found.status.value), *_undefined(found)]
         if found.status is ForceStatus.SELF_LOCKING:
             why.append(("proved", "yes" if found.proved else "no"))
         return [*lines, *sentence(bad, "No forces", where), *fields(why)]
@@ -92,6 +95,7 @@ def reactions_data(found: Reactions, table: Table, stalls: Sequence[Stall] = ())
         "undetermined": [name for name, rows in found.undetermined.items() if rows.any()],
         "lifted": [name for name, rows in found.lifted.items() if rows.any()],
         "slipping": [name for name, rows in found.slipping.items() if rows.any()],
+        "undefined": [name for name, rows in found.undefined.items() if rows.any()],
         "proved": found.proved.tolist(),
         "stalls": [
             {
@@ -159,6 +163,7 @@ def _evidence(found: Reactions) -> Iterator[tuple[str, str]]:
     if "disagreement" in found.values:
         worst = np.nanmax(found.values["disagreement"], initial=0.0)
         yield "check", f"virtual work and free bodies agree to {worst:.1e} of the largest term"
+    yield from _undefined(found)
     lost = [name for name, rows in found.undetermined.items() if rows.any()]
     if lost:
         yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
@@ -171,6 +176,12 @@ def _evidence(found: Reactions) -> Iterator[tuple[str, str]]:
     unsure = int(np.sum(~found.proved))
     if unsure:
         yield "not proved", f"that friction leaves an equilibrium, or none, in {unsure} rows"
+
+
+def _undefined(found: Reactions) -> Iterator[tuple[str, str]]:
+    for name, rows in found.undefined.items():
+        if rows.any():
+            yield "no value", f"{name}{_where(rows)}"
 
 
 def _where(rows: BoolArray) -> str:

@@ -28,6 +28,7 @@ __all__ = [
     "input_values",
     "json_option",
     "number_or_formula",
+    "of_option",
     "range_options",
     "set_option",
     "through_option",
@@ -105,6 +106,13 @@ at_option: Decorator = click.option(
     "Default: the input value of the file's guess or sketch.",
 )
 
+
+of_option: Decorator = click.option(
+    "--of",
+    metavar="NAME",
+    required=True,
+    help="The quantity, or a number of the whole motion; `linkwork quantities FILE` lists them.",
+)
 
 configuration_option: Decorator = click.option(
     "--configuration",

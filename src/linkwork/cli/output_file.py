@@ -6,20 +6,31 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
+import click
+
+from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import unwritten
+from linkwork.results.table import Table
 
-__all__ = ["check_outputs", "write_bytes", "write_text"]
+__all__ = ["check_outputs", "write_bytes", "write_table", "write_text"]
 
 
-def check_outputs(source: str, *outputs: str | None, workbook: str | None = None) -> None:
+def check_outputs(
+    source: str, *outputs: str | None, workbook: str | None = None, as_json: bool = False
+) -> None:
     """Reject files that cannot be written, before any computation.
+
+    ``as_json``: standard output is taken.
 
     Raises
     ------
     InputError
         If a folder is missing, two outputs are the same file, an output is the mechanism file
-        itself, or the suffix belongs to another kind of file.
+        itself, the suffix belongs to another kind of file, or standard output is taken.
     """
+    if as_json and "-" in outputs:
+        raise InputError("--json and --csv - both use standard output: name a file for the table")
     if workbook is not None and Path(workbook).suffix.lower() != ".xlsx":
         raise InputError(f'cannot write "{workbook}": a workbook needs the suffix .xlsx')
     taken = {} if source == "-" else {_real(source): f'"{source}" is the mechanism file itself'}
@@ -41,6 +52,18 @@ def check_outputs(source: str, *outputs: str | None, workbook: str | None = None
         if real in taken:
             raise InputError(f"{taken[real]}: write to another file")
         taken[real] = f'"{name}" is named twice'
+
+
+def write_table(name: str | None, table: Table) -> list[str]:
+    """Write a table as CSV to a file or, for ``-``, to standard output; returns a line about it."""
+    if name is None:
+        return []
+    if name == "-":
+        for line in csv_lines(table):
+            click.echo(line, nl=False)
+        return []
+    write_text(name, csv_lines(table))
+    return [f"Wrote {name}: {len(next(iter(table.columns.values())))} rows."]
 
 
 def write_text(name: str, pieces: Iterable[str]) -> None:
@@ -72,7 +95,7 @@ def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
         if regular:
             part.replace(target)
     except OSError as error:
-        raise InputError(f'cannot write "{name}": {error.strerror or error}') from None
+        raise unwritten(name, error) from None
     finally:
         if regular:
             part.unlink(missing_ok=True)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from linkwork.api import Mechanism
+from linkwork.cli.terminal import progress
+from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
 from linkwork.drawing.picture_file import FORMATS, write
 from linkwork.drawing.pose import no_points
@@ -13,7 +16,7 @@ from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
-__all__ = ["check_picture", "check_points", "sweep_scene", "write"]
+__all__ = ["check_picture", "check_points", "sweep_scene", "write", "write_plot"]
 
 _FURTHER = 4  # further positions drawn in a sweep: every fifth of a crank's turn
 
@@ -42,6 +45,15 @@ def check_points(mechanism: Mechanism) -> None:
     """
     if not mechanism.model.compiled.points.names:
         raise no_points(mechanism.name)
+
+
+def write_plot(motion: Motion, names: Sequence[str], path: str, over: str = "the input") -> str:
+    """Plot columns, or unknowns and outputs, if there are positions; returns a line about it."""
+    if not motion.found.any():
+        return f"Did not write {path}: there is no position to plot."
+    with progress("drawing"):
+        write(motion_plot(motion, names), path)
+    return f"Wrote {path}: {', '.join(names) or 'unknowns and outputs'} over {over}."
 
 
 def sweep_scene(position: Position, motion: Motion) -> Scene:

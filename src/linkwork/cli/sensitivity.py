@@ -12,13 +12,13 @@ from linkwork.cli.options import (
     file_argument,
     input_values,
     json_option,
+    of_option,
     set_option,
 )
-from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.output_file import check_outputs, write_table
 from linkwork.cli.sensitivity_page import sensitivity_data, sensitivity_lines
-from linkwork.cli.terminal import print_json, print_lines, progress
+from linkwork.cli.terminal import print_json, print_page, progress
 from linkwork.design import is_of_motion
-from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
 from linkwork.results.sensitivity import SensitivityStatus
 
@@ -27,12 +27,7 @@ __all__ = ["sensitivity"]
 
 @click.command
 @file_argument
-@click.option(
-    "--of",
-    metavar="NAME",
-    required=True,
-    help="The quantity, or a number of the whole motion; `linkwork quantities FILE` lists them.",
-)
+@of_option
 @at_option
 @configuration_option
 @click.option(
@@ -67,9 +62,7 @@ def sensitivity(
       linkwork sensitivity crank.toml --of d.velocity --csv rows.csv
       linkwork sensitivity crank.toml --of "stroke(d)" --by "O2 A"
     """
-    if as_json and csv == "-":
-        raise InputError("--json and --csv - both use standard output: name a file for the table")
-    check_outputs(file, csv)
+    check_outputs(file, csv, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     motion = None
@@ -82,16 +75,11 @@ def sensitivity(
         found = mechanism.sensitivity(
             of, values, by=by or None, configuration=configuration, motion=motion
         )
-    if csv == "-":
-        for line in csv_lines(found.table()):
-            click.echo(line, nl=False)
-    elif csv is not None:
-        write_text(csv, csv_lines(found.table()))
+    written = write_table(csv, found.table())
     if as_json:
         print_json(sensitivity_data(found))
     elif csv != "-":
-        written = ["", f"Wrote {csv}: {len(found)} rows."] if csv else []
-        print_lines([*sensitivity_lines(found), *written])
+        print_page(sensitivity_lines(found), written)
     lost = (SensitivityStatus.NO_POSITION, SensitivityStatus.DEAD_POINT)
     if all(status in lost for status in found.statuses):
         context.exit(1)

@@ -20,14 +20,11 @@ from linkwork.cli.options import (
     number_or_formula,
     set_option,
 )
-from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.output_file import check_outputs, write_table
 from linkwork.cli.simulation_page import equilibria_lines, motion_data, simulation_lines
-from linkwork.cli.terminal import print_json, print_lines, progress
-from linkwork.drawing.charts.plotting import motion_plot
-from linkwork.export import csv_lines
+from linkwork.cli.terminal import print_json, print_lines, print_page, progress
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
-from linkwork.results.motion import Motion
 
 __all__ = ["simulate"]
 
@@ -72,7 +69,8 @@ def simulate(
 ) -> None:
     """Compute the motion in time under masses, loads, springs and a motor.
 
-    The inputs are free: they start at the sketch, or at --at, with --start-speed.
+    Inputs with a law follow it; the others are free: they start at the sketch, or at
+    --at, with --start-speed.
     Rows are added where loads switch and where stops are hit.
 
     \b
@@ -81,11 +79,9 @@ def simulate(
       linkwork simulate pump.toml --until 2 --step 0.01 --csv -
       linkwork simulate lamp.toml --equilibria
     """
-    if as_json and csv == "-":
-        raise InputError("--json and --csv - both use standard output: name a file for the table")
     if plot is not None:
         picture.check_picture(plot)
-    check_outputs(file, csv, plot)
+    check_outputs(file, csv, plot, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     start = input_values(mechanism, at)
     if equilibria:
@@ -107,20 +103,14 @@ def simulate(
             progress=tell,
         )
     table = motion.table(*names)
-    written = []
-    if csv == "-":
-        for line in csv_lines(table):
-            click.echo(line, nl=False)
-    elif csv is not None:
-        write_text(csv, csv_lines(table))
-        written.append(f"Wrote {csv}: {len(motion)} rows.")
+    written = write_table(csv, table)
     if plot is not None:
-        written.append(_plotted(mechanism, motion, names, plot))
+        shown = names or tuple(f"{name}.velocity" for name in _inputs(mechanism))
+        written.append(picture.write_plot(motion, shown, plot, over="time"))
     if as_json:
         print_json(motion_data(motion, table))
     elif csv != "-":
-        page = simulation_lines(motion, _inputs(mechanism), names)
-        print_lines([*page, *(["", *written] if written else [])])
+        print_page(simulation_lines(motion, _inputs(mechanism), names), written)
     if not motion.found.all():
         context.exit(1)
 
@@ -147,15 +137,9 @@ def _inputs(mechanism: Mechanism) -> list[str]:
 def _list_equilibria(
     mechanism: Mechanism, start: dict[str, float] | None, change_points: str, as_json: bool
 ) -> None:
-    found = mechanism.equilibria(start, change_points=change_points)
+    with progress("looking for equilibria"):
+        found = mechanism.equilibria(start, change_points=change_points)
     if as_json:
         print_json({"equilibria": [asdict(each) for each in found]})
     else:
         print_lines(equilibria_lines(mechanism, found))
-
-
-def _plotted(mechanism: Mechanism, motion: Motion, names: tuple[str, ...], path: str) -> str:
-    shown = names or tuple(f"{name}.velocity" for name in _inputs(mechanism))
-    with progress("drawing"):
-        picture.write(motion_plot(motion, shown), path)
-    return f"Wrote {path}: {', '.join(shown)} over time."

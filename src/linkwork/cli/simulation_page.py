@@ -60,31 +60,42 @@ def equilibria_lines(mechanism: Mechanism, found: Sequence[Equilibrium]) -> list
     lines = title_lines(mechanism.description.name)
     if not found:
         return [*lines, *sentence(bad, "No equilibrium on the circuit of the start")]
-    name = mechanism.description.inputs[0].column
-    unit = next(iter(mechanism.model.input_units.values()))
     head = f"{len(found)} equilibri{'um' if len(found) == 1 else 'a'} on the circuit of the start"
+    units = mechanism.model.input_units
+    if len(units) > 1:
+        head += ", found from a grid of starts: there may be more"
     return [
         *lines,
         *sentence(good, head),
         "",
         *table_lines(
             [
-                Column(
-                    header=f"{name} [{unit}]" if unit else name,
-                    cells=[fixed(each.input, 6) for each in found],
-                    align="point",
+                *(
+                    Column(
+                        header=f"{name} [{unit}]" if unit else name,
+                        cells=[fixed(each.values[name], 6) for each in found],
+                        align="point",
+                    )
+                    for name, unit in units.items()
                 ),
                 Column(
                     header="", cells=["stable" if each.stable else "unstable" for each in found]
                 ),
-                Column(
-                    header="frequency [Hz]",
-                    cells=[significant(each.frequency) if each.stable else "-" for each in found],
-                    align="point",
+                *(
+                    Column(
+                        header=f"mode {k + 1} [Hz]" if len(units) > 1 else "frequency [Hz]",
+                        cells=[_frequency(each.frequencies[k]) for each in found],
+                        align="point",
+                    )
+                    for k in range(len(units))
                 ),
             ]
         ),
     ]
+
+
+def _frequency(value: float) -> str:
+    return significant(value) if value > 0.0 else "-"
 
 
 def motion_data(motion: Motion, table: Table) -> dict[str, Any]:

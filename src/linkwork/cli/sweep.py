@@ -23,13 +23,11 @@ from linkwork.cli.options import (
     set_option,
     through_option,
 )
-from linkwork.cli.output_file import check_outputs, write_bytes, write_text
+from linkwork.cli.output_file import check_outputs, write_bytes, write_table
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
-from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.scene import Scene
-from linkwork.export import csv_lines, workbook_of
-from linkwork.foundation.errors import InputError
+from linkwork.export import workbook_of
 from linkwork.mechanism.dimensions import Number
 from linkwork.motion import solve_round_start
 from linkwork.results.motion import Motion
@@ -93,12 +91,10 @@ def sweep(
       linkwork sweep rapier.toml --through --limits-of s16
       linkwork sweep rapier.toml --columns s16.d1 --columns "stroke(s16)"
     """
-    if as_json and csv == "-":
-        raise InputError("--json and --csv - both use standard output: name a file for the table")
     for name in (draw, plot):
         if name is not None:
             picture.check_picture(name)
-    check_outputs(file, csv, draw, plot, workbook=xlsx)
+    check_outputs(file, csv, draw, plot, workbook=xlsx, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)
@@ -120,7 +116,7 @@ def sweep(
     table = table_of(motion, *columns)
     written = _written(motion, table, page, csv, draw)
     if plot is not None:
-        written.append(_plotted(motion, columns, plot))
+        written.append(picture.write_plot(motion, columns, plot))
     if xlsx is not None:
         written += _written_workbook(mechanism, motion, columns, xlsx)
     if as_json:
@@ -159,13 +155,7 @@ def _written(
     motion: Motion, table: Table, page: Scene | None, csv: str | None, draw: str | None
 ) -> list[str]:
     """Write the requested files; returns one line about each."""
-    said = []
-    if csv == "-":
-        for line in csv_lines(table):
-            click.echo(line, nl=False)
-    elif csv is not None:
-        write_text(csv, csv_lines(table))
-        said.append(f"Wrote {csv}: {len(motion)} rows.")
+    said = write_table(csv, table)
     if draw is not None and page is not None:
         with progress("drawing"):
             picture.write(page, draw)
@@ -174,15 +164,6 @@ def _written(
     elif draw is not None:
         said.append(f"Did not write {draw}: there is no position to draw.")
     return said
-
-
-def _plotted(motion: Motion, columns: list[str], path: str) -> str:
-    """Plot columns, or unknowns and outputs, if there are positions; returns a line about it."""
-    if not motion.found.any():
-        return f"Did not write {path}: there is no position to plot."
-    with progress("drawing"):
-        picture.write(motion_plot(motion, columns), path)
-    return f"Wrote {path}: {', '.join(columns) or 'unknowns and outputs'} over the input."
 
 
 def _written_workbook(

@@ -10,7 +10,7 @@ import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -27,6 +27,7 @@ __all__ = [
     "good",
     "print_json",
     "print_lines",
+    "print_page",
     "progress",
     "ready_streams",
     "sentence",
@@ -76,6 +77,11 @@ def print_lines(lines: Iterable[str], err: bool = False) -> None:
     click.echo("\n".join(lines), err=err)
 
 
+def print_page(page: Iterable[str], written: Sequence[str]) -> None:
+    """Print the lines of a result, then those about files that were written."""
+    print_lines([*page, *(["", *written] if written else [])])
+
+
 def print_json(data: dict[str, Any]) -> None:
     """Print data as JSON: the version of the keys first, null for missing numbers."""
     versioned = {"schema": JSON_SCHEMA, **_finite(data)}
@@ -97,7 +103,7 @@ def _finite(data: Any) -> Any:
         case list() | tuple():
             return [_finite(entry) for entry in data]
         case float():
-            return data if math.isfinite(data) else None
+            return data + 0.0 if math.isfinite(data) else None  # -0.0 becomes 0.0
         case _:
             return data
 

@@ -12,13 +12,12 @@ from linkwork.cli.options import (
     file_argument,
     input_values,
     json_option,
+    of_option,
     set_option,
 )
-from linkwork.cli.output_file import check_outputs, write_text
+from linkwork.cli.output_file import check_outputs, write_table
 from linkwork.cli.sensitivity_page import tolerance_data, tolerance_lines
-from linkwork.cli.terminal import print_json, print_lines, progress
-from linkwork.export import csv_lines
-from linkwork.foundation.errors import InputError
+from linkwork.cli.terminal import print_json, print_page, progress
 from linkwork.results.sensitivity import SensitivityStatus
 
 __all__ = ["tolerance"]
@@ -26,12 +25,7 @@ __all__ = ["tolerance"]
 
 @click.command
 @file_argument
-@click.option(
-    "--of",
-    metavar="NAME",
-    required=True,
-    help="The quantity, or a number of the whole motion; `linkwork quantities FILE` lists them.",
-)
+@of_option
 @at_option
 @configuration_option
 @click.option("--samples", type=int, default=0, help="Solve this number of random designs too.")
@@ -63,24 +57,17 @@ def tolerance(
       linkwork tolerance crank.toml --of "stroke(d)" --samples 10000
       linkwork tolerance crank.toml --of d --csv shares.csv
     """
-    if as_json and csv == "-":
-        raise InputError("--json and --csv - both use standard output: name a file for the table")
-    check_outputs(file, csv)
+    check_outputs(file, csv, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     with progress("solving"):
         found = mechanism.tolerance(
             of, values, samples=samples, seed=seed, configuration=configuration
         )
-    if csv == "-":
-        for line in csv_lines(found.table()):
-            click.echo(line, nl=False)
-    elif csv is not None:
-        write_text(csv, csv_lines(found.table()))
+    written = write_table(csv, found.table())
     if as_json:
         print_json(tolerance_data(found))
     elif csv != "-":
-        written = ["", f"Wrote {csv}: {len(found.contributions)} rows."] if csv else []
-        print_lines([*tolerance_lines(found), *written])
+        print_page(tolerance_lines(found), written)
     if found.status is not SensitivityStatus.FOUND:
         context.exit(1)

@@ -13,6 +13,7 @@ from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.output_file import check_outputs, write_bytes
 from linkwork.cli.terminal import print_lines, print_written, progress
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import unwritten
 from linkwork.viewer.web.pyodide_files import pyodide_files
 from linkwork.viewer.web.web_app import MARK, web_folder, web_page
 
@@ -105,6 +106,6 @@ def _write_folder(out: Path, files: Mapping[str, bytes]) -> None:
             (out / name).parent.mkdir(exist_ok=True)
             os.replace(part / name, out / name)
     except OSError as error:
-        raise InputError(f'cannot write "{out}": {error.strerror or error}') from None
+        raise unwritten(out, error) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)

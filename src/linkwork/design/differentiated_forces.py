@@ -15,25 +15,37 @@ import numpy as np
 
 from linkwork.design.differentiated_rows import DifferentiatedRows
 from linkwork.design.tape import Tape
+from linkwork.expression.jets import Jet
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.drives import effort_name
 from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.geometry import Geometry
 from linkwork.forces.joint_forces import joint_forces
+from linkwork.forces.part.guide import line_of
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import read_first_links
-from linkwork.forces.system import NO_WORK, free_bodies, free_bodies_of, known_acts, totals
+from linkwork.forces.system import (
+    NO_WORK,
+    free_bodies,
+    free_bodies_of,
+    known_acts,
+    read_bodies,
+    set_down,
+    totals,
+)
 from linkwork.forces.virtual_work import work_terms
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Numbers
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
 from linkwork.motion.named_quantities import RowValues
+from linkwork.results.quantity import Kind
 
 __all__ = ["LoadedRows"]
 
@@ -73,6 +85,56 @@ class TapedGeometry(Geometry):
         return [moved + turned * arm for moved, turned in pairs]
 
 
+class ReadGeometry(TapedGeometry):
+    """Places of a linkage that was read from loops, by the points and terms of these."""
+
+    def __init__(self, rows: DifferentiatedRows, nominal: FreeBodies) -> None:
+        super().__init__(rows)
+        self.links, self.read = nominal.linkage.links, nominal.geometry
+        self.length = nominal.geometry.length  # of the unknown moments
+        own = set(super().points)
+        #: Points of lines that the file lacks, a unit from the other one.
+        self.ends: dict[str, Any] = {}
+        for slider in nominal.linkage.sliders:
+            direction = _line_of(slider.name, rows)
+            if direction is not None and not own.issuperset(slider.line):
+                way = line_of(slider.line, nominal.geometry)
+                side = np.sign((np.conj(way) * _bare(direction)).real)
+                self._add_ends(slider.line, side * direction, own)
+        #: The points whose places are not known.
+        self.unknown = [p for p in nominal.linkage.points if p not in own.union(self.ends)]
+
+    def kind(self, name: str) -> Kind:
+        """What an input of the linkage measures."""
+        return self.read.kind(name)
+
+    def _add_ends(self, line: tuple[str, str], along: Any, own: set[str]) -> None:
+        start, end = line
+        if end in own:
+            self.ends[start] = super().place(end).v - along
+            return
+        zero = np.zeros(self.rows, dtype=complex)
+        first = super().place(start).v if start in own else zero
+        self.ends |= {end: first + along} | ({} if start in own else {start: zero})
+
+    def place(self, point: str) -> Jet:
+        """A point of the file; of a line without points there one that gives its direction."""
+        if point not in self.ends:
+            return super().place(point)
+        zero = np.zeros(self.rows, dtype=complex)
+        return Jet(self.ends[point], zero, zero)
+
+
+def _line_of(slider: str, rows: DifferentiatedRows) -> Any:
+    """The unit vector along which a variable length of the loops lies on ground, on the tape."""
+    symbols = {x.name: x.symbol for x in rows.equations.variables}
+    for loop in rows.taped.loops:
+        for term in loop.terms:
+            if term.length == symbols.get(slider) and not term.phase:
+                return term.value / np.abs(term.value)
+    return None
+
+
 class LoadedRows(DifferentiatedRows):
     """Differentiated rows with the forces of their loads; parameters as of the base class."""
 
@@ -90,8 +152,10 @@ class LoadedRows(DifferentiatedRows):
                 for known in self._tables():
                     if name in known:
                         return known[name]
-            # what remains of a loop file are forces of the linkage that its loops read as
-            why = "its reactions are those of links read from the loops: give points and links"
+            why = "its loops do not read as links and joints"
+            if isinstance(self.description, Loops) and self._read_reactions[1]:
+                pin = self._read_reactions[1][0]
+                why = f"the loops have a pin {pin} that is no point of the file: add it to [points]"
         raise InputError(f'the derivatives of "{name}" are not known: {why}')
 
     def _unknown(self, name: str) -> str:
@@ -111,11 +175,15 @@ class LoadedRows(DifferentiatedRows):
         if isinstance(self.description, Linkage):
             yield self._losses
             yield self._joints.readings()
+        elif isinstance(self.description, Loops):
+            yield self._read_reactions[0]
 
     @cached_property
     def _loads(self) -> AppliedLoads:
         """All loads; those of a linkage are those of its free bodies."""
-        geometry, description = TapedGeometry(self), self.description
+        return self._applied(TapedGeometry(self), self.description)
+
+    def _applied(self, geometry: Geometry, description: Description) -> AppliedLoads:
         assert isinstance(description, LoadedBodies)
         applied = AppliedLoads(geometry, 0.0 if self.speed is None else self.speed)
         applied.weigh(description)
@@ -181,6 +249,23 @@ class LoadedRows(DifferentiatedRows):
         """Forces on the ground, energies and powers."""
         applied = self._loads
         return {name: value for name, _, _, value in totals(applied.geometry, applied)}
+
+    @cached_property
+    def _read_reactions(self) -> tuple[dict[str, Any], list[str]]:
+        """The reactions of a linkage that was read from loops, none if they read otherwise; points
+        of it that the file lacks.
+        """
+        there = np.logical_not(self.lost)
+        plain = Geometry(self.model, RowValues(self.model, self.solution, *self._rates, there))
+        nominal = read_bodies(plain, self._applied(plain, self.model.description))
+        if nominal is None:
+            return {}, []
+        geometry = ReadGeometry(self, nominal)
+        applied = set_down(self._applied(TapedGeometry(self), self.description), nominal.linkage)
+        if geometry.unknown or applied is None:
+            return {}, geometry.unknown
+        taped = free_bodies(nominal.linkage, geometry, applied)
+        return _Equilibrium(taped, nominal, self.tape, 1.0).readings(), []
 
     @cached_property
     def _joints(self) -> _Equilibrium:

@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.design.whole_turn import whole_turn
 from linkwork.forces.drives import effort_name
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, key_text
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.motor import Motor
 from linkwork.mechanism.speed import speed_per_second
@@ -72,7 +72,7 @@ def _available(model: Model, motor: Motor, speed: float) -> float:
     """The torque that a motor gives at a speed [rad/s]."""
     own = model.description
     for key, message in motor.mistakes("link", own.numbers, own.length):
-        raise InputError(f"{key} {message}")
+        raise InputError(f"{key_text(key)} {message}")
     known = [
         speed_per_second(given, "link", own.numbers, own.length) * own.angle.radians
         for given in (*motor.speeds, *([] if motor.free_speed is None else [motor.free_speed]))

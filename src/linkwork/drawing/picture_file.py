@@ -14,7 +14,7 @@ from linkwork.drawing.sheet import Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.drawing.tikz_writer import tikz_picture
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
+from linkwork.foundation.paths import as_path, unwritten
 
 __all__ = ["FORMATS", "render", "write"]
 
@@ -52,7 +52,7 @@ def write(
         part.write_bytes(page)
         part.replace(target)
     except OSError as error:
-        raise InputError(f'cannot write "{target}": {error.strerror or error}') from error
+        raise unwritten(target, error) from error
     finally:
         part.unlink(missing_ok=True)
     return target

@@ -22,6 +22,7 @@ __all__ = [
     "AT_PLACE",
     "AT_SPEED",
     "FIT",
+    "NOISE",
     "PLACE",
     "POINTS",
     "SPEED",
@@ -36,6 +37,7 @@ _SETTLED = 1e-15  # of the accelerations: a change that is rounding
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
 _ROUNDING, _GROWTH = 1e-9, 1.5  # of the accelerations: more is none; of steps with it
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
+NOISE = 16.0  # roundings of a place in an acceleration
 
 _x, _w = legendre.leggauss(POINTS)
 FIT = np.linalg.inv(legendre.legvander(_x, POINTS - 1))
@@ -109,19 +111,24 @@ def try_step(
     """
     times = t + h * C
     guess = acceleration(np.array([s]), np.array([speed]), np.array([t]))
+    if not np.isfinite(guess[0]):
+        return None, _SMALLEST * h, math.inf
     a = np.full(POINTS, float(guess[0]))
-    jacobian = None
+    jacobian, floor = None, 0.0
     for round_ in range(_MOST_ROUNDS):
         w = speed + h * (AT_SPEED @ a)
         place = s + h * C * speed + h**2 * (AT_PLACE @ a)
         if jacobian is None or round_ == _MOST_ROUNDS // 2:
-            found, jacobian = _linearise(acceleration, place, w, times, h)
+            found, jacobian, steepest = _linearise(acceleration, place, w, times, h)
+            floor = NOISE * EPSILON * float(np.abs(place).max()) * steepest
         else:
             found = acceleration(place, w, times)
         if not np.isfinite(found).all() or not np.isfinite(jacobian).all():
             return None, _SMALLEST * h, math.inf
         change = np.linalg.solve(jacobian, found - a)
         a = a + change
+        if not np.isfinite(a).all():
+            return None, _SMALLEST * h, math.inf
         size = np.abs(a).max() + abs(speed) / abs(h)
         if np.abs(change).max() <= _SETTLED * POINTS * size:
             break
@@ -137,6 +144,8 @@ def try_step(
         factor = min(_LARGEST, _SAFETY * (_TOLERANCE / error) ** (1.0 / POINTS))
     # where large forces balance, what a shorter step does not reduce is their rounding
     noise = rough < _ROUNDING and rough > 0.5 * rougher
+    # near rest accelerations follow places to rounding only
+    noise |= tail <= floor
     if error > 30.0 * _TOLERANCE and not noise:
         return None, max(_SMALLEST, min(factor, 0.7)) * h, rough
     factor = _GROWTH if noise else factor
@@ -150,8 +159,10 @@ def _linearise(
     w: Array,
     times: Array,
     h: float,
-) -> tuple[Array, Array]:
-    """Accelerations at all points, and the Jacobian of the collocation equations, (n, n)."""
+) -> tuple[Array, Array, float]:
+    """Accelerations at all points, the Jacobian of the collocation equations, (n, n), and the
+    largest derivative by the place.
+    """
     eps = math.sqrt(EPSILON)
     # of the way of the step, so that units change nothing
     ds = eps * (max(float(np.abs(h * w).max()), float(np.abs(place).max()) * eps) or 1.0)
@@ -165,4 +176,4 @@ def _linearise(
     jacobian = (
         np.eye(POINTS) - by_place[:, None] * (h**2 * AT_PLACE) - by_speed[:, None] * (h * AT_SPEED)
     )
-    return many[0], jacobian
+    return many[0], jacobian, float(np.abs(by_place).max())

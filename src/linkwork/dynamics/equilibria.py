@@ -1,14 +1,17 @@
-"""Equilibria of a mechanism with one input, their stability and natural frequency."""
+"""Equilibria of a mechanism, their stability and natural frequencies."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
 
+from linkwork.dynamics.events import Bound
+from linkwork.dynamics.input_equilibria import input_equilibria
 from linkwork.dynamics.reduced_leg import ReducedLeg
+from linkwork.dynamics.simulated import bounds_of, check_loaded
 from linkwork.dynamics.simulation import start_of
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
@@ -21,7 +24,7 @@ __all__ = ["equilibria"]
 
 _LOOKS = 256  # places of a panel at which the sign of the net force is compared
 _ROUNDS = 12
-_SLOPE = 1e-4  # of a panel: differences for the stiffness
+_SLOPE = 1e-3  # of a panel: differences of fourth order for the stiffness
 _SAME_PLACE = 1e-9  # of a turn, or of the longest link
 _BALANCED = 1e-9  # of the largest net force: a zero, not a jump of a comparison
 
@@ -32,10 +35,11 @@ def equilibria(
     *,
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
 ) -> tuple[Equilibrium, ...]:
-    """All equilibria on the circuit of the start, in its order.
+    """All equilibria on the circuit of the start within the stops, in its order.
 
     The net force along the motion is zero there, at rest and at t = 0. Two equilibria between two
-    of 256 places of a panel are not seen.
+    of 256 places of a panel are not seen. With several inputs: those to which Newton's method leads
+    from a grid of starts.
 
     Raises
     ------
@@ -43,12 +47,22 @@ def equilibria(
         As :func:`linkwork.dynamics.simulate`.
     """
     policy = ChangePointPolicy.of(change_points)
+    check_loaded(model)
+    if len(model.description.inputs) > 1:
+        return input_equilibria(model, at)
     reduction, curve = start_of(model, at, policy, False)
+    bounds = bounds_of(reduction.named)
     found: list[Equilibrium] = []
     for leg in curve.legs:
         reduced = ReducedLeg(reduction, leg)
         places = sorted(_zeros(reduced), reverse=leg.begin > leg.end)
-        found += [_equilibrium(reduced, s) for s in places]
+        for s in places:
+            # from the start a place may be reached forwards or backwards
+            laps = (0, -1, 1) if curve.closed and bounds else (0,)
+            gains = [lap * curve.gain for lap in laps]
+            gain = next((gain for gain in gains if _inside(reduced, s, gain, bounds)), None)
+            if gain is not None:
+                found.append(_equilibrium(reduced, s, gain))
     kept: list[Equilibrium] = []
     for each in found:
         if not any(_same(model, each, other) for other in kept):
@@ -85,24 +99,31 @@ def _zeros(leg: ReducedLeg) -> Iterator[float]:
             yield s
 
 
-def _equilibrium(leg: ReducedLeg, s: float) -> Equilibrium:
+def _inside(leg: ReducedLeg, s: float, gain: Array, bounds: Sequence[Bound]) -> bool:
+    """Whether no stop is in the way."""
+    here, still = np.array([s]), np.zeros(1)
+    return all(bound.margin(leg, here, still, still, gain)[0] >= 0.0 for bound in bounds)
+
+
+def _equilibrium(leg: ReducedLeg, s: float, gain: Array) -> Equilibrium:
     model = leg.reduction.model
     panel = int(leg.table.locate(np.array([s]))[0][0])
     step = _SLOPE * float(leg.table.edges[panel + 1] - leg.table.edges[panel])
-    two = _force(leg, np.array([s - step, s + step]))
-    stiffness = -float(two[1] - two[0]) / (2.0 * step)
+    down, far_down, up, far_up = _force(leg, s + step * np.array([-1.0, -2.0, 1.0, 2.0]))
+    stiffness = -float(8.0 * (up - down) - (far_up - far_down)) / (12.0 * step)
     mass = float(leg.numbers(np.array([s]))[0, 0])
     # eq. (93)
     frequency = math.copysign(math.sqrt(abs(stiffness) / mass), stiffness) / FULL_TURN
-    v = leg.leg.rows(np.array([s]), False).v[0]
+    v = leg.leg.rows(np.array([s]), False).v[0] + gain
     names = model.equations.variables
     values = {
         variable.name: float(value) / model.units.scale(Kind(variable.kind))
         for variable, value in zip(names, v, strict=True)
     }
     return Equilibrium(
-        input=values[names[-1].name], values=values, stable=stiffness > 0.0, frequency=frequency
-    )
+        input=values[names[-1].name], values=values, stable=stiffness > 0.0, frequency=frequency,
+        frequencies=(frequency,),
+    )  # fmt: skip
 
 
 def _same(model: Model, one: Equilibrium, other: Equilibrium) -> bool:

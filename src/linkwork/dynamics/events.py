@@ -12,7 +12,6 @@ from linkwork.dynamics.collocation import Step
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.foundation.arrays import Array
-from linkwork.mechanism.stop import Stop
 from linkwork.results.quantities.asked import Asked
 
 __all__ = ["Bound", "Event", "first_event", "margins_on", "shorter_step"]
@@ -25,9 +24,9 @@ _NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next on
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bound:
-    """One side of a stop: ``side`` +1 for a least value, -1 for a greatest one."""
+    """One side of a stop: ``side`` +1 for a least value, -1 for a greatest one; its key."""
 
-    stop: Stop
+    key: tuple[str | int, ...]
     asked: Asked
     value: float
     side: float

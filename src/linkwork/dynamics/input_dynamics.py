@@ -1,5 +1,6 @@
 """The accelerations of several inputs: M(q) q̈ + c(q, q̇) = Q(q, q̇, t).
 
+Laws may drive some of them; the others are free, and have the equations that are left.
 Positions are solved from the last proved one, along its tangents. Inputs are measured in radians
 and longest links, so that units change nothing.
 """
@@ -8,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwork.dynamics.driven_inputs import DrivenInputs
 from linkwork.dynamics.reduction import Reduction
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.virtual_work import efforts
@@ -24,7 +26,7 @@ _FAR = 0.3  # weighted: a position that Newton-Raphson finds farther from its ta
 
 
 class InputDynamics:
-    """A mechanism whose p inputs are free.
+    """A mechanism with p inputs, f of them free.
 
     Parameters
     ----------
@@ -42,7 +44,9 @@ class InputDynamics:
         length = model.equations.length_scale
         #: The unit in which every input is measured here, (p,).
         self.size = np.array([1.0 if kind == "angle" else length for kind in kinds])
-        self._at, self._slopes, self._signs = self._anchor(start)
+        self.inputs = DrivenInputs.of(model, self.size)
+        self._start = start
+        self.restart()
         own = reduction.description
         unit = force_of_inertia(own.mass, own.length, own.force)
         given = [each.inertia for each in own.inputs]
@@ -56,14 +60,23 @@ class InputDynamics:
 
     @property
     def here(self) -> Array:
-        """The inputs at the last proved position, (p,)."""
+        """The free inputs at the last proved position, (f,)."""
         found: Array = self._at[self.solver.unknowns :] / self.size
-        return found
+        return found[self.inputs.free]
 
     @property
     def nearness(self) -> float:
         """How near the last proved position is to a singular one."""
         return float(self.solver.rates(self._at[None], np.ones(len(self.size))).nearness[0])
+
+    @property
+    def variables(self) -> Array:
+        """The last proved position, (N,)."""
+        return self._at
+
+    def restart(self) -> None:
+        """Go on from the first position."""
+        self._at, self._slopes, self._signs = self._anchor(self._start)
 
     def _anchor(self, v: Array) -> tuple[Array, Array, Array]:
         """A position with its derivatives by all inputs, (N, p), and the signs of its blocks."""
@@ -71,12 +84,12 @@ class InputDynamics:
         slopes = np.stack([each.first[0] for each in units], axis=1)
         return v, slopes, self.solver.rates(v[None], np.ones(len(self.size))).orientation[0]
 
-    def settle(self, q: Array) -> bool:
-        """Go on from the position at the inputs ``q`` (p,), if it is proved."""
-        v, found = self.positions(q[None])
+    def settle(self, q: Array, t: float) -> bool:
+        """Go on from the position at the free inputs ``q`` (f,), if it is proved."""
+        v, found = self.positions(q[None], np.array([t]))
         if not found[0]:
             return False
-        if self._has_bound and not prove(self.solver, v, np.zeros((1, len(q)))).holds[0]:
+        if self._has_bound and not prove(self.solver, v, np.zeros((1, len(self.size)))).holds[0]:
             return False
         self._at, self._slopes, self._signs = self._anchor(v[0])
         return True
@@ -85,9 +98,11 @@ class InputDynamics:
     def _has_bound(self) -> bool:
         return all(block.system.has_curvature_bound for block in self.solver.blocks)
 
-    def positions(self, q: Array) -> tuple[Array, BoolArray]:
-        """Positions (B, N) at inputs (B, p), and which of them were found on the same branch."""
-        own = q * self.size
+    def positions(self, q: Array, t: Array) -> tuple[Array, BoolArray]:
+        """Positions (B, N) at free inputs (B, f) and times (B,), and which of them were found on
+        the same branch.
+        """
+        own = self.inputs.complete(q, t, 0) * self.size
         guess = self._at + (own - self._at[self.solver.unknowns :]) @ self._slopes.T
         guess[:, self.solver.unknowns :] = own
         finite = np.isfinite(guess).all(axis=1)
@@ -100,34 +115,41 @@ class InputDynamics:
         return v, found & (signs == self._signs).all(axis=1)
 
     def acceleration(self, q: Array, speed: Array, t: Array) -> Array:
-        """q̈ (B, p) of states (B, p) at times (B,); NaN where there is no position."""
-        v, found = self.positions(q)
-        rates = self.solver.rates(v, speed * self.size)
+        """q̈ (B, f) of states (B, f) at times (B,); NaN where there is no position."""
+        v, found = self.positions(q, t)
+        free, driven = self.inputs.free, self.inputs.driven
+        whole = self.inputs.complete(speed, t, 1)
+        rates = self.solver.rates(v, whole * self.size)
         reduction = self.reduction
         moving = reduction.geometry(v, rates.first, rates.second, t)
         with np.errstate(all="ignore"):
             applied = reduction.loaded(moving)
             applied.weigh(reduction.description)
             # eq. (96): what the inputs would have to give at constant speeds
-            force = -efforts(applied)[0].T + self._motor_torques(speed)
+            force = -efforts(applied)[0].T + self._motor_torques(whole)
             mass = self._masses(applied)
+            force = (force * self.size)[:, free]
+            if len(driven):  # eq. (170)
+                given = self.inputs.complete(0.0 * q, t, 2)[:, driven]
+                force = force - np.einsum("bij,bj->bi", mass[:, free][:, :, driven], given)
+            mass = mass[:, free][:, :, free]
             good = found & np.isfinite(force).all(axis=1) & np.isfinite(mass).all(axis=(1, 2))
             result = np.full_like(q, np.nan)
             if good.any():
                 try:
-                    bend = np.linalg.solve(mass[good], (force * self.size)[good, :, None])
+                    bend = np.linalg.solve(mass[good], force[good, :, None])
                 except np.linalg.LinAlgError:
                     return result
                 result[good] = bend[:, :, 0]
         return result
 
     def masses(self) -> Array:
-        """The matrix of masses at the last proved position, (p, p)."""
+        """The matrix of masses of the free inputs at the last proved position, (f, f)."""
         v, zero = self._at[None], np.zeros((1, len(self._at)))
         applied = AppliedLoads(self.reduction.geometry(v, zero, zero, np.zeros(1)), 1.0)
         applied.weigh(self.reduction.description)
         found: Array = self._masses(applied)[0]
-        return found
+        return found[np.ix_(self.inputs.free, self.inputs.free)]
 
     def _masses(self, applied: AppliedLoads) -> Array:
         """The matrices of masses, (B, p, p)."""
@@ -152,10 +174,11 @@ class InputDynamics:
 
     def rows(self, q: Array, speed: Array, bend: Array, t: Array, certify: bool) -> SolvedRows:
         """Positions with their rates in time, the time behind the variables; found ones only."""
-        v, found = self.positions(q)
+        v, found = self.positions(q, t)
         count = int(np.argmin(found)) if not found.all() else len(v)
         v, q, speed, bend, t = (x[:count] for x in (v, q, speed, bend, t))
-        rates = self.solver.rates(v, speed * self.size, None, bend * self.size)
+        whole, bent = self.inputs.complete(speed, t, 1), self.inputs.complete(bend, t, 2)
+        rates = self.solver.rates(v, whole * self.size, None, bent * self.size)
         code = np.full(count, Certification.NOT_ASKED.code, dtype=np.int8)
         radius = unique = np.full(count, np.nan)
         if certify and not self._has_bound:

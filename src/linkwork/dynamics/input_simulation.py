@@ -1,4 +1,4 @@
-"""Simulation of a mechanism with several inputs, all of them free."""
+"""Simulation of a mechanism with several inputs, free or driven by laws."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ import numpy as np
 
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
-from linkwork.dynamics.reduction import Reduction
-from linkwork.dynamics.simulated import bounds_of, model_name, start_speeds
+from linkwork.dynamics.reduction import Place, Reduction
+from linkwork.dynamics.simulated import bounds_of, check_masses_move, model_name, start_speeds
+from linkwork.equations.input_motion import law_motions
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import canonical
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
 from linkwork.mechanism.dimensions import Number
@@ -24,8 +26,6 @@ from linkwork.results.motion import Motion
 
 __all__ = ["simulate_inputs"]
 
-_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
-
 
 def simulate_inputs(
     model: Model,
@@ -36,9 +36,10 @@ def simulate_inputs(
     policy: ChangePointPolicy,
     certify: bool,
     forced: bool,
+    place: Place,
     progress: Callable[[float], None] | None,
 ) -> Motion:
-    """The motion of several free inputs at times (B,).
+    """The motion of several inputs at times (B,): some may have laws, the others are free.
 
     Raises
     ------
@@ -52,22 +53,19 @@ def simulate_inputs(
     if forced:
         raise InputError(f"{name}: further forces are added to one input only")
     speeds = start_speeds(model, start_speed)
-    start = model.from_position(solve(model, at, certify=False, throw=True))
-    reduction = Reduction(model, model_in_time(model))
+    start = _start(model, at)
+    reduction = Reduction(model, model_in_time(model), place=place)
     if reduction.rubs:
         raise InputError(f"{name}: friction is simulated with one input only, leave out [friction]")
     dynamics = InputDynamics(reduction, start.equations.start.copy())
-    masses = np.linalg.eigvalsh(dynamics.masses())
-    if not masses[0] > _MASSLESS * masses[-1]:
-        raise InputError(
-            f"{name}, and they can move at the start without moving a mass: add [masses], or "
-            "inertia to the inputs"
-        )
+    inputs = dynamics.inputs
+    inputs.check(model, float(times[-1]))
+    check_masses_move(model, dynamics.masses())
     travel = InputTravel(
         dynamics=dynamics,
         bounds=bounds_of(reduction.named),
         times=times,
-        speed=speeds / dynamics.size,
+        speed=(speeds / dynamics.size)[inputs.free],
         certify=certify,
         progress=progress,
     )
@@ -75,10 +73,32 @@ def simulate_inputs(
     if beyond is not None:
         bound, value = beyond
         raise InputError(
-            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}"
+            f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
+            f"{place(bound.key)}"
         )
     travel.run()
     return _motion(travel)
+
+
+def _start(model: Model, at: float | Mapping[str, float] | None) -> Model:
+    """The mechanism at its start: driven inputs where their laws begin."""
+    if not model.description.timed:
+        return model.from_position(solve(model, at, certify=False, throw=True))
+    names = [variable.name for variable in model.equations.inputs]
+    laws = law_motions(model.equations, model.description)
+    if at is not None and not isinstance(at, Mapping):
+        raise InputError(f"name the input that begins at {at:g}, for example {names[0]}={at:g}")
+    known = {canonical(name): value for name, value in (at or {}).items()}
+    values = {}
+    for name, own, law, scale in zip(
+        names, model.start_inputs, laws, model.input_scale, strict=True
+    ):
+        if law is not None and canonical(name) in known:
+            raise InputError(f"a law drives {name}, which begins where the law does: leave it out")
+        here = own if law is None else law[0] + float(law[1].jet(np.zeros(1))[0][0])
+        values[name] = known.pop(canonical(name), here / scale)
+    # names of no input are refused with the others
+    return model.from_position(solve(model, {**values, **known}, certify=False, throw=True))
 
 
 def _motion(travel: InputTravel) -> Motion:
@@ -91,7 +111,8 @@ def _motion(travel: InputTravel) -> Motion:
     told = f"simulated to t = {travel.t:.10g} s"
     if travel.ended:
         model = travel.dynamics.reduction.model
-        values = travel.q * travel.dynamics.size / model.input_scale
+        q = travel.dynamics.inputs.complete(travel.q[None], np.array([travel.t]), 0)[0]
+        values = q * travel.dynamics.size / model.input_scale
         inputs = model.equations.inputs
         place = ", ".join(
             f"{variable.name} = {value:.6g} {model.input_units[variable.name]}".rstrip()

@@ -9,6 +9,8 @@ import numpy as np
 
 from linkwork.dynamics.events import Bound, Event, first_event
 from linkwork.dynamics.input_dynamics import InputDynamics
+from linkwork.dynamics.pace import Pace
+from linkwork.dynamics.reduction import FAR, NEAR
 from linkwork.dynamics.vector_collocation import VectorStep, try_vector_step
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
@@ -22,6 +24,8 @@ _SHORTEST = 1e-12  # of the whole time: a shorter step makes no way
 _FIRST = 1e-3  # of the whole time: the first step
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
+_DIFFERENCE = 1e-3  # of fourth order, for the normal of a stop
+_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
 
@@ -55,8 +59,14 @@ class InputTravel:
         self._switch()
         self._record_here("")
         h = _FIRST * self.until
+        pace = Pace(self.until)
         while self.t < self.until and not self.ended:
-            short = self.until - self.t
+            if pace.crawls(self.t, self.q):
+                self._end(self._why())
+                continue
+            # the acceleration of a law jumps between its segments
+            target = min(self.until, self.dynamics.inputs.next_break(self.t))
+            short = target - self.t
             step, following = try_vector_step(
                 self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short)
             )
@@ -65,8 +75,9 @@ class InputTravel:
                     self._end(self._why())
                 h = following
                 continue
+            reaches = step.h == short
             h = following if h <= short else max(h, following)
-            self._advance(step, self.until if h > short and step.h == short else step.t + step.h)
+            self._advance(step, target if reaches else step.t + step.h)
             if self.progress is not None:
                 self.progress(self.t / self.until)
 
@@ -84,7 +95,7 @@ class InputTravel:
         self.taken += len(times)
         place, speed, _ = step.at(np.array([end]))
         # what follows starts from a proved position, never from one of a rejected step
-        if not self.dynamics.settle(place[0]):
+        if not self.dynamics.settle(place[0], end):
             self._end("the position there is not proved: it is too close to a singular one")
             return
         self.t, self.q, self.speed = end, place[0], speed[0]
@@ -93,15 +104,38 @@ class InputTravel:
 
     def _meet(self, event: Event) -> None:
         if event.falls:
-            name = f"stop of {self.bounds[event.number].asked.name}"
-            self._end(f"a {name} is hit, and shocks of several inputs are not computed", name)
+            self._hit(event.number)
             return
-        self._record_here("switch")
+        # the row has the loads, and so the accelerations, after the switch
         self._switch()
+        self._record_here("switch")
         limit = self.t - _CHATTER * self.until
         self.recent = [*(t for t in self.recent if t > limit), self.t]
         if len(self.recent) > _MOST_EVENTS:
             self._end("a comparison in a load switches without end there")
+
+    def _hit(self, number: int) -> None:
+        """A shock at a stop: an impulse along its normal."""
+        bound = self.bounds[number]
+        name = f"stop of {bound.asked.name}"
+        self._record_here(name)
+        count = len(self.q)
+        steps = _DIFFERENCE * np.array([1.0, -1.0, 2.0, -2.0])
+        around = np.stack([self.q + step * unit for step in steps for unit in np.eye(count)])
+        speeds, times = np.tile(self.speed, (len(around), 1)), np.full(len(around), self.t)
+        found = self._margins(around, speeds, times)[:, number].reshape(4, count)
+        normal = (8.0 * (found[0] - found[1]) - (found[2] - found[3])) / (12.0 * _DIFFERENCE)
+        push = np.linalg.solve(self.dynamics.masses(), normal)
+        # eq. (172)
+        leaving = -bound.restitution * float(normal @ self.speed)
+        self.speed = self.speed - float(normal @ self.speed) / float(normal @ push) * push * (
+            1.0 + bound.restitution
+        )
+        bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
+        pull = float(normal @ bend)
+        if pull <= 0.0 and 2.0 * leaving <= _RESTS * self.until * abs(pull):
+            self._end(f"it stays at the {name}, and contacts of several inputs are not computed")
+        self._switch()
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
@@ -122,8 +156,9 @@ class InputTravel:
         )
 
     def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
-        v, found = self.dynamics.positions(q)
-        rates = self.dynamics.solver.rates(v, speed * self.dynamics.size)
+        v, found = self.dynamics.positions(q, t)
+        whole = self.dynamics.inputs.complete(speed, t, 1)
+        rates = self.dynamics.solver.rates(v, whole * self.dynamics.size)
         first = np.where(found[:, None], rates.first, np.nan)
         return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 
@@ -172,4 +207,14 @@ class InputTravel:
         """Why no step succeeds."""
         if self.dynamics.nearness > _SINGULAR:
             return "a dead point of the inputs: their values do not lead on from there"
-        return "the accelerations have no bound there, or the inputs leave their reach"
+        near, far = (
+            self._geometry(
+                self.q + ahead[:, None] * self.speed,
+                np.tile(self.speed, (len(ahead), 1)),
+                self.t + ahead,
+            )
+            for ahead in (NEAR * self.until, FAR * self.until)
+        )
+        return self.dynamics.reduction.failing_load(near, far) or (
+            "the accelerations have no bound there, or the inputs leave their reach"
+        )

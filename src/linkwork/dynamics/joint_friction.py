@@ -84,10 +84,12 @@ class _Answers:
 class JointFriction:
     """Friction on a leg, from tables over the leader's place."""
 
-    def __init__(self, reduction: Reduction, low: float, high: float, rows: Rows) -> None:
-        self.reduction, self.rows = reduction, rows
+    def __init__(
+        self, reduction: Reduction, low: float, high: float, rows: Rows, steady: bool
+    ) -> None:
+        self.reduction, self.rows, self.steady = reduction, rows, steady
         looks = np.linspace(low, high, _LOOKS)
-        first = _Bodies(reduction, rows(looks))
+        first = _Bodies(reduction, rows(looks), steady)
         if first.doubtful.any():
             raise InputError(
                 "friction acts in a joint whose force redundant links leave undetermined: leave "
@@ -101,7 +103,7 @@ class JointFriction:
         least = first.scales
         #: The answers of a unit load compare with each other.
         self.table: Panels = fit_panels(
-            lambda s: _Bodies(reduction, rows(s)).columns, low, high, first.groups, least
+            lambda s: _Bodies(reduction, rows(s), steady).columns, low, high, first.groups, least
         )
         self.fastest = np.abs(self._answers(looks).motions).max(axis=0)
         self.moving = self.fastest > _STILL * max(self.fastest.max(initial=0.0), first.pace)
@@ -202,8 +204,8 @@ def _varies(size: Size) -> bool:
 class _Bodies:
     """The free bodies of B positions, in which the acceleration is unknown."""
 
-    def __init__(self, reduction: Reduction, rows: SolvedRows) -> None:
-        self.reduction, self.rows = reduction, rows
+    def __init__(self, reduction: Reduction, rows: SolvedRows, steady: bool) -> None:
+        self.reduction, self.rows, self.steady = reduction, rows, steady
         linkage = reduction.description
         assert isinstance(linkage, Linkage)
         self.geometry = reduction.displaced(rows.v, rows.first, rows.second)
@@ -233,7 +235,7 @@ class _Bodies:
         still = reduction.geometry(rows.v, zero, zero, np.zeros(len(rows.v)))
         given = self._unit_loads(reduction.loaded(still))
         steady = list(weight)
-        if reduction.of_position:
+        if self.steady:
             steady += [act.times(amount) for acts, amount in given for act in acts]
             if reduction.motor is not None:
                 steady += [act.times(reduction.motor_torque(np.zeros(1))[0]) for act in drive]
@@ -242,7 +244,7 @@ class _Bodies:
         self.acting: list[Sequence[Act]] = [
             steady,
             [*_less(bent, weight), *(a.times(flywheel * rows.second[:, lead]) for a in drive)],
-            drive if reduction.motor is not None and not reduction.of_position else [],
+            drive if reduction.motor is not None and not self.steady else [],
             *(acts for acts, _ in given),
         ]
         self.load_count = len(given)

@@ -13,7 +13,7 @@ import numpy as np
 from linkwork.dynamics.curve import Leg
 from linkwork.dynamics.joint_friction import JointFriction, Rubbing
 from linkwork.dynamics.panels import Panels, fit_panels
-from linkwork.dynamics.reduction import Reduction, State
+from linkwork.dynamics.reduction import FAR, NEAR, Reduction, State
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array
@@ -21,6 +21,7 @@ from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["ReducedLeg"]
 
+_LOOKS, _POLE = 257, 1e6  # places at which formulas are tried; times their usual value
 _BEYOND = 0.03  # of a panel: how far a step may look beyond the end of its leg
 
 
@@ -30,6 +31,8 @@ class ReducedLeg:
     def __init__(self, reduction: Reduction, leg: Leg) -> None:
         self.reduction, self.leg = reduction, leg
         low, high = sorted((leg.begin, leg.end))
+        #: Whether the loads are tabulated, too.
+        self.tabulates = reduction.of_position and self._is_smooth(low, high)
         self.variables = reduction.model.compiled.solver.variables
         scale = reduction.model.compiled.table.variable_scale
         groups = np.concatenate([[0, 1, 1], 2 + np.arange(self.variables)])
@@ -40,6 +43,19 @@ class ReducedLeg:
         self.numbers: Panels = whole.part(slice(0, 3)).with_slope()
         #: Variables and their first derivatives.
         self.table: Panels = whole.part(slice(3, None))
+
+    def _is_smooth(self, low: float, high: float) -> bool:
+        """Whether no formula of a load has a gap or a pole between two places."""
+        if not self.reduction.formulas:
+            return True
+        s = np.linspace(low, high, _LOOKS)
+        rows = self._solved(s)
+        still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, np.zeros(len(s)))
+        applied = AppliedLoads(still, 1.0)
+        sizes = [np.abs(applied.formula(formula)) for formula in self.reduction.formulas]
+        return all(
+            np.isfinite(own).all() and own.max() <= _POLE * (1.0 + np.median(own)) for own in sizes
+        )
 
     def _solved(self, s: Array) -> SolvedRows:
         """Positions at values of the leader in any order."""
@@ -60,7 +76,7 @@ class ReducedLeg:
         q1 = rows.first[:, lead]
         mass = mass + self.reduction.inertia * q1**2
         load = zero
-        if self.reduction.of_position:
+        if self.tabulates:
             still = self.reduction.geometry(rows.v, 0.0 * rows.v, 0.0 * rows.v, zero)
             load = self._work(self.reduction.loaded(still), displaced)
             if self.reduction.motor is not None:
@@ -73,7 +89,7 @@ class ReducedLeg:
         if not self.reduction.rubs:
             return None
         low, high = sorted((self.leg.begin, self.leg.end))
-        return JointFriction(self.reduction, low, high, self._solved)
+        return JointFriction(self.reduction, low, high, self._solved, self.tabulates)
 
     @cached_property
     def reach(self) -> tuple[float, float]:
@@ -139,7 +155,7 @@ class ReducedLeg:
         x and y of forces, then torques, (B, 1 + L).
         """
         total, torque = np.zeros(len(s)), np.zeros(len(s))
-        if self.reduction.of_position:
+        if self.tabulates:
             return total, torque[:, None]
         amounts: list[Array] = []
         if self.reduction.pushed:
@@ -156,6 +172,14 @@ class ReducedLeg:
             torque = self.reduction.motor_torque(slope * speed)
             total = total + torque * slope
         return total, np.column_stack([torque, *amounts])
+
+    def failing_load(self, s: float, speed: float, t: float, gain: Array, until: float) -> str:
+        """Why a load stops a motion up to ``until`` in a state; "" if none does."""
+        near, far = (
+            self.state(s + speed * ahead, np.full_like(ahead, speed), t + ahead, gain).moving
+            for ahead in (NEAR * until, FAR * until)
+        )
+        return self.reduction.failing_load(near, far)
 
     def input_slope(self, s: Array) -> Array:
         """The derivative of the input by the leader, (B,)."""

@@ -11,12 +11,13 @@ import numpy as np
 
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Binary, Node, comparisons_in, names_in
-from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.applied import AppliedLoads, load_formulas
 from linkwork.forces.free_bodies import FreeBodies
 from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import key_text
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
@@ -25,7 +26,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
 
-__all__ = ["Displaced", "Forcing", "Reduction", "State"]
+__all__ = ["FAR", "NEAR", "Displaced", "Forcing", "Place", "Reduction", "State"]
 
 
 class Displaced(Geometry):
@@ -39,6 +40,10 @@ class Displaced(Geometry):
         return np.ones(1)
 
 
+#: Of the whole time: where a load that no step can follow shows, and where it is as usual.
+NEAR = 1e-14 * np.array([0.0, 1.0, 1e1, 1e2, 1e3, 1e4])
+FAR = np.array([-1e-3, 1e-3])
+_POLE = 1e3  # times its usual amount: a load that no step can follow
 _RISING = ("<", ">=")  # comparisons whose margin is the right side minus the left one
 
 
@@ -52,6 +57,8 @@ class State:
 
 #: A further generalised force along the leader at B states, such as friction, (B,).
 Forcing = Callable[[State], Array]
+#: The words for a key of the file.
+Place = Callable[[Sequence[str | int]], str]
 
 
 class Reduction:
@@ -63,13 +70,21 @@ class Reduction:
         The mechanism, and the same over time.
     forcing : sequence of Forcing
         Further forces.
+    place : callable
+        Words the key of a load for messages.
     """
 
-    def __init__(self, model: Model, named: Model, forcing: Sequence[Forcing] = ()) -> None:
+    def __init__(
+        self,
+        model: Model,
+        named: Model,
+        forcing: Sequence[Forcing] = (),
+        place: Place = key_text,
+    ) -> None:
         description = model.description
         assert isinstance(description, LoadedBodies)
         self.model, self.named, self.forcing = model, named, forcing
-        self.description = description
+        self.description, self.place = description, place
         self.motor = description.inputs[0].motor
         self.switches: Mapping[Node, float] = FrozenDict()
         #: Whether joints have friction.
@@ -88,8 +103,7 @@ class Reduction:
     @cached_property
     def formulas(self) -> tuple[Node, ...]:
         """The formulas of all loads."""
-        numbers = (each for part in self.acting for _, each in getattr(part, "formulas", ()))
-        return tuple(parse(each, comparing=True) for each in numbers if isinstance(each, str))
+        return tuple(parse(each, comparing=True) for _, each in load_formulas(self.description))
 
     @cached_property
     def comparisons(self) -> tuple[Binary, ...]:
@@ -158,6 +172,20 @@ class Reduction:
         for each, margin in zip(self.comparisons, margins, strict=True):
             values[each] = float((margin > 0.0) == (each.operator in ("<", ">")))
         self.switches = FrozenDict(values)
+
+    def failing_load(self, there: Geometry, before: Geometry) -> str:
+        """Why a load stops the motion ``there``, in the rows in which no step succeeds; "" if none
+        does. ``before``: rows at some distance.
+        """
+        near, far = (AppliedLoads(rows, 1.0, switches=self.switches) for rows in (there, before))
+        for key, formula in load_formulas(self.description):
+            found = near.value(formula)
+            if not np.isfinite(found).all():
+                return f'{self.place(key)} "{formula}" has no finite value there'
+            usual = np.nanmax(np.abs(far.value(formula)), initial=0.0)
+            if np.abs(found).max() > _POLE * usual > 0.0:
+                return f'{self.place(key)} "{formula}" grows without bound there'
+        return ""
 
     def geometry(self, v: Array, first: Array, second: Array, t: Array) -> Geometry:
         """Rows (B, N) with derivatives by time, or by a leader."""

@@ -8,14 +8,17 @@ import numpy as np
 
 from linkwork.dynamics.events import Bound
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import ExpressionError, InputError, MechanismError, Problem, choices
+from linkwork.foundation.errors import ExpressionError, InputError, choices
 from linkwork.foundation.names import canonical
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.speed import speed_per_second
 from linkwork.motion.model import Model
+from linkwork.motion.stop_quantities import bounded_quantity
 
-__all__ = ["bounds_of", "check_loaded", "model_name", "start_speeds"]
+__all__ = ["bounds_of", "check_loaded", "check_masses_move", "model_name", "start_speeds"]
+
+_MASSLESS = 1e-12  # of the largest eigenvalue of the matrix of masses: none
 
 
 def model_name(model: Model) -> str:
@@ -34,13 +37,29 @@ def check_loaded(model: Model) -> LoadedBodies:
     description, name = model.description, model_name(model)
     if not isinstance(description, LoadedBodies):
         raise InputError(f"{name} has plain equations: only links have masses")
-    if description.timed:
+    if description.inputs and all(which.law is not None for which in description.inputs):
         raise InputError(f"a law drives {name}: leave it out to simulate")
     if not description.inputs:
         raise InputError(f"{name} has 0 inputs: a simulation needs a degree of freedom")
     if not description.masses and all(each.inertia is None for each in description.inputs):
         raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
     return description
+
+
+def check_masses_move(model: Model, masses: Array) -> None:
+    """Refuse inputs that can move without a mass; ``masses`` (f, f) at the start.
+
+    Raises
+    ------
+    InputError
+        With what to add.
+    """
+    sizes = np.linalg.eigvalsh(masses)
+    if not sizes[0] > _MASSLESS * sizes[-1]:
+        raise InputError(
+            f"{model_name(model)} has {len(model.description.inputs)} inputs, and they can move at "
+            "the start without moving a mass: add [masses], or inertia to the inputs"
+        )
 
 
 def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
@@ -66,6 +85,8 @@ def start_speeds(model: Model, given: Number | Mapping[str, Number]) -> Array:
                 f'start speed: there is no input "{name}" {choices("inputs", names, name)}'
             )
         k = known[name]
+        if description.inputs[k].law is not None:
+            raise InputError(f"start speed: a law drives {names[k]}, which has its speed")
         kind = description.inputs[k].drives[0]
         try:
             own = speed_per_second(value, kind, description.numbers, description.length)
@@ -79,26 +100,16 @@ def bounds_of(named: Model) -> list[Bound]:
     """The bounds of all stops."""
     description = named.description
     assert isinstance(description, LoadedBodies)
-    found, problems = [], []
     numbers = description.numbers
-    for k, stop in enumerate(description.stops):
-        own = named.motion_quantities
-        try:
-            asked = own.find(stop.of)
-        except InputError as error:
-            problems.append(Problem(key=("stops", k, "of"), message=str(error)))
-            continue
-        for value, side in ((stop.start, 1.0), (stop.stop, -1.0)):
-            if value is not None:
-                found.append(
-                    Bound(
-                        stop=stop,
-                        asked=asked,
-                        value=numbers(value),
-                        side=side,
-                        restitution=numbers(stop.restitution),
-                    )
-                )
-    if problems:
-        raise MechanismError(problems, f'mechanism "{description.name}"')
-    return found
+    return [
+        Bound(
+            key=("stops", k, field),
+            asked=bounded_quantity(stop.of, named.motion_quantities),
+            value=numbers(value),
+            side=side,
+            restitution=numbers(stop.restitution),
+        )
+        for k, stop in enumerate(description.stops)
+        for field, value, side in (("from", stop.start, 1.0), ("to", stop.stop, -1.0))
+        if value is not None
+    ]

@@ -9,12 +9,12 @@ import numpy as np
 
 from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.input_simulation import simulate_inputs
-from linkwork.dynamics.reduction import Forcing, Reduction
+from linkwork.dynamics.reduction import Forcing, Place, Reduction
 from linkwork.dynamics.sample import Sample
-from linkwork.dynamics.simulated import bounds_of, check_loaded, model_name, start_speeds
+from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, key_text
 from linkwork.foundation.plain_numbers import as_told, finite_number
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
@@ -44,6 +44,7 @@ def simulate(
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
     certify: bool = True,
     forcing: Sequence[Forcing] = (),
+    place: Place = key_text,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
     """The motion in time under masses, loads, springs and a motor.
@@ -65,28 +66,30 @@ def simulate(
         Prove the positions of all rows.
     forcing : sequence of Forcing
         Further generalised forces.
+    place : callable
+        Words the key of a load that has no value.
     progress : callable, optional
         Called with the finished fraction, 0 to 1.
 
     Raises
     ------
     InputError
-        If nothing has mass, the mechanism has no input, a law drives it, or it has several inputs
-        and friction.
+        If nothing has mass, the mechanism has no input, laws drive all inputs, or it has several
+        inputs and friction.
     """
     check_flags(progress, certify=certify)
     times = _times(until, step)
     policy = ChangePointPolicy.of(change_points)
     if policy is ChangePointPolicy.TURN:
         raise InputError('a simulation goes straight on or stops: change_points "stop", "straight"')
+    check_loaded(model)
     if len(model.description.inputs) > 1:
-        check_loaded(model)
         return simulate_inputs(
-            model, times=times, at=at, start_speed=start_speed, policy=policy, certify=certify,
-            forced=bool(forcing), progress=progress,
+            model.untimed or model, times=times, at=at, start_speed=start_speed, policy=policy,
+            certify=certify, forced=bool(forcing), place=place, progress=progress,
         )  # fmt: skip
     speed = float(start_speeds(model, start_speed)[0])
-    reduction, curve = start_of(model, at, policy, certify, forcing)
+    reduction, curve = start_of(model, at, policy, certify, forcing, place)
     travel = Travel(
         curve=curve,
         reduction=reduction,
@@ -106,21 +109,15 @@ def start_of(
     policy: ChangePointPolicy,
     certify: bool,
     forcing: Sequence[Forcing] = (),
+    place: Place = key_text,
 ) -> Start:
     """The loads, and the curve of positions through the start."""
-    _check(model)
+    check_loaded(model)
     position = solve(model, at, certify=False, throw=True)
     there = model.from_position(position)
     start = there.equations.start.copy()
-    return Reduction(model, model_in_time(model), forcing), curve_of(model, start, policy, certify)
-
-
-def _check(model: Model) -> None:
-    description = check_loaded(model)
-    if len(description.inputs) != 1:
-        raise InputError(
-            f"{model_name(model)} has {len(description.inputs)} inputs: equilibria need one"
-        )
+    reduction = Reduction(model, model_in_time(model), forcing, place)
+    return reduction, curve_of(model, start, policy, certify)
 
 
 def _times(until: float, step: float | None) -> Array:
@@ -144,7 +141,8 @@ def _check_inside(travel: Travel) -> None:
         if margin < 0.0:
             value = bound.value + bound.side * margin
             raise InputError(
-                f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}"
+                f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "
+                f"{travel.reduction.place(bound.key)}"
             )
 
 

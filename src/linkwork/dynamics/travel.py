@@ -12,6 +12,7 @@ from linkwork.dynamics.collocation import Step, try_step
 from linkwork.dynamics.curve import PositionCurve
 from linkwork.dynamics.events import Bound, Event, first_event, margins_on, shorter_step
 from linkwork.dynamics.joint_friction import Rubbing
+from linkwork.dynamics.pace import Pace
 from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.dynamics.reduction import Reduction
 from linkwork.dynamics.sample import Sample
@@ -101,8 +102,12 @@ class Travel:
     def run(self) -> None:
         """Step until all times are reached or the motion ends."""
         h, rougher = self._first_step(), math.inf
+        pace = Pace(self.until)
         while self.t < self.until and not self.ended:
             if self._rests() or self._sticks() or self._is_outside():
+                continue
+            if pace.crawls(self.t, self.s):
+                self.ended = self._unbounded()
                 continue
             short = self.until - self.t
             step, following, rough = try_step(
@@ -193,9 +198,10 @@ class Travel:
         elif event.falls:
             self._hold()
         else:
-            self._record(self.t, self.s, self.speed, self._now(), "switch")
+            # the row has the loads, and so the acceleration, after the switch
             self._switch()
             self._hold()
+            self._record(self.t, self.s, self.speed, self._now(), "switch")
             self._check_chatter()
 
     def _switch(self) -> None:
@@ -390,4 +396,5 @@ class Travel:
         """Why no step succeeds."""
         if self.rubbing is not None and not math.isfinite(self._now()):
             return "friction locks the mechanism there: no acceleration is in equilibrium with it"
-        return "the accelerations have no bound there"
+        found = self.leg.failing_load(self.s, self.speed, self.t, self.gain, self.until)
+        return found or "the accelerations have no bound there"

@@ -13,7 +13,16 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import legendre
 
-from linkwork.dynamics.collocation import AT_PLACE, AT_SPEED, FIT, PLACE, POINTS, SPEED, C
+from linkwork.dynamics.collocation import (
+    AT_PLACE,
+    AT_SPEED,
+    FIT,
+    NOISE,
+    PLACE,
+    POINTS,
+    SPEED,
+    C,
+)  # fmt: skip
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 
@@ -23,7 +32,6 @@ _MOST_ROUNDS = 12
 _SETTLED = 1e-14  # of the accelerations: a change that is rounding
 _UNSETTLED = 1e-10  # a larger change after all rounds: the iteration has failed
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
-_NOISE = 16.0  # roundings of a place in an acceleration
 _LARGEST, _SMALLEST, _SAFETY, _GROWTH = 3.0, 0.2, 0.8, 1.5
 
 #: Accelerations (B, p) at places (B, p), speeds (B, p) and times (B,).
@@ -83,13 +91,15 @@ def try_vector_step(
             if not np.isfinite(jacobian).all():
                 return None, _SMALLEST * h
             inverse = np.linalg.inv(jacobian)
-            noise = _NOISE * EPSILON * (1.0 + np.abs(place).max()) * steepest
+            noise = NOISE * EPSILON * (1.0 + np.abs(place).max()) * steepest
         else:
             found = acceleration(place, w, times)
         if not np.isfinite(found).all():
             return None, _SMALLEST * h
         change = (inverse @ (found - a).ravel()).reshape(a.shape)
         a = a + change
+        if not np.isfinite(a).all():
+            return None, _SMALLEST * h
         size = np.abs(a).max() + np.abs(speed).max() / abs(h)
         if np.abs(change).max() <= max(_SETTLED * POINTS * size, noise):
             break

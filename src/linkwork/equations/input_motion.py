@@ -20,7 +20,7 @@ from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.input_law import THROUGH, LawSegment
 from linkwork.mechanism.motion_laws import Piece, pieces_of
 
-__all__ = ["TIME", "driven_by_time", "time_variable"]
+__all__ = ["TIME", "driven_by_time", "law_motions", "time_variable"]
 
 #: The name of the time.
 TIME = "t"
@@ -60,6 +60,21 @@ def driven_by_time(equations: LoopEquations, description: Description) -> LoopEq
         laws=(*equations.laws, *(_equation(variable, law) for variable, law in rows)),
         start=np.append(equations.start, laws[0].breaks[0]),
     )
+
+
+def law_motions(
+    equations: LoopEquations, description: Description
+) -> list[tuple[float, Piecewise] | None]:
+    """The law of every input as an origin and the displacement from it over time [rad] or [length];
+    ``None`` without a law.
+
+    Raises
+    ------
+    MechanismError
+        For a formula that has no value, or jumps.
+    """
+    laws = _laws(equations, description, led_in=False)
+    return [None if law.which.law is None else (law.origin, law.piecewise()) for law in laws]
 
 
 def _laws(equations: LoopEquations, description: Description, *, led_in: bool) -> list[_Law]:

@@ -26,7 +26,7 @@ from functools import lru_cache
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.names import GREEK, canonical
-from linkwork.foundation.units import LENGTHS
+from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 
 __all__ = ["CONSTANTS", "FUNCTIONS", "RESERVED", "number_end", "parse", "parse_equation"]
 
@@ -48,7 +48,11 @@ _OPERATORS = {
 }  # fmt: skip
 _LONGEST = 10_000  # characters
 #: Units that are written behind a number by mistake, and the key that sets them.
-_UNITS = {**dict.fromkeys(LENGTHS, "length"), **dict.fromkeys(("deg", "rad"), "angle")}
+_UNITS = {
+    **dict.fromkeys(LENGTHS, "length"), **dict.fromkeys(("deg", "rad"), "angle"),
+    **dict.fromkeys(FORCES, "force"), **dict.fromkeys(MASSES, "mass"),
+}  # fmt: skip
+del _UNITS["t"]  # the time
 _MOST_TOKENS = 400  # a sum of n terms has depth n: keeps recursion below Python's limit
 _DEEPEST = 60
 
@@ -256,10 +260,12 @@ class _Reader:
             raise self.error(f"{token.text} is too large", token.column)
         follower = self.token
         if follower.kind == "name" and follower.text in _UNITS:
+            named = [each for each in self.unit() if each.kind == "name"]
+            unit = "".join(each.text for each in self.unit())
+            keys = ", ".join(f'{_UNITS[each.text]} = "{each.text}"' for each in named)
             raise self.error(
-                f"numbers carry no unit here: write {token.text} and set "
-                f'{_UNITS[follower.text]} = "{follower.text}" for the whole file; '
-                f'a product is written "{token.text}*{follower.text}"',
+                f"numbers carry no unit here: write {token.text} and set {keys} for the whole "
+                f'file; a product is written "{token.text}*{unit}"',
                 follower.column,
             )
         if follower.kind == "name":
@@ -267,6 +273,17 @@ class _Reader:
                 f'write the multiplication sign: "{token.text}*{follower.text}"', follower.column
             )
         return Number(value, token.column)
+
+    def unit(self) -> list[_Token]:
+        """The tokens of a unit such as N/mm that begins here."""
+        found = [self.token]
+        for sign, name in zip(
+            self.tokens[self.at + 1 :: 2], self.tokens[self.at + 2 :: 2], strict=False
+        ):
+            if sign.text not in ("*", "/") or name.text not in _UNITS:
+                break
+            found += [sign, name]
+        return found
 
     def name(self, token: _Token) -> Node:
         name = canonical(token.text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Node",
     "Number",
     "comparisons_in",
+    "constants_in",
     "names_in",
     "with_comparisons",
 ]
@@ -95,6 +96,24 @@ def comparisons_in(node: Node) -> Iterator[Binary]:
         case Call():
             for argument in node.arguments:
                 yield from comparisons_in(argument)
+        case _:
+            return
+
+
+def constants_in(node: Node, known: Container[str]) -> Iterator[Node]:
+    """The largest parts without comparisons whose names are all ``known``."""
+    if not any(comparisons_in(node)) and all(name.name in known for name in names_in(node)):
+        yield node
+        return
+    match node:
+        case Negative():
+            yield from constants_in(node.operand, known)
+        case Binary():
+            yield from constants_in(node.left, known)
+            yield from constants_in(node.right, known)
+        case Call():
+            for argument in node.arguments:
+                yield from constants_in(argument, known)
         case _:
             return
 

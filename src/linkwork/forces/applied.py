@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -13,17 +13,18 @@ from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import Node, names_in, with_comparisons
 from linkwork.forces.geometry import Geometry
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.elementwise import cis
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.units import force_of_inertia
+from linkwork.mechanism.description import Description
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.mass import Mass
 
-__all__ = ["AppliedLoads", "Body", "time_of"]
+__all__ = ["AppliedLoads", "Body", "load_formulas", "time_of"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,6 +53,7 @@ class AppliedLoads:
     ``forces`` are (point, force, link), ``torques`` (link, torque), ``stored`` the energies of
     springs and weights, (B,) each; ``rate`` is the speed of the leading input, 0 without one.
     ``switches``: comparisons in formulas that do not follow the rows, with their value 0 or 1.
+    ``undefined``: formulas with rows in which they have no finite value, (B,).
     """
 
     geometry: Geometry
@@ -63,6 +65,7 @@ class AppliedLoads:
     stored: list[Array] = field(default_factory=list)
     stored_rates: list[Array] = field(default_factory=list)
     switches: Mapping[Node, float] = FrozenDict()
+    undefined: dict[str, BoolArray] = field(default_factory=dict)
 
     @cached_property
     def moves(self) -> bool:
@@ -82,7 +85,13 @@ class AppliedLoads:
         if not isinstance(number, str):
             still: Array = np.zeros(self.geometry.shape) + self.geometry.numbers(number)
             return still
-        return self.formula(parse(number, comparing=True))
+        found = self.formula(parse(number, comparing=True))
+        # of families, and of values that are recorded, rows are judged later
+        if not is_batched(found):
+            lost = ~np.isfinite(found)
+            if lost.any():
+                self.undefined[number] = lost
+        return found
 
     def formula(self, tree: Node) -> Array:
         """The value of a formula in all rows, (B,)."""
@@ -173,6 +182,14 @@ def as_complex(force: Any) -> ComplexArray:
     """A force that may be real where nothing moves."""
     found: ComplexArray = force + 0j
     return found
+
+
+def load_formulas(description: Description) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """The keys of all formulas of loads, and the formulas."""
+    for k, load in enumerate(getattr(description, "loads", ())):
+        for key, number in load.formulas:
+            if isinstance(number, str):
+                yield ("loads", k, *key), number
 
 
 def time_of(geometry: Geometry) -> Array:

@@ -144,9 +144,10 @@ class Coupling:
         for _ in range(_MOST_ITERATIONS):
             u = self._unknowns(s)
             rest = s - self._shares(share) * self._values(u)
-            limit = _SOLVED * np.abs(u).sum(axis=(1, 2), initial=0.0)
-            largest = self._scale * limit + _SOLVED * np.abs(s).max(axis=1)
-            done = np.abs(rest).max(axis=1) <= largest
+            # what each size rounds to: moments are not compared with forces, whatever the units
+            terms = np.abs(self.start) + np.einsum("bjmk,bk->bjm", np.abs(self.change), np.abs(s))
+            limit = _SOLVED * (self._scale * terms.sum(axis=2) + np.abs(s))
+            done = (np.abs(rest) <= limit).all(axis=1)
             if done.all():
                 break
             # sizes have edges: Newton-Raphson takes the slope of one side there (semismooth)
@@ -156,13 +157,16 @@ class Coupling:
         return s, done
 
     @cached_property
-    def _scale(self) -> float:
-        """The size of the largest factor of all sizes."""
+    def _scale(self) -> Array:
+        """The largest factor of each size, (K,)."""
         unit = np.ones((len(self.start), 2))
-        return max(
-            float(np.max(np.abs(size.gradient(unit[:, : len(size.unknowns)])), initial=0.0))
-            for size in self.sizes
-        )
+        found = np.zeros(len(self.sizes))
+        for j, size in enumerate(self.sizes):
+            # one-sided forces have a factor for each side
+            for way in (unit, -unit):
+                gradient = np.abs(size.gradient(way[:, : len(size.unknowns)]))
+                found[j] = max(found[j], np.max(gradient, initial=0.0))
+        return found
 
     @cached_property
     def _bounds(self) -> Array:

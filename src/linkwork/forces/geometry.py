@@ -122,7 +122,7 @@ class Geometry:
         if len(points) > 1:
             span = self.place(points[1]) - self.place(points[0])
             return _times(span, 1.0 / np.abs(span.v))  # of constant length
-        turn = self.angle(link)
+        turn = self.angle(link)  # of wheels and blocks
         unit = np.cos(turn.v) + 1j * np.sin(turn.v)
         return Jet(unit, 1j * turn.d1 * unit, (1j * turn.d2 - turn.d1**2) * unit)
 
@@ -133,12 +133,12 @@ class Geometry:
         return self._angles[link]
 
     def _angle(self, link: str) -> Jet:
-        if link == GROUND:
-            zero = np.zeros(self.rows)
-            return Jet(zero, zero, zero)
         if link in self.model.equations.links:
             return self.own(link)
-        # loops have no angles of links, only their points
+        # loops have no angles of links, only their points; nothing turns a link of one point there
+        if link == GROUND or len(self.links[link]) < 2:
+            zero = np.zeros(self.rows)
+            return Jet(zero, zero, zero)
         unit = self.direction(link)
         first = unit.d1 / unit.v
         second = (unit.d2 / unit.v).imag

@@ -12,11 +12,10 @@ import numpy as np
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.jets import Jet
 from linkwork.expression.tree import names_in
+from linkwork.forces.applied import load_formulas
 from linkwork.forces.system import ForceRows, solve_forces
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError, MechanismError, Problem
-from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.loops import Loops
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantities.definition import (
@@ -158,13 +157,11 @@ def check_formulas(model: Model, *, at_rest: bool) -> None:
         With every such load.
     """
     description = model.description
-    assert isinstance(description, Linkage | Loops)
     problems = []
-    for k, load in enumerate(description.loads):
-        for key, number in load.formulas:
-            message = _mistake(model, number, at_rest) if isinstance(number, str) else None
-            if message is not None:
-                problems.append(Problem(key=("loads", k, *key), message=message))
+    for key, formula in load_formulas(description):
+        message = _mistake(model, formula, at_rest)
+        if message is not None:
+            problems.append(Problem(key=key, message=message))
     if problems:
         raise MechanismError(problems, f'mechanism "{description.name}"')
 
@@ -180,7 +177,13 @@ def _mistake(model: Model, formula: str, at_rest: bool) -> str | None:
             continue
         try:
             speed = 0.0 if at_rest and model.speed is None else model.speed
-            model.motion_quantities.find(node.name).check_rate(speed)
+            asked = model.motion_quantities.find(node.name)
+            asked.check_rate(speed)
+            if asked.needs > 1:
+                return (
+                    f'column {node.column}: "{node.spelling}" follows from accelerations, which '
+                    "follow from the loads: a load has positions, velocities and t"
+                )
         except LinkworkError as error:
             return f"column {node.column}: {error}"
     return None

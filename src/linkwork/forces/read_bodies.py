@@ -14,22 +14,13 @@ __all__ = ["read_geometry"]
 _APART = 1e-9  # of the longest link: distance of the points of both descriptions
 
 
-def read_geometry(geometry: Geometry, links: set[str]) -> Geometry | None:
+def read_geometry(geometry: Geometry) -> Geometry | None:
     """The rows of a mechanism's loops as those of a linkage.
 
-    ``None`` if the loops do not read as one that has these links, or its points move otherwise.
-
-    Parameters
-    ----------
-    geometry : Geometry
-        Of the loops.
-    links : set of str
-        What masses and loads act on.
+    ``None`` if the loops do not read as one, or its points move otherwise.
     """
     seen = as_linkage(geometry.driven)
     if not isinstance(seen, Seen) or seen.loose:
-        return None
-    if not links <= set(seen.linkage.links):
         return None
     v = _rows(geometry, seen)
     solver, rate = seen.model.compiled.solver, geometry.input_rates

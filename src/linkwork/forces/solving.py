@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from linkwork.equations.input_motion import TIME
+from linkwork.forces.applied import load_formulas
 from linkwork.forces.quantities import check_formulas
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, key_text
 from linkwork.foundation.value_types import check_class
 from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
@@ -22,19 +23,21 @@ from linkwork.results.reactions import ForceStatus, Reactions
 
 __all__ = ["forces_of_motion", "forces_of_position"]
 
+Place = Callable[[Sequence[str | int]], str]
 
-def forces_of_position(model: Model, position: Position) -> Reactions:
-    """Efforts and reactions at one position.
+
+def forces_of_position(model: Model, position: Position, place: Place = key_text) -> Reactions:
+    """Efforts and reactions at one position; ``place`` words the key of a load without a value.
 
     Raises
     ------
     InputError
         If nothing loads the mechanism.
     """
-    return _reactions(model, position, dict(position.input), position.input_units, ())
+    return _reactions(model, position, dict(position.input), position.input_units, (), place)
 
 
-def forces_of_motion(model: Model, motion: Motion) -> Reactions:
+def forces_of_motion(model: Model, motion: Motion, place: Place = key_text) -> Reactions:
     """Efforts and reactions in all rows of a motion of the mechanism; raises like
     :func:`forces_of_position`, and for other motions.
     """
@@ -42,7 +45,7 @@ def forces_of_motion(model: Model, motion: Motion) -> Reactions:
     if model.untimed is None and TIME in motion.inputs:  # a simulated motion
         model = model_in_time(model)
     check_own_motion(model, motion)
-    return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),))
+    return _reactions(model, motion, motion.inputs, motion.input_units, (len(motion),), place)
 
 
 def _reactions(
@@ -51,6 +54,7 @@ def _reactions(
     inputs: Mapping[str, Array] | Mapping[str, float],
     input_units: Mapping[str, str],
     shape: tuple[int, ...],
+    place: Place,
 ) -> Reactions:
     if not getattr(model.description, "loaded", False):
         raise InputError(
@@ -72,5 +76,10 @@ def _reactions(
         undetermined={name: force.undetermined.reshape(shape) for name, force in values},
         lifted={name: force.lifted.reshape(shape) for name, force in values},
         slipping={name: force.slipping.reshape(shape) for name, force in values},
+        undefined={
+            f'{place(key)} "{formula}"': rows.undefined[formula].reshape(shape)
+            for key, formula in load_formulas(model.description)
+            if formula in rows.undefined
+        },
         proved=rows.proved.reshape(shape),
     )

@@ -20,6 +20,7 @@ from linkwork.forces.pins import join_pins, read_first_links
 from linkwork.forces.read_bodies import read_geometry
 from linkwork.forces.virtual_work import efforts, energies
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArray
+from linkwork.foundation.frozen import FrozenDict
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.loops import Loops
@@ -35,6 +36,8 @@ __all__ = [
     "free_bodies",
     "free_bodies_of",
     "known_acts",
+    "read_bodies",
+    "set_down",
     "solve_forces",
     "totals",
 ]
@@ -66,11 +69,14 @@ class ForceValue:
 class ForceRows:
     """All forces in B rows: quantities by name, the status code of every row, and whether it is
     proved that friction leaves an equilibrium or none.
+
+    ``undefined``: formulas of loads with the rows in which they have no finite value.
     """
 
     values: Mapping[str, ForceValue]
     status: StatusArray
     proved: BoolArray
+    undefined: Mapping[str, BoolArray] = FrozenDict()
 
 
 @dataclass(eq=False)
@@ -131,7 +137,7 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
         elif isinstance(description, Loops):
             for load in description.loads:
                 apply_load(load, applied)
-            bodies = _read_bodies(geometry, applied)
+            bodies = read_bodies(geometry, applied)
         by_work, largest = efforts(applied)
         found = _Solution(geometry, applied, _has_rates(by_work, geometry))
         zero = np.zeros_like(by_work)
@@ -153,12 +159,17 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             found.add(name, kind, about, value, pin=(point, "", "") if pushed else ())
     lost = ~np.isfinite(next(iter(_anything(geometry))))
     status = np.where(found.regular, ForceStatus.FOUND.code, ForceStatus.NO_RATES.code)
+    undefined = {formula: rows & ~lost for formula, rows in applied.undefined.items()}
+    for rows in undefined.values():
+        status[rows] = ForceStatus.NO_LOAD.code
     status[lost] = ForceStatus.NO_POSITION.code
     partly = np.any([value.undetermined for value in found.values.values()], axis=0)
     status[partly & found.regular] = ForceStatus.UNDETERMINED.code
     status[found.locked & ~lost] = ForceStatus.SELF_LOCKING.code
     status[found.held & ~lost] = ForceStatus.HELD.code
-    return ForceRows(values=found.values, status=status.astype(np.int8), proved=found.proved)
+    return ForceRows(
+        values=found.values, status=status.astype(np.int8), proved=found.proved, undefined=undefined
+    )
 
 
 def _anything(geometry: Geometry) -> Iterator[Array]:
@@ -194,23 +205,48 @@ def free_bodies_of(model: Model, solved: Solved) -> FreeBodies:
     return free_bodies(description, geometry, applied)
 
 
-def _read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
+def read_bodies(geometry: Geometry, applied: AppliedLoads) -> FreeBodies | None:
     """The free bodies of loops that read as a linkage with everything that is loaded."""
-    links = {body.link for body in applied.masses} | {link for link, _ in applied.torques}
-    links |= {link for _, _, link in applied.forces if link is not None}
-    own = read_geometry(geometry, links)
+    own = read_geometry(geometry)
     if own is None:
         return None
     linkage = own.model.description
     assert isinstance(linkage, Linkage)
-    for k, (point, force, link) in enumerate(applied.forces):
-        if link is None and point not in linkage.points:
+    loads = set_down(applied, linkage)
+    return None if loads is None else free_bodies(linkage, own, loads)
+
+
+def set_down(applied: AppliedLoads, linkage: Linkage) -> AppliedLoads | None:
+    """The loads on loops as loads on the links read from them; ``None`` if some have none."""
+    given = applied.geometry.links
+    own = {link: _same_link(link, points, given, linkage) for link, points in given.items()}
+    masses = [replace(body, link=own[body.link]) for body in applied.masses]
+    torques = [(own[link], torque) for link, torque in applied.torques]
+    forces = []
+    for point, force, link in applied.forces:
+        carrier = None if link is None else own[link]
+        if carrier is None and point not in linkage.points:
             # only pins are points of what was read: the link of the file that carries it
-            carrier = next((name for name, on in geometry.links.items() if point in on), "")
-            if carrier not in linkage.links:
-                return None
-            applied.forces[k] = (point, force, carrier)
-    return free_bodies(linkage, own, applied)
+            carrier = next((own[name] for name, on in given.items() if point in on), "")
+        forces.append((point, force, carrier))
+    carriers = [*(body.link for body in masses), *(link for link, _ in torques)]
+    carriers += [link for _, _, link in forces if link is not None]
+    if not all(carriers):
+        return None
+    return replace(applied, masses=masses, torques=torques, forces=forces)
+
+
+def _same_link(
+    link: str, points: tuple[str, ...], given: Mapping[str, tuple[str, ...]], linkage: Linkage
+) -> str:
+    """The name of a link of loops in the linkage that was read from them; "" if it is not there."""
+    if link in linkage.links:
+        return link
+    # a block has one point, and another name if the file has a link of that name
+    blocks = [
+        name for name, on in linkage.links.items() if name not in given and tuple(on) == points
+    ]
+    return blocks[0] if len(points) == len(blocks) == 1 else ""
 
 
 def known_acts(bodies: FreeBodies) -> list[Act]:

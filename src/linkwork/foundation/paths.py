@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 from os import PathLike
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["as_path"]
+__all__ = ["as_path", "unwritten"]
 
 
 def as_path(given: object) -> Path:
@@ -22,3 +23,11 @@ def as_path(given: object) -> Path:
     if not isinstance(given, str | PathLike):
         raise InputError(f"a path must be a text or a Path, got {as_told(given)}")
     return Path(given)
+
+
+def unwritten(path: Path | str, error: Exception) -> InputError:
+    """The error for a file or folder that could not be written: its name, the reason, a remedy."""
+    reason = getattr(error, "strerror", None) or error
+    full = getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT)
+    remedy = ": make room there, or write to another place" if full else ""
+    return InputError(f'cannot write "{path}": {reason}{remedy}')

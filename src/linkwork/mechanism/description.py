@@ -285,10 +285,10 @@ def _check_motor(description: Description, which: Input, key: Key, problems: Pro
     numbers = description.numbers
     if which.motor is not None:
         kind = which.drives[0]
-        for field, message in which.motor.mistakes(kind, numbers, description.length):
-            problems.add((*key, "motor", field), message)
+        for below, message in which.motor.mistakes(kind, numbers, description.length):
+            problems.add((*key, "motor", *below), message)
     if which.inertia is not None:
-        amount = numbers.check_number(problems.add, (*key, "inertia"), which.inertia)
+        amount = numbers.check_amount(problems.add, (*key, "inertia"), which.inertia)
         if amount < 0:
             problems.add((*key, "inertia"), f"must not be negative, got {amount:g}")
 

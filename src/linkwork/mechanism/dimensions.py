@@ -16,10 +16,12 @@ from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["Number", "Numbers"]
+__all__ = ["LARGEST", "Number", "Numbers"]
 
 #: A number, or a formula of the named dimensions.
 Number = float | int | str
+#: The largest length, mass or load: it keeps squares and quotients finite.
+LARGEST = 1e100
 _LONGEST_CHAIN = 200
 _LARGE = 1e308  # no number below is infinite
 Report = Callable[[Iterable[str | int], str], None]
@@ -77,6 +79,14 @@ class Numbers:
             if not self._depends_on_wrong(number):
                 report(key, str(error) if isinstance(number, str) else error.message)
             return math.nan
+
+    def check_amount(self, report: Report, key: Iterable[str | int], number: Number) -> float:
+        """As :meth:`check_number`, also of a number whose products would not be finite."""
+        amount = self.check_number(report, key, number)
+        if abs(amount) > LARGEST:
+            report(key, f"{amount:g} is too large: at most {LARGEST:g}")
+            return math.nan
+        return amount
 
     def _depends_on_wrong(self, number: Number) -> bool:
         """Whether the cause is a dimension reported already."""

@@ -14,13 +14,14 @@ from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.mechanism.bodies import Measured, Shapes
 from linkwork.mechanism.description import Key, Problems
+from linkwork.mechanism.dimensions import LARGEST
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.friction import Friction
 from linkwork.mechanism.link_shapes import link_shapes
 from linkwork.mechanism.linkage_checks import check_linkage
 from linkwork.mechanism.part.index import PARTS, JoinedBodies
-from linkwork.mechanism.part.part import LARGEST, Part, PartChecks, carriers, turning_links
+from linkwork.mechanism.part.part import Part, PartChecks, carriers, turning_links
 
 __all__ = ["Draft"]
 

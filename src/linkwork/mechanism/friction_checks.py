@@ -32,7 +32,7 @@ def check_friction(linkage: JoinedBodies, problems: Problems) -> None:
         else:
             checks.add(f"is neither a pin nor a part {choices('names', [*linkage.points, *parts])}")
             continue
-        amount = checks.number(friction.mu, "mu")
+        amount = checks.amount(friction.mu, "mu")
         if amount < 0.0:
             checks.add(f"must not be negative, got {amount:g}", "mu")
         for size in ("radius", "length"):

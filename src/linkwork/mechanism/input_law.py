@@ -26,7 +26,7 @@ _SECONDS = {"ms": 1e-3, "s": 1.0, "min": 60.0}
 LAW_KEYS = (
     Key("law", Text((*INPUT_LAWS, *THROUGH)), "Motion law of the input", required=True),
     Key("over", Measured("0.5 s"), "Duration; a number is in seconds"),
-    Key("by", NumberKey("driven"), "Displacement of the input; default 0"),
+    Key("by", NumberKey("driven"), "Displacement of the input; a dwell has none"),
     Key("times", ListOf(NumberKey(), "time", 1), "Of a spline or table: seconds since its begin"),
     Key("values", ListOf(NumberKey("driven"), "value", 1), "The displacements at these times"),
 )
@@ -46,8 +46,8 @@ class LawSegment:
         from rest to rest; ``table``: straight lines.
     over : number or str, optional
         The duration: ``"0.5 s"``, ``"200 ms"``; a number is in seconds.
-    by : number
-        The displacement, in file units.
+    by : number, optional
+        The displacement, in file units; only a dwell has none.
     times, values : tuple of number
         Of ``spline`` and ``table``: times [s] and displacements since the segment's beginning.
 
@@ -62,7 +62,7 @@ class LawSegment:
 
     law: str
     over: Number | None = None
-    by: Number = 0
+    by: Number | None = None
     times: tuple[Number, ...] = ()
     values: tuple[Number, ...] = ()
 
@@ -86,7 +86,7 @@ class LawSegment:
 
     def displacement(self, numbers: Numbers) -> float:
         """How far the input moves, in file units."""
-        return self.through(numbers)[-1][1] if self.law in THROUGH else numbers(self.by)
+        return self.through(numbers)[-1][1] if self.law in THROUGH else numbers(self.by or 0)
 
 
 def seconds(time: Number, numbers: Numbers) -> float:
@@ -120,7 +120,7 @@ def _mistakes(segment: LawSegment, numbers: Numbers) -> Iterator[tuple[tuple[str
         yield ("law",), f"must be one of {', '.join(known)}, got {segment.law}"
         return
     by_points = segment.law in THROUGH
-    if by_points and (segment.over is not None or segment.by != 0):
+    if by_points and (segment.over is not None or segment.by is not None):
         yield (), f"a {segment.law} has times and values instead of over and by: leave these out"
         return
     if by_points and not (segment.times and len(segment.times) == len(segment.values)):
@@ -132,14 +132,26 @@ def _mistakes(segment: LawSegment, numbers: Numbers) -> Iterator[tuple[tuple[str
     if not by_points and segment.over is None:
         yield ("over",), 'is missing: the duration, as in over = "0.5 s"'
         return
-    try:
-        over, by = segment.duration(numbers), segment.displacement(numbers)
-        times = [t for t, _ in segment.through(numbers)] if by_points else []
-    except ExpressionError as error:
-        yield ("times" if by_points else "over",), error.message
+    if not by_points and segment.by is None and segment.law != "dwell":
+        yield ("by",), "is missing: how far the input moves, as in by = 90"
         return
-    if by_points and min(np.diff(times)) <= 0.0:
-        yield ("times",), "must increase from 0"
+    own: list[tuple[tuple[str | int, ...], Number | None]]
+    own = [(("over",), segment.over), (("by",), segment.by)]
+    for name in ("times", "values"):
+        own += [((name, k), number) for k, number in enumerate(getattr(segment, name))]
+    wrong = False
+    for key, number in own:
+        try:
+            seconds(0 if number is None else number, numbers)
+        except ExpressionError as error:
+            wrong = True
+            yield key, error.message
+    if wrong:
+        return
+    over, by = segment.duration(numbers), segment.displacement(numbers)
+    steps = np.diff([t for t, _ in segment.through(numbers)]) if by_points else np.ones(1)
+    if min(steps) <= 0.0:
+        yield ("times", int(np.flatnonzero(steps <= 0.0)[0])), "must increase from 0"
     elif over <= 0.0:
         yield ("over",), f"must be a positive time, got {over:g}"
     elif segment.law == "dwell" and by:

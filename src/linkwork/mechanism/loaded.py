@@ -11,6 +11,7 @@ from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.units import FORCES, LENGTHS, MASSES
 from linkwork.mechanism.description import Description, Problems
+from linkwork.mechanism.dimensions import LARGEST
 from linkwork.mechanism.field_types import check_entries
 from linkwork.mechanism.mass import Gravity, Mass
 from linkwork.mechanism.stop import Stop
@@ -101,18 +102,20 @@ def check_masses(loaded: LoadedBodies, problems: Problems) -> None:
         for field, message in _mistakes(loaded, link, mass):
             problems.add((*key, field), message)
         for field in ("mass", "inertia"):
-            amount = loaded.numbers.check_number(problems.add, (*key, field), getattr(mass, field))
+            amount = loaded.numbers.check_amount(problems.add, (*key, field), getattr(mass, field))
             if amount < 0:
                 problems.add((*key, field), f"must not be negative, got {amount:g}")
         for k, number in enumerate(mass.center or ()):
-            loaded.numbers.check_number(problems.add, (*key, "center", k), number)
+            loaded.numbers.check_amount(problems.add, (*key, "center", k), number)
 
 
 def _check_gravity(loaded: LoadedBodies, problems: Problems) -> None:
     if loaded.gravity is None:
         return
     try:
-        loaded.gravity.acceleration(loaded.numbers, loaded.length)
+        size = loaded.gravity.acceleration(loaded.numbers, loaded.length)
+        if abs(size) > LARGEST:
+            problems.add(("gravity", "size"), f"{size:g} is too large: at most {LARGEST:g}")
     except ExpressionError as error:
         problems.add(("gravity", "size"), error.message)
     if loaded.gravity.angle is not None:

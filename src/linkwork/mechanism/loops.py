@@ -121,7 +121,20 @@ class Loops(_Equations, LoadedBodies):
         check_masses(self, problems)
         for k, load in enumerate(self.loads):
             load.check_in(self, partial(_add, problems, ("loads", k)))
+        self._check_turning(problems)
         problems.raise_any(f'mechanism "{self.name}"')
+
+    def _check_turning(self, problems: Problems) -> None:
+        """Report what needs the rotation of a link of one point, which loops do not tell."""
+        single = {link for link, points in self.links.items() if len(points) == 1}
+        remedy = "has only one point, so that its rotation is not known: give it a second one"
+        for link, mass in self.masses.items():
+            if link in single and mass.inertia != 0:
+                problems.add(("masses", link, "inertia"), f'"{link}" {remedy}, or leave it out')
+        for k, load in enumerate(self.loads):
+            for field, name in (("link", load.link), ("with", load.turns_with)):
+                if name in single and (field == "with" or load.torque is not None):
+                    problems.add(("loads", k, field), f'"{name}" {remedy}')
 
     @property
     def carried(self) -> Mapping[str, tuple[str, ...]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MOTOR_KEYS", "Motor"]
 
+#: A path of keys.
+Keys = tuple[str | int, ...]
 MOTOR_KEYS = (
     Key("stall", NumberKey("length"), "Torque, or force, at rest; constant without a free speed"),
     Key("free_speed", Speed(), "Speed at which it has no torque, as 1500 rpm"),
@@ -66,29 +69,54 @@ class Motor:
         """Whether its torque is the same at all speeds."""
         return self.free_speed is None and not self.speeds
 
-    def mistakes(self, kind: str, numbers: Numbers, length: str) -> Iterator[tuple[str, str]]:
-        """Keys with what is wrong; parameters as of :func:`speed_per_second`."""
+    def mistakes(self, kind: str, numbers: Numbers, length: str) -> Iterator[tuple[Keys, str]]:
+        """Keys below the motor with what is wrong; parameters as of :func:`speed_per_second`."""
+        contradiction = self._contradiction()
+        if contradiction is not None:
+            yield contradiction
+            return
+        problems: list[tuple[Keys, str]] = []
+        torques: dict[Keys, Number] = {
+            ("torques", k): torque for k, torque in enumerate(self.torques)
+        }
+        if self.stall is not None:
+            torques = {("stall",): self.stall}
+        for key, torque in torques.items():
+            numbers.check_amount(lambda at, told: problems.append((tuple(at), told)), key, torque)
+        yield from problems
+        below = -math.inf
+        for key, speed in self._speeds:
+            try:
+                found = speed_per_second(speed, kind, numbers, length)
+            except ExpressionError as error:
+                yield key, error.message
+                continue
+            if key == ("free_speed",) and found == 0.0:
+                yield key, "must not be 0"
+            elif found <= below:
+                yield key, f"must rise: {speed} is not above the speed before it"
+            below = found
+
+    @property
+    def _speeds(self) -> Iterator[tuple[Keys, Number]]:
+        if self.free_speed is not None:
+            yield ("free_speed",), self.free_speed
+        for k, speed in enumerate(self.speeds):
+            yield ("speeds", k), speed
+
+    def _contradiction(self) -> tuple[Keys, str] | None:
+        """Fields that exclude each other, or are incomplete."""
         if (self.stall is None) == (not self.speeds):
             what = "both" if self.speeds else "neither"
-            yield "stall", f"a motor has either a stall torque or a table, this has {what}"
-            return
+            return ("stall",), f"a motor has either a stall torque or a table, this has {what}"
+        if self.speeds and self.free_speed is not None:
+            return ("free_speed",), "is used with stall only"
         if len(self.speeds) != len(self.torques):
             counts = f"{len(self.speeds)} speeds and {len(self.torques)} torques"
-            yield "speeds", f"need as many torques as speeds; there are {counts}"
-            return
-        try:
-            given = (self.stall,) if self.stall is not None else self.torques
-            for torque in given:
-                numbers(torque)
-            if self.free_speed is not None:
-                free = speed_per_second(self.free_speed, kind, numbers, length)
-                if free == 0.0 or self.speeds:
-                    yield "free_speed", "must not be 0, and is used with stall only"
-            rising = [speed_per_second(speed, kind, numbers, length) for speed in self.speeds]
-            if rising and min(np.diff(rising)) <= 0.0:
-                yield "speeds", "must rise"
-        except ExpressionError as error:
-            yield ("free_speed" if self.free_speed is not None else "stall"), error.message
+            return ("speeds",), f"need as many torques as speeds; there are {counts}"
+        if len(self.speeds) == 1:
+            return ("speeds",), "need two at least: a constant torque is written as stall"
+        return None
 
     def curve(self, kind: str, numbers: Numbers, length: str) -> Callable[[Array], Array]:
         """The torque over speeds (B,) in the unit of the file per second."""

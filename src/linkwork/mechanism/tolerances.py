@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from linkwork.foundation.errors import Problem, UnknownNameError, choices
@@ -10,7 +11,7 @@ from linkwork.foundation.names import canonical
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Description, Problems
 from linkwork.mechanism.draft import Draft
-from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.mechanism.varied_number import VariedNumber, number_named, varied_numbers
 
 __all__ = [
     "CLEARANCES",
@@ -68,7 +69,7 @@ def tolerance_problems(description: Description) -> list[Problem]:
         if varied in known:
             problems.add(key, f'is the same number as "{known[varied]}": give it once')
         known[varied] = name
-        _check_size(description, problems, (*key, "deviation"), number)
+        _check_size(description, problems, (*key, "deviation"), number, _limit(description, varied))
     if isinstance(description, Bodies):
         pins = pins_of(description)
         spelled = {canonical(point): point for point in pins}
@@ -76,16 +77,41 @@ def tolerance_problems(description: Description) -> list[Problem]:
             key = ("clearances", name)
             if canonical(name) not in spelled:
                 problems.add(key, f'"{name}" is no pin of two links {choices("pins", pins, name)}')
-            _check_size(description, problems, key, number)
+            limit = _extent(description), f"the largest length, {_extent(description):g}"
+            _check_size(description, problems, key, number, limit)
     return list(problems)
 
 
+def _limit(description: Description, varied: VariedNumber) -> tuple[float, str]:
+    """What a deviation must not reach, and what it is."""
+    if varied.table == "lengths":
+        own = varied.of(description)
+        return own, f"the length itself, {own:g}"
+    if varied.table == "angles":
+        return description.angle.turn, "a full turn"
+    extent = _extent(description)
+    return extent, f"the largest length, {extent:g}"
+
+
+def _extent(description: Description) -> float:
+    """The largest distance of two points, or the largest number of a mechanism without any."""
+    if isinstance(description, Draft):
+        places = [complex(*map(description.numbers, x)) for x in description.points.values()]
+        lengths = [description.numbers(each) for each in description.lengths.values()]
+        return max([*lengths, *(abs(a - b) for a in places for b in places)], default=math.inf)
+    given = (varied.of(description) for varied in varied_numbers(description))
+    return max(map(abs, given), default=math.inf)
+
+
 def _check_size(
-    description: Description, problems: Problems, key: tuple[str, ...], number: float | int | str
-) -> None:
+    description: Description, problems: Problems, key: tuple[str, ...], number: float | int | str,
+    limit: tuple[float, str],
+) -> None:  # fmt: skip
     amount = description.numbers.check_number(problems.add, key, number)
     if amount < 0:
         problems.add(key, f"must not be negative, got {amount:g}")
+    elif amount >= limit[0]:
+        problems.add(key, f"must be smaller than {limit[1]}, got {amount:g}")
 
 
 def clearances_of(description: Description) -> Iterator[tuple[str, float]]:

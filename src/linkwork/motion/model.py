@@ -36,6 +36,7 @@ from linkwork.motion.leading_input import leading_input
 from linkwork.motion.questions import question_problems
 from linkwork.motion.redundancy import check_redundancy
 from linkwork.motion.speeds import input_speed
+from linkwork.motion.stop_quantities import stop_problems
 from linkwork.results import quantities
 from linkwork.results.position import Position
 from linkwork.results.quantities.asked import Asked
@@ -303,7 +304,7 @@ def model_of(description: Description) -> Model:
     # what cannot be read is an error of the file, found with the others
     _ = model.speed
     unknown = question_problems(description.questions, model.quantities)
-    unknown += tolerance_problems(description)
+    unknown += tolerance_problems(description) + stop_problems(description, model.motion_quantities)
     if unknown:
         raise MechanismError(unknown, where)
     return model

@@ -38,5 +38,6 @@ def _cell(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.17g}"
+        # a zero has no sign in a table
+        return "" if math.isnan(value) else f"{value + 0.0:.17g}"
     return str(value)

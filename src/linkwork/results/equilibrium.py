@@ -10,19 +10,22 @@ __all__ = ["Equilibrium"]
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """An equilibrium of a mechanism with one input.
+    """An equilibrium of a mechanism.
 
     Parameters
     ----------
     input : float
-        The value of the input, in file units.
+        The value of the first input, in file units.
     values : Mapping[str, float]
         All variables by name, in file units.
     stable : bool
         Whether a small displacement leads back.
     frequency : float
         The natural frequency of small oscillations about a stable one [Hz]; of an unstable one
-        the rate 1/s at which a displacement grows, divided by 2π, negative.
+        the rate 1/s at which a displacement grows, divided by 2π, negative. With several inputs
+        the least of ``frequencies``.
+    frequencies : tuple of float
+        Those of all its modes, rising; one for each input.
 
     Examples
     --------
@@ -41,3 +44,4 @@ class Equilibrium:
     values: Mapping[str, float]
     stable: bool
     frequency: float
+    frequencies: tuple[float, ...]

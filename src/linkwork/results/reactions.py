@@ -46,6 +46,7 @@ class ForceStatus(CodedEnum):
         "at a dead point or change point the input has no finite effort: ask for a value beside it"
     )
     NO_POSITION = "there is no position: see its own status"
+    NO_LOAD = "a load has no finite value there: change its formula"
     HELD = (
         "friction holds the mechanism at rest: it takes any value up to its limit, and forces are "
         "not determined"
@@ -76,6 +77,8 @@ class Reactions:
     undetermined, lifted, slipping : Mapping[str, array of bool]
         Where a self-stress changes a quantity; where a joint that can only push would have to pull;
         where a rolling wheel would need more adhesion.
+    undefined : Mapping[str, array of bool]
+        Where formulas of loads have no finite value, by the place of the load.
     proved : array of bool
         Whether it is proved that friction leaves an equilibrium, or where ``SELF_LOCKING``, none.
 
@@ -100,10 +103,11 @@ class Reactions:
     undetermined: Mapping[str, BoolArray]
     lifted: Mapping[str, BoolArray]
     slipping: Mapping[str, BoolArray]
+    undefined: Mapping[str, BoolArray]
     proved: BoolArray
 
     def __post_init__(self) -> None:
-        for name in ("inputs", "values", "undetermined", "lifted", "slipping"):
+        for name in ("inputs", "values", "undetermined", "lifted", "slipping", "undefined"):
             table = {key: read_only(array) for key, array in getattr(self, name).items()}
             object.__setattr__(self, name, FrozenDict(table))
         object.__setattr__(self, "proved", read_only(self.proved))

@@ -9,8 +9,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
+from linkwork.foundation.paths import as_path, unwritten
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
@@ -79,8 +78,7 @@ def save_text(text: str, path: Path | str) -> None:
         target = target.resolve()
         _replace(target, text.encode("utf-8"))
     except (OSError, ValueError, RuntimeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise InputError(f'"{path}" cannot be written: {reason}') from None
+        raise unwritten(path, error) from None
 
 
 def _replace(target: Path, data: bytes) -> None:

@@ -50,6 +50,7 @@ FORMAT = 1
 MARGIN = 0.05  # margin as a fraction of the drawing
 _NOTHING = -400.0  # exponent written for 0, below that of any float
 _COARSE = 0.001  # in decades: precision of residuals and radii
+_NO_COLUMN = PackedColumn(step=1.0, order=0, content="")
 
 _Kind = TypeVar("_Kind")
 
@@ -109,12 +110,14 @@ def drawn_page(
     pack: Pack = packed,
     asked: Sequence[str] = (),
     brief: bool = False,
+    rates: bool = True,
 ) -> PageData:
     """The data of a page from drawn motions.
 
     ``pack`` writes the columns: :func:`~linkwork.viewer.packing.unpressed` is fast, for a page that
     is replaced soon, but eight times as large. ``asked`` are further quantities, rates and numbers
-    of motions by name; ``brief``: no numbers of motions.
+    of motions by name; ``brief``: no numbers of motions; without ``rates``: empty columns
+    for the rates of points.
     """
     check_forces(forces, next(iter(motions.values())).points)
     first, measures = next(iter(motions.values())), scenes[0].scene.measures
@@ -135,6 +138,7 @@ def drawn_page(
         motions=tuple(
             replace(
                 _motion(name, motion, scene, () if loops is None else loops(motion), pack),
+                points=tuple(_points(motion, pack, rates)),
                 columns=tuple(columns_of(motion, pack, asked)),
                 reactions=tuple(reactions_of(motion)),
                 numbers=() if brief else tuple(numbers_of(motion, asked)),
@@ -167,7 +171,7 @@ def _motion(
         speed=motion.speed or 0.0,
         backwards=any(part.backwards for part in motion.skeleton.driven[:1]),
         columns=(),
-        points=tuple(_points(motion, pack)),
+        points=(),
         turns=turns,
         frames=frames,
         parts=parts,
@@ -187,8 +191,12 @@ def _summary(motion: Motion) -> str:
     return f"{text}, {proved} proved" if proved else text
 
 
-def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
+def _points(motion: Motion, pack: Pack, rates: bool) -> Iterator[PointData]:
     still, found = set(motion.skeleton.fixed), motion.found
+
+    def rate(values: Array) -> PackedColumn:
+        return pack(values, found, rate=True) if rates else _NO_COLUMN
+
     for name, (x, y) in motion.points.items():
         yield PointData(
             name=name,
@@ -196,10 +204,10 @@ def _points(motion: Motion, pack: Pack) -> Iterator[PointData]:
             drawn=name not in still,
             x=pack(x.value, found),
             y=pack(y.value, found),
-            dx=pack(x.first, found, rate=True),
-            dy=pack(y.first, found, rate=True),
-            ddx=pack(x.second, found, rate=True),
-            ddy=pack(y.second, found, rate=True),
+            dx=rate(x.first),
+            dy=rate(y.first),
+            ddx=rate(x.second),
+            ddy=rate(y.second),
         )
 
 

@@ -87,6 +87,18 @@ def test_a_simulation_has_the_rows_events_and_table_of_the_library(swing: Workbe
     assert len(found.page.motions[0].limits) == len(found.events)
 
 
+def test_several_inputs_have_start_speeds_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "double.toml"
+    path.write_text(lw.example_text("double-pendulum"), encoding="utf-8")
+    bench = Workbench(MechanismFile(path), lw.loads)
+    found = simulated(bench, until=0.2, start_speeds={"upper": "20 deg/s", "lower": ""})
+    own = lw.example("double-pendulum").simulate(0.2, start_speed={"upper": "20 deg/s"})
+    assert (found.rows, found.complete) == (len(own), True)
+    head, *rows = csv_of(bench)
+    column = [name.partition(" ")[0] for name in head.split(",")].index("upper")
+    assert [float(row.split(",")[column]) for row in rows] == pytest.approx(own["upper"], rel=1e-12)
+
+
 def test_rows_are_close_enough_for_a_long_motion_to_look_smooth(swing: Workbench) -> None:
     assert simulated(swing, until=18.0).rows > 18.0 / 0.041
     (refused,) = swing.handle(ask.Simulate(until=10.0, step=1e-4))
@@ -108,7 +120,7 @@ def test_rest_keeps_its_rows_and_the_order_of_time() -> None:
     [
         (("bar = { mass = 1, center = [1, 0] }", ""), {}, "has mass", ["masses", "motor"]),
         (("[input]", '[input]\nlaw = "180+90*t"\nto = 1'), {}, "A law drives", ["text"]),
-        (('of = "bar"', 'of = "bra"'), {}, 'no "bra"', ["stops", "start"]),
+        (('of = "bar"', 'of = "bra"'), {}, 'no "bra"', []),
         (("to = 300", "to = 100"), {}, "beyond its stop", ["stops", "start"]),
         (("", ""), {"until": "soon"}, 'got "soon"', ["start"]),
         (("", ""), {"until": -1.0}, "positive time", ["start"]),

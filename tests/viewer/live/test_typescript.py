@@ -23,6 +23,7 @@ def test_a_request_has_its_kind_and_may_leave_out_what_has_a_default() -> None:
         "  value: number | string;",
         "  any_formula?: boolean;",
         "  live?: boolean;",
+        "  rates?: boolean;",
     ]
     assert "  edits: readonly (LiveEdit)[];" in interface("Together")
     assert "  step?: number | string | null;" in interface("SetInput")

@@ -159,6 +159,25 @@ def test_dragging_gives_cycles_and_one_step_of_history(bench: Workbench) -> None
     assert '"A B" = 126' in only(bench.handle(ask.Redo()), tell.FileState).text
 
 
+def test_rates_of_points_are_left_out_during_a_drag_that_does_not_show_them(
+    bench: Workbench,
+) -> None:
+    bench.opened()
+    pages = []
+    for live, rates in ((True, True), (True, False), (False, False)):
+        edit = ask.SetNumber(name="A B", value=121, live=live, rates=rates)
+        page = only(bench.handle(edit), tell.MotionFound).page
+        assert page is not None
+        pages.append(page)
+    (with_rates,), (without,), (final,) = (page.motions for page in pages)
+    for one, bare, last in zip(with_rates.points, without.points, final.points, strict=True):
+        assert len(bare.x.content) == len(one.x.content)
+        for name in ("dx", "dy", "ddx", "ddy"):
+            assert getattr(bare, name).content == ""
+            assert getattr(one, name).content != ""
+            assert getattr(last, name).content != ""
+
+
 def test_a_drag_that_is_never_let_go_is_kept(bench: Workbench) -> None:
     bench.handle(ask.SetNumber(name="A B", value=121, live=True))
     bench.handle(ask.SetNumber(name="O4 B", value=82, live=True))

@@ -28,20 +28,34 @@ from tests.viewer.web.comparing import differences
 _FOLDER = os.environ.get("LINKWORK_PYODIDE", "")
 _READY = ".lw[data-row]"  # the first cycle is shown
 _PATIENCE = 60_000  # [ms]: others may use the cores
-#: Keeps the worker of the page and what it says.
+#: Keeps the worker of the page, what it says and what it does.
 _LISTENING = """
 window.said = [];
+window.done = [];
 window.Worker = class extends Worker {
   constructor(...given) {
     super(...given);
     window.engine = this;
     this.addEventListener("message", ({data}) => {
       if (typeof data === "string") window.said.push(data);
+      else window.done.push(data.doing ?? Object.keys(data)[0]);
     });
   }
 };
 delete window.showSaveFilePicker;
 """
+#: The first bytes of the snapshot that is kept, or "" if there is none; it can be damaged.
+_SNAPSHOT = """async (damage) => {
+  const cache = await caches.open((await caches.keys())[0]), place = "https://linkwork.invalid/snapshot";
+  const kept = await cache.match(place);
+  if (!kept) return "";
+  const bytes = new Uint8Array(await kept.arrayBuffer());
+  if (damage) {
+    bytes.fill(0, 0, 64);
+    await cache.put(place, new Response(bytes, { headers: kept.headers }));
+  }
+  return bytes.subarray(0, 64).join();
+}"""
 
 pytestmark = pytest.mark.skipif(
     not _FOLDER, reason="needs LINKWORK_PYODIDE, a folder as scripts/web_files collects it"
@@ -196,6 +210,11 @@ def test_files_are_exported_or_the_missing_package_is_named(open_web: Open, site
 def test_a_newer_change_cancels_a_cycle_that_is_being_solved(open_web: Open, site: Site) -> None:
     page = open_web(f"{site.address}#example=jansen-leg")
     page.wait_for_selector(_READY)
+    assert_cancelled(page)
+
+
+def assert_cancelled(page: Any) -> None:
+    """Of two changes of Jansen's leg only the newer is solved."""
     changes = [
         json.dumps({"kind": "set_number", "name": "A B", "value": 50 + k / 10, "id": 1000 + k})
         for k in range(2)
@@ -268,26 +287,47 @@ def test_the_second_visit_needs_no_network(open_web: Open, site: Site) -> None:
     assert told(page, "motion_found")["missing"] == 0
 
 
-@pytest.mark.extended
-def test_a_prepared_visit_streams_python_from_the_cache(open_web: Open, site: Site) -> None:
-    page = open_web(f"{site.address}#example=four-bar")
+def with_snapshot(page: Any) -> Any:
+    """A page whose next visits start from a snapshot, without a network."""
     page.wait_for_selector(_READY)
     page.evaluate("() => navigator.serviceWorker.ready.then(() => undefined)")
-    kept = """async () => {
-      const [name] = await caches.keys();
-      return (await (await caches.open(name)).match("engine/prepared")) !== undefined;
-    }"""
     for _ in range(_PATIENCE // 1000):
-        if page.evaluate(kept):
+        if page.evaluate(_SNAPSHOT, None):
             break
         page.wait_for_timeout(1000)
     page.context.set_offline(True)
-    page.reload()
+    return page
+
+
+@pytest.mark.extended
+def test_a_later_visit_starts_from_a_snapshot_and_solves_as_python_does(
+    open_web: Open, site: Site, tmp_path: Path
+) -> None:
+    page = with_snapshot(open_web(f"{site.address}#example=four-bar"))
+    page.goto(f"{site.address}#example=jansen-leg")
     page.wait_for_selector(_READY)
+    assert page.evaluate("() => window.done") == ["Starting Python …", "Solving …"]
     (worker,) = page.workers
     loaded = worker.evaluate("performance.getEntriesByType('resource').map(({ name }) => name)")
     assert [name for name in loaded if "wasm" in name]  # the worker's own request
-    assert told(page, "motion_found")["missing"] == 0
+    assert_cancelled(page)
+    set_slider(page, "O A", 15.5, live=False)
+    page.locator("[data-unsaved=true]").wait_for()
+    page.wait_for_function("() => window.said.some((said) => said.includes('15.5'))")
+    assert_same(page, driven_examples()[::8], tmp_path)
+
+
+@pytest.mark.extended
+def test_a_snapshot_that_cannot_be_read_is_made_again(open_web: Open, site: Site) -> None:
+    page = with_snapshot(open_web(f"{site.address}#example=four-bar"))
+    damaged = page.evaluate(_SNAPSHOT, "damage")
+    page.reload()
+    page.wait_for_selector(_READY)
+    done = page.evaluate("() => window.done")
+    assert done == ["Starting Python …", "again", "Starting Python …", *done[3:]]
+    assert "Loading the solver …" in done
+    with_snapshot(page)
+    assert page.evaluate(_SNAPSHOT, None) != damaged
 
 
 @pytest.mark.extended

@@ -25,6 +25,7 @@ from linkwork.batch.study.job import Part
 from linkwork.batch.study.study import DESIGN, Study
 from linkwork.batch.study.zarr_files import LEDGER, METADATA, ZarrFiles
 from linkwork.foundation.errors import InputError, key_text
+from linkwork.foundation.paths import unwritten
 
 if sys.platform == "win32":
     import msvcrt
@@ -199,7 +200,7 @@ def _make(path: Path, files: Mapping[str, bytes], study: Study) -> None:
             (part / name).write_bytes(data)
         os.rename(part, path)
     except OSError as error:
-        raise InputError(f'cannot write "{path}": {error.strerror or error}') from None
+        raise unwritten(path, error) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
 

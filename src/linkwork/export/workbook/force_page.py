@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from linkwork.equations.compiling import coordinate_name
+from linkwork.equations.model import Variable
 from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import FIRST, FORCES, Book, column_name
 from linkwork.export.workbook.load_cells import LoadCells
 from linkwork.export.workbook.page_layout import print_table
+from linkwork.export.workbook.partial_page import partial_key
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Name, names_in
+from linkwork.forces.drives import effort_kind, effort_name
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.results.quantity import Kind
 
@@ -26,11 +29,14 @@ _SPAN = "((x1-x0)^2+(y1-y0)^2)"
 
 @dataclass
 class ForceColumns:
-    """The keys of what acts: (point, link, x, y) of forces, (link, key) of torques."""
+    """The keys of what acts: (point, link, x, y) of forces, (link, key) of torques; the names of
+    efforts by key.
+    """
 
     forces: list[tuple[str, str | None, str, str]] = field(default_factory=list)
     torques: list[tuple[str, str]] = field(default_factory=list)
     masses: list[str] = field(default_factory=list)
+    efforts: dict[str, str] = field(default_factory=dict)
     of: dict[str, int] = field(default_factory=dict)
 
 
@@ -75,11 +81,10 @@ class _Page:
             else:
                 self._torsion(spring.name, *spring.links)
         self._effort()
-        sheet.write(
-            1, 0,
-            "effort = -Σ (force · velocity + torque · angular velocity) / speed of the input, "
-            "with the forces of inertia", book.style["note"],
-        )  # fmt: skip
+        whole = "effort = -Σ (force · velocity + torque · angular velocity) / speed of the input"
+        alone = "effort = -Σ (force · rate + torque · angular rate by this input alone)"
+        note = f"{alone if self.each else whole}, with the forces of inertia"
+        sheet.write(1, 0, note, book.style["note"])
         book.group_heads(sheet, self.groups)
         print_table(sheet, [6, *[_WIDTH] * (self.end - 1)], 2, book.last - 1)
         sheet.freeze_panes(FIRST, 2)
@@ -108,6 +113,26 @@ class _Page:
         self.columns.of[key] = self.end
         self.end += 1
         return key
+
+    def _moving(self, key: str, title: str, unit: str, text: str, names: Mapping[str, str]) -> None:
+        """A column of a speed; with several inputs also of that by each alone."""
+        self._add(key, title, unit, text, names)
+        for which in self.each:
+            own = {name: self._by(used, which) for name, used in names.items()}
+            self._add(
+                partial_key(key, which), f"{title} by {self.book.shown(which)}", "", text, own
+            )
+
+    def _by(self, key: str, which: Variable) -> str:
+        """The key of a rate by one input alone; other keys stay."""
+        own = partial_key(key, which)
+        return own if own in self.book.values else key
+
+    @property
+    def each(self) -> Sequence[Variable]:
+        """The inputs, if there are several."""
+        inputs = self.book.model.equations.inputs
+        return inputs if len(inputs) > 1 else ()
 
     def _rates(self, point: str, order: int, stem: str) -> tuple[dict[str, str], dict[str, str]]:
         """Names for the rates of a point: those that have cells, and "0" for the others."""
@@ -147,7 +172,8 @@ class _Page:
             for order, word, per in _SPINS:
                 text = f"(ux*(by-ay)-uy*(bx-ax))/sqrt({_SPAN})"
                 text, rates = self._formula(text, (first, order, "a"), (others[0], order, "b"))
-                self._add(f"{link} spin {order}", word, per, text, {**names, **own, **rates})
+                add = self._moving if order == 1 else self._add
+                add(f"{link} spin {order}", word, per, text, {**names, **own, **rates})
         else:
             self._turning_wheel(link)
         self.groups.append((f"Direction of {link}", start, self.end - 1))
@@ -162,7 +188,8 @@ class _Page:
         for order, word, per in _SPINS:
             key = rate_key(symbol, order)
             own = {"q": key} if key in self.book.values else {}
-            self._add(f"{link} spin {order}", word, per, "q" if own else "0", own)
+            add = self._moving if order == 1 else self._add
+            add(f"{link} spin {order}", word, per, "q" if own else "0", own)
 
     def _mass(self, link: str) -> None:
         """Weight and inertia of a link, and their virtual work."""
@@ -197,7 +224,7 @@ class _Page:
         for axis in "xy":
             text, rates = self._formula(speeds[axis], (first, 1, "v"))
             key = f"{link} speed {axis}"
-            self._add(key, f"velocity {axis}", f"{length}/s", text, {**names, **rates})
+            self._moving(key, f"velocity {axis}", f"{length}/s", text, {**names, **rates})
         for axis in "xy":
             text = f"k*m*(g{axis}-on*({bends[axis]}))"
             text, rates = self._formula(text, (first, 2, "s"))
@@ -317,17 +344,22 @@ class _Page:
         self.groups.append((f"Spring {name}", start, self.end - 1))
 
     def _effort(self) -> None:
-        """The sum of virtual work over the speed of the leading input."""
-        lead = self.book.leading
-        names = {"s": rate_key(lead.symbol, 1)}
-        terms = []
-        for k, term in enumerate(self.work):
-            load, _, moved = term.partition("*")
-            names |= {f"f{k}": load, f"v{k}": moved}
-            terms.append(f"f{k}*v{k}")
-        # eq. (71), both sides times the speed of the input
-        text = f"-({'+'.join(terms)})/s" if terms else "0"
-        kind = Kind.FORCE if lead.kind == "length" else Kind.MOMENT
-        shown = f"{lead.name}.effort"
-        self.groups.append(("Virtual work", self.end, self.end))
-        self._add("effort", shown, self.book.model.units.of(kind), text, names)
+        """The sum of virtual work over the speed of the input."""
+        start = self.end
+        for which in self.book.model.equations.inputs:
+            names: dict[str, str] = {}
+            terms = []
+            for k, term in enumerate(self.work):
+                load, _, moved = term.partition("*")
+                names |= {f"f{k}": load, f"v{k}": self._by(moved, which)}
+                terms.append(f"f{k}*v{k}")
+            # eq. (71), for one input both sides times its speed; "by input" the speed is 1
+            text = f"-({'+'.join(terms)})" if terms else "0"
+            if terms and not self.each:
+                names["s"] = rate_key(which.symbol, 1)
+                text = f"{text}/s"
+            unit = self.book.model.units.of(effort_kind(Kind(which.kind)))
+            key = f"effort {which.symbol}"
+            self.columns.efforts[key] = effort_name(which.name)
+            self._add(key, effort_name(which.name), unit, text, names)
+        self.groups.append(("Virtual work", start, self.end - 1))

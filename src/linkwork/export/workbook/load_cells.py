@@ -11,21 +11,21 @@ from linkwork.equations.compiling import coordinate_name
 from linkwork.export.formulas.cell_formula import CellFormula
 from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.workbook.book import Book
+from linkwork.export.workbook.page_layout import print_on_one_page
+from linkwork.export.workbook.part.index import has_cells, numbers_of
 from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.tree import Node, names_in
 from linkwork.forces.part.spring import wound_angle
 from linkwork.foundation.names import GROUND, canonical
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.dimensions import Number
-from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.load import Load
-from linkwork.mechanism.part.part import Part
+from linkwork.mechanism.part.part import carriers
 
 __all__ = ["LOADS", "LoadCells", "force_problem", "write_loads"]
 
 LOADS = "Loads"
-_GUIDES = (JointKind.PRISMATIC, JointKind.PIN_IN_SLOT)
 _DOWN = -math.pi / 2.0
 
 
@@ -34,11 +34,16 @@ def force_problem(book: Book) -> str | None:
     linkage = book.model.description
     if not isinstance(linkage, Linkage) or not linkage.loaded or not linkage.inputs:
         return ""
-    if len(linkage.inputs) > 1:
-        return "forces of several inputs have no cells"
-    others = [part for part in linkage.parts if not _has_cells(part)]
+    others = [part for part in linkage.parts if not has_cells(part)]
     if others:
-        return f"forces of {others[0].title.lower()}s have no cells"
+        return f"the forces of {others[0].label} ({others[0].title.lower()}) have no cells"
+    loose = [
+        point
+        for point, names in carriers(linkage).items()
+        if names and not any(name in linkage.links for name in names)
+    ]
+    if loose:
+        return f"the forces of {loose[0]}, a pin between cylinders, have no cells"
     turning = {variable.symbol for variable in book.variables}
     for spring in LoadCells(book, None).pulling:
         for link in spring.links or ():
@@ -55,13 +60,6 @@ def force_problem(book: Book) -> str | None:
                     if _key(book, name.name) is None:
                         return f'the load "{number}" uses {name.spelling}, which has no cell'
     return None
-
-
-def _has_cells(part: Part) -> bool:
-    """Whether the sheet of the equilibrium has the reactions of a part."""
-    if part.kind is None:  # a cylinder is a body
-        return not part.body
-    return part.kind in _GUIDES
 
 
 def _key(book: Book, name: str) -> str | None:
@@ -159,8 +157,11 @@ def write_loads(book: Book, sheet: Any) -> LoadCells:
         amounts = numbers(spring.stiffness), free, numbers(spring.damping)
         for word, value, unit in zip(("stiffness", "free", "damping"), amounts, units, strict=True):
             cells.number(f"{spring.name} {word}", f"{spring.name}_{word}", value, unit, "spring")
+    for name, word, value, kind, about in numbers_of(linkage):
+        cells.number(f"{name} {word}", f"{name}_{word}", value, book.model.units.of(kind), about)
     for k, load in enumerate(linkage.loads, start=1):
         _write_load(cells, k, load)
+    print_on_one_page(sheet, tall=0)
     return cells
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,7 +27,7 @@ from linkwork.foundation.names import canonical
 from linkwork.numerics.newton import corrections
 from linkwork.results.quantity import Kind, Rate
 
-__all__ = ["VelocityColumns", "planned_velocities", "write_velocities"]
+__all__ = ["VelocityColumns", "planned_velocities", "rates_of_block", "write_velocities"]
 
 _WIDTH = 14
 _WORDS = {1: "velocity", 2: "acceleration"}
@@ -163,20 +163,10 @@ class _Page:
             if series is not None:
                 own = series.first if order == 1 else series.second
                 found[:, c] = own[book.iterations.rows] * book.speed**order
-        live, before = book.iterations.live, dict(book.values)
-        for k in block.unknowns:  # of the last iteration's Jacobian
-            symbol = book.model.equations.unknowns[k].symbol
-            before[symbol] = book.iterations.values[-2][:, k]
+        live = book.iterations.live
         if book.rates.sides[b] and live.any():
-            jacobian, sides = (
-                np.array([[book.over_rows(part.value(values)) for part in line] for line in of])
-                for values, of in (
-                    (before, [row.slopes for row in block.rows]),
-                    (book.values, [[pair[order - 1]] for pair in book.rates.sides[b]]),
-                )
-            )
-            of_rows = np.moveaxis(jacobian, 2, 0)[live], np.moveaxis(sides[:, 0], 1, 0)[live]
-            found[live], _ = corrections(*of_rows)
+            sides = [pair[order - 1].value(book.values) for pair in book.rates.sides[b]]
+            found[live] = rates_of_block(book, b, sides)[live]
         return found
 
     def _rate(self, b: int, order: int, c: int, row: int) -> str:
@@ -215,3 +205,18 @@ class _Page:
 
     def _formulas(self, column: int, formula: CellFormula) -> Any:
         return self.book.column(self.sheet, column, formula, "number")
+
+
+def rates_of_block(book: Book, b: int, sides: Sequence[Any]) -> AnyArray:
+    """The rates of a block's unknowns by its right-hand sides, (R, n); NaN where no cells solve."""
+    block, live, before = book.closure.blocks[b], book.iterations.live, dict(book.values)
+    for k in block.unknowns:  # of the last iteration's Jacobian
+        symbol = book.model.equations.unknowns[k].symbol
+        before[symbol] = book.iterations.values[-2][:, k]
+    slopes = [[book.over_rows(part.value(before)) for part in row.slopes] for row in block.rows]
+    jacobian = np.moveaxis(np.array(slopes), 2, 0)
+    right = np.stack([book.over_rows(side) for side in sides], axis=1)
+    found = np.full((book.count, len(block.unknowns)), np.nan)
+    if live.any():
+        found[live], _ = corrections(jacobian[live], right[live])
+    return found

@@ -34,6 +34,7 @@ from linkwork.export.workbook.linkwork_page import write_linkwork
 from linkwork.export.workbook.load_cells import LOADS, force_problem, write_loads
 from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.page_layout import set_up_page
+from linkwork.export.workbook.partial_page import PARTIALS, write_partials
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
 from linkwork.foundation.errors import InputError, MissingPackageError
 from linkwork.motion.model import Model
@@ -102,7 +103,8 @@ def workbook_of(
     if not has_drawing(book):
         names.remove(DRAWING)
     if force_problem(book) is None:
-        names[-2:-2] = [LOADS, FORCES]
+        partials = [PARTIALS] if len(model.equations.inputs) > 1 else []
+        names[-2:-2] = [*partials, LOADS, FORCES]
         if DRAWING in names:
             names[-2:-2] = [EQUILIBRIUM]
     sheets = {name: workbook.add_worksheet(name, sheet_class) for name in names}
@@ -134,6 +136,8 @@ def _write_sheets(
     write_velocities(book, sheets[VELOCITIES], velocities, newton)
     if DRAWING in sheets:
         write_drawing(book, sheets[DRAWING], columns.of)
+    if PARTIALS in sheets:
+        write_partials(book, sheets[PARTIALS], newton)
     if LOADS in sheets:
         cells = write_loads(book, sheets[LOADS])
         forces = write_forces(book, sheets[FORCES], cells)

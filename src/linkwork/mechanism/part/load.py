@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from linkwork.expression.grammar import parse
+from linkwork.expression.grammar import CONSTANTS, parse
 from linkwork.expression.real_values import check_real
+from linkwork.expression.tree import constants_in
+from linkwork.expression.values import value
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey
-from linkwork.mechanism.dimensions import Number
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.dimensions import LARGEST, Number
 from linkwork.mechanism.loaded import LoadedBodies
 from linkwork.mechanism.part.part import LINK, POINT, Part, PartChecks
 
@@ -90,19 +93,31 @@ class Load(Part):
             if name is not None and name not in known:
                 what = "point" if field == "point" else "link"
                 add(f'{what} "{name}" is not defined {choices(f"{what}s", known, name)}', field)
+        fixed = loaded.carried.get(GROUND, ())
+        if self.link == GROUND:
+            add(f"is fixed: the {noun} has no effect, remove it", "link")
+        elif self.link is None and self.point in fixed:
+            add(f"{self.point} is fixed: the force has no effect, remove it", "point")
+        if self.turns_with == GROUND:
+            add("does not turn: leave it out, as the axes of ground are the default", "with")
         carried = loaded.carried.get(self.link or "", (self.point,))
         if self.force is not None and self.point not in carried:
             add(f'"{self.link}" does not carry {self.point}', "link")
         if self.force is not None and len(self.force) != 2:
             add(f"needs two components, got {len(self.force)}", "force")
         for key, number in self.formulas:
+            if not isinstance(number, str):
+                loaded.numbers.check_amount(lambda at, told: add(told, *at), key, number)
+                continue
             try:
-                if isinstance(number, str):
-                    check_real(parse(number, comparing=True), number, "a load")
-                else:
-                    loaded.numbers(number)
+                tree = parse(number, comparing=True)
+                check_real(tree, number, "a load")
+                for part in constants_in(tree, loaded.numbers.known.keys() | CONSTANTS.keys()):
+                    amount = value(part, loaded.numbers.known, loaded.angle, number)
+                    if abs(amount) > LARGEST:
+                        add(f"{amount:g} is too large: at most {LARGEST:g}", *key)
             except ExpressionError as error:
-                add(str(error) if isinstance(number, str) else error.message, *key)
+                add(str(error), *key)
 
     @property
     def formulas(self) -> tuple[tuple[tuple[str | int, ...], Number], ...]:

@@ -17,20 +17,18 @@ from linkwork.foundation.names import free_name
 from linkwork.foundation.value_types import check_values
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.description import Key, Problems
-from linkwork.mechanism.dimensions import Number
+from linkwork.mechanism.dimensions import LARGEST, Number
 from linkwork.mechanism.figures import Disc, Figure, Outline, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
 
 __all__ = [
-    "AGREE", "LARGEST", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
+    "AGREE", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
     "Inversion", "NamedPart", "Part", "PartChecks", "carriers", "pinned", "turning_links",
 ]  # fmt: skip
 
 #: Relative tolerance of redundant numbers.
 AGREE = 1e-9
 _MOST_UNEVEN = 1e6  # distances of neighbouring points of a curve, from the smallest to the largest
-#: The largest length: it keeps squares and quotients finite.
-LARGEST = 1e100
 
 POINT, LINK, SLIDER = Text(of="point"), Text(of="link"), Text(of="slider")
 POINT_PAIR = ListOf(Text(), "point", 2, 2)
@@ -318,6 +316,11 @@ class PartChecks:
         """The number, or NaN after reporting a problem."""
         key = (*self.key, *field)
         return self.linkage.numbers.check_number(self.problems.add, key, number)
+
+    def amount(self, number: Number, *field: str | int) -> float:
+        """A number that is limited so that products with it are finite."""
+        key = (*self.key, *field)
+        return self.linkage.numbers.check_amount(self.problems.add, key, number)
 
     def length(self, number: Number, *field: str | int) -> float:
         """A length or coordinate, limited so that its square is finite."""

@@ -96,11 +96,16 @@ class Spring(NamedPart):
             checks.add(f"needs either two points (between) or two links, it has {what}")
         elif self.between is not None:
             checks.ends(self.between)
+            ends = set(self.between)
+            alone = next((x for x, on in checks.linkage.links.items() if ends <= {*on}), None)
+            if self.pulls and len(ends) == 2 and alone is not None:
+                told = f'has both ends on "{alone}", where it does nothing: connect two links'
+                checks.add(told, "between")
         elif self.links is not None and checks.two(self.links, "link", "links"):
             for link in self.links:
                 checks.link(link, "links")
         for field in ("stiffness", "free", "damping"):
-            amount = checks.number(getattr(self, field), field)
+            amount = checks.amount(getattr(self, field), field)
             if amount < 0 and (field != "free" or self.links is None):
                 checks.add(f"must not be negative, got {amount:g}", field)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from linkwork.drawing.label_placement import Kept
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.status import Status
-from linkwork.mechanism.part.part import LARGEST
+from linkwork.mechanism.dimensions import LARGEST
 from linkwork.results.motion import Motion
 from linkwork.viewer.live import events as tell, requests as ask, result_events as telling
 from linkwork.viewer.live.alternative_starts import closing_input
@@ -43,6 +43,8 @@ class Cycle:
         The latest simulation of the current mechanism.
     owed : bool
         Whether a cycle was cancelled and no other has been sent since.
+    rates : bool
+        Whether rates of points are shown during a drag.
     hurried : callable
         Whether a newer change is waiting, which cancels a cycle.
     working : callable
@@ -52,6 +54,7 @@ class Cycle:
     def __init__(self, subject: Subject) -> None:
         self.hurried: Callable[[], bool] = lambda: False
         self.working: Callable[[float], None] = lambda fraction: None
+        self.rates = True
         self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones
         self.begin(subject)
 
@@ -198,7 +201,12 @@ class Cycle:
         mechanism, shown = self.subject.mechanism, self._shown
         equations = () if event.live else mechanism.equations().mathml()
         page = self._picture.page(
-            motion, equations, mechanism.moving_loops, asked=shown, brief=event.live
+            motion,
+            equations,
+            mechanism.moving_loops,
+            asked=shown,
+            brief=event.live,
+            rates=self.rates or not event.live,
         )
         return replace(event, page=page)
 

@@ -8,6 +8,7 @@ from enum import Enum
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismFileError
+from linkwork.foundation.paths import unwritten
 from linkwork.textfile.library import example_text
 from linkwork.textfile.toml_text import bytes_of, text_of
 from linkwork.textfile.writer import save_text
@@ -159,7 +160,7 @@ class MechanismFile:
             except FileExistsError:
                 continue
             except OSError as error:
-                raise InputError(f'"{beside}" cannot be written: {error.strerror}') from None
+                raise unwritten(beside, error) from None
         raise InputError(
             f'"{beside}" and all earlier names exist already: remove some of these files'
         )

@@ -39,11 +39,13 @@ class MotionPicture:
         *,
         asked: Sequence[str] = (),
         brief: bool = False,
+        rates: bool = True,
     ) -> PageData | None:
         """The data of a page; ``None`` without positions or points.
 
         ``asked``: further quantities by name. ``brief``: seven digits, no vectors and no numbers of
-        the motion, for a picture that is replaced soon; vectors between points are kept.
+        the motion, for a picture that is replaced soon; vectors between points are kept. ``rates``:
+        with rates of points.
         """
         if not motion.found.any() or not motion.points:
             return None
@@ -60,6 +62,7 @@ class MotionPicture:
             pack=shortened if brief else unpressed,
             asked=asked,
             brief=brief,
+            rates=rates,
         )
 
 

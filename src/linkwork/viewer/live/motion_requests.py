@@ -22,11 +22,13 @@ class Simulate:
     """Compute the motion in time, from 0 s to ``until``.
 
     ``at``: input values at the start, in file units, by default those of the guess; ``start_speed``
-    may have a unit, "60 rad/s"; ``change_points``: stop or straight; ``step``: between rows [s].
+    may have a unit, "60 rad/s"; ``start_speeds``: of several inputs by name; ``change_points``:
+    stop or straight; ``step``: between rows [s].
     """
 
     until: float | str
     start_speed: float | str = 0
+    start_speeds: dict[str, float | str] | None = None
     at: dict[str, float | str] | None = None
     change_points: str = "stop"
     step: float | str | None = None

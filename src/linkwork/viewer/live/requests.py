@@ -1,7 +1,8 @@
 """Requests of the page: one frozen dataclass per request.
 
 The name of a class in snake case is the ``kind`` of its message. ``live`` marks intermediate
-changes of a drag: they are displayed, and become one step of the history with the last change.
+changes of a drag: they are displayed, and become one step of the history with the last change;
+without ``rates`` their answers lack rates of points.
 """
 
 from __future__ import annotations
@@ -86,6 +87,7 @@ class SetNumber:
     value: float | str
     any_formula: bool = False
     live: bool = False
+    rates: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,8 +107,7 @@ class MovePoint:
 
 @dataclass(frozen=True, kw_only=True)
 class MovePoints:
-    """Move points of the drawing to other coordinates [length]; lengths between them and others
-    follow.
+    """Move points of the drawing to other places [length]; lengths between them and others follow.
 
     ``keep``: lengths that stay: a single point then moves along the circles that they leave to it.
     """
@@ -114,14 +115,14 @@ class MovePoints:
     places: dict[str, tuple[float, float]]
     keep: tuple[str, ...] = ()
     live: bool = False
+    rates: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
 class SetInput:
     """Set the driven quantity and its range; omitted fields do not change.
 
-    ``drive`` is link, joint, slider, cylinder or variable, ``name`` its name; ``speed`` may have a
-    unit, "300 rpm".
+    ``drive``: link, joint, slider, cylinder or variable; ``speed`` may have a unit: "300 rpm".
     """
 
     number: int = 0

@@ -61,7 +61,12 @@ def simulate(request: ask.Simulate, subject: Subject, progress: Callable[[float]
         until,
         step=step,
         at=at or None,
-        start_speed=_speed(units.speed(request.start_speed)),
+        start_speed={
+            name: _speed(units.speed(given))
+            for name, given in (request.start_speeds or {}).items()
+            if given != ""
+        }
+        or _speed(units.speed(request.start_speed)),
         change_points=request.change_points,
         progress=progress,
     )
@@ -126,10 +131,9 @@ def simulation_found(
 
 def not_simulated(error: InputError, subject: Subject) -> tell.SimulationFound:
     """Why there is no simulation, and the forms that mend it."""
-    message, stops = str(error), False
+    message = str(error)
     if isinstance(error, MechanismError):
         message = "; ".join(problem.message for problem in error.problems)
-        stops = any(problem.key[:1] == ("stops",) for problem in error.problems)
     return tell.SimulationFound(
         message=message[:1].upper() + message[1:],
         complete=False,
@@ -137,9 +141,7 @@ def not_simulated(error: InputError, subject: Subject) -> tell.SimulationFound:
         certified=0,
         energy="",
         events=(),
-        forms=()
-        if subject.solvable is None
-        else tuple(_forms(subject.description, message, stops)),
+        forms=() if subject.solvable is None else tuple(_forms(subject.description, message)),
         page=None,
     )
 
@@ -156,10 +158,8 @@ def _energy(motion: Motion) -> str:
     return f"{known[0]:.10g} at first, {known[-1]:.10g} at last {unit}"
 
 
-def _forms(
-    description: Description, message: str, stops: bool = False
-) -> Iterator[tell.FormOffered]:
-    for form in ("stops", "start") if stops else _mending(description, message):
+def _forms(description: Description, message: str) -> Iterator[tell.FormOffered]:
+    for form in _mending(description, message):
         yield tell.FormOffered(form=form, label=_LABELS[form])
 
 

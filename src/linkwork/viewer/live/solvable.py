@@ -8,6 +8,7 @@ from typing import Protocol
 
 from linkwork.equations.writing import EquationSheet
 from linkwork.mechanism.description import Description
+from linkwork.mechanism.dimensions import Number
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.results.circuits import Circuits
 from linkwork.results.configurations import Configurations
@@ -51,7 +52,7 @@ class Solvable(Protocol):
         *,
         step: float | None = None,
         at: At = None,
-        start_speed: float | str = 0,
+        start_speed: Number | Mapping[str, Number] = 0,
         change_points: str = "stop",
         progress: Callable[[float], None] | None = None,
     ) -> Motion:

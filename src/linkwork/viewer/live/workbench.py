@@ -142,6 +142,7 @@ class Workbench:
     def _edited(self, edit: ask.Edit) -> Events:
         """Apply a change, intermediate or final."""
         live = bool(getattr(edit, "live", False))
+        self.cycle.rates = bool(getattr(edit, "rates", True))
         drag = self._drag
         if drag is None:
             drag = Drag(kind=same_thing(edit), text=self._text_edits(), before=self._before())

@@ -1,9 +1,17 @@
-"use strict";(()=>{function*h(n){let e=new DataView(n),i=n.byteLength-22,t=e.getUint32(i+16,!0);for(let s=e.getUint16(i+10,!0);s>0;s-=1){let[a,l]=[e.getUint32(t+24,!0),e.getUint16(t+28,!0)],o=e.getUint32(t+42,!0),p=o+30+e.getUint16(o+26,!0)+e.getUint16(o+28,!0);yield{name:new TextDecoder().decode(new Uint8Array(n,t+46,l)),content:new Uint8Array(n,p,a)},t+=46+l+e.getUint16(t+30,!0)+e.getUint16(t+32,!0)}}var d="https://linkwork.invalid/",b="/lib/python3.13/site-packages",E=["python_stdlib.zip","site.zip"],y="/tmp/site.zip",g="/tmp/prepared.zip",P=3e3,U=`
-from linkwork_page import take, tell, turn
+"use strict";(()=>{function m(t){let{port1:e,port2:n}=new MessageChannel;e.postMessage(null,[t]),e.close(),n.close()}var w="https://linkwork.invalid/snapshot",U="linkwork-snapshot",W=1<<20,R=65536;async function E(t){let e=await t.match(w);if(!e)return null;let n=new Uint8Array(await e.arrayBuffer());return e.headers.get(U)===L(n)?n:null}function F(t,e){let{HEAPU8:n,LDSO:o}=t._module;if(Object.keys(o.loadedLibsByName).some(r=>r!=="__main__"&&!e.includes(r)))return null;let s=t.makeMemorySnapshot(),c=n.length-Math.ceil(t._module._sbrk(0)/R)*R;return s.subarray(0,s.length-c)}async function O(t,e){let n=0,o=new ReadableStream({pull(s){n<e.length?s.enqueue(e.subarray(n,n+=W)):s.close()}});await t.put(w,new Response(o,{headers:{[U]:L(e)}})).catch(()=>{}),m(e.buffer)}function L({length:t}){return`${t} ${navigator.userAgent}`}async function b(t){await t.delete(w)}var C=22,z=30,g=class{constructor(e){this.outside=e}memory=null;async bringIn(){this.memory=await this.outside.arrayBuffer()}leaveOutside(){this.memory&&m(this.memory),this.memory=null}read(e,n){return this.memory?.slice(e,n)??new FileReaderSync().readAsArrayBuffer(this.outside.slice(e,n))}async entries(){let{size:e}=this.outside,n=new DataView(await this.outside.slice(e-C).arrayBuffer()),o=await this.outside.slice(n.getUint32(16,!0),e-C).arrayBuffer(),s=new DataView(o),c=new Map;for(let r=0;r<o.byteLength;){let[i,d]=[s.getUint32(r+24,!0),s.getUint16(r+28,!0)],f=s.getUint32(r+42,!0)+z+d,y=new TextDecoder().decode(new Uint8Array(o,r+46,d));c.set(y,new k(this,f,f+i)),r+=46+d+s.getUint16(r+30,!0)+s.getUint16(r+32,!0)}return c}},k=class t{constructor(e,n,o){this.archive=e;this.start=n;this.end=o}get size(){return this.end-this.start}slice(e,n){return new t(this.archive,this.start+e,Math.min(this.start+n,this.end))}read(){return this.archive.read(this.start,this.end)}};var P="https://linkwork.invalid/",D="/lib/python3.13/site-packages",G=/^numpy\/(_core\/_multiarray_umath|linalg\/_umath_linalg)\..*\.so$/,J=2e4,V=`
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
 from linkwork.viewer.live.browser_desk import BrowserDesk
+`,q=`
+import gc
+
+desk = BrowserDesk(loads, example_text, lambda event: None, lambda: ())
+desk.begin("#example=four-bar")
+del desk
+gc.collect()
+`,Z=`
+from linkwork_page import take, tell, turn
 
 
 def pause():
@@ -13,19 +21,4 @@ def pause():
 
 desk = BrowserDesk(loads, example_text, tell, take, pause)
 begin, work = desk.begin, desk.work
-`,_=`
-from pathlib import Path
-
-from linkwork.viewer.live.bytecode import with_bytecode
-
-STDLIB = Path("/lib/python313.zip")
-
-steps = {
-    "python_stdlib.zip": with_bytecode(STDLIB, STDLIB, Path("${g}")),
-    "site.zip": with_bytecode(Path("${y}"), Path("${b}"), Path("${g}")),
-}
-
-
-def prepare(name):
-    return next(steps[name], 0) is None
-`,S=[],f=null,c=!1;self.onmessage=({data:n})=>{typeof n=="string"?(S.push(n),v()):x(n).catch(e=>self.postMessage({failed:String(e)}))};async function x({engine:n,files:e,fragment:i,kept:t,prepare:s,machine:a}){u("Starting Python …",.35);let{fetch:l}=self;self.fetch=async r=>a&&String(r).endsWith(".wasm")?l(a):R(String(r),e);let o=await loadPyodide({indexURL:d,lockFileContents:n.lock,packageBaseUrl:d});u("Loading the solver …",.7);for(let{name:r,content:A}of h(e["site.zip"])){let m=`${b}/${r}`;o.FS.mkdirTree(m.slice(0,m.lastIndexOf("/"))),o.FS.writeFile(m,A,{canOwn:!0})}s&&o.FS.writeFile(y,new Uint8Array(e["site.zip"]),{canOwn:!0});for(let r of Object.keys(e))delete e[r];let p=()=>S.splice(0);o.registerJsModule("linkwork_page",{take:p,tell:r=>self.postMessage(r),turn:F}),await o.runPythonAsync(U),u("Solving …",.9);let[w,k]=[o.globals.get("begin"),o.globals.get("work")];w(i,t?.name??"",t?.saved??"",t?.text??""),f="Suspending"in WebAssembly?()=>k.callPromising():()=>Promise.resolve(k()),await v(),s&&await D(o)}async function D(n){await new Promise(s=>setTimeout(s,P)),await n.runPythonAsync(_);let e=n.globals.get("prepare"),i=[...E],t=()=>{let[s]=i;if(s===void 0)n.FS.unlink(y);else if(c)setTimeout(t,P);else{if(!e(s)){let a=n.FS.readFile(g).buffer;n.FS.unlink(g),self.postMessage({prepared:{[s]:a}},[a]),i.shift()}setTimeout(t)}};t()}async function v(){if(!(c||f===null)){c=!0;try{for(;await f();)await F()}catch(n){self.postMessage({failed:String(n)})}c=!1}}function F(){return new Promise(n=>{let{port1:e,port2:i}=new MessageChannel;e.onmessage=()=>{e.close(),n()},i.postMessage(null)})}function R(n,e){let i=n.slice(d.length),t=i.endsWith(".wasm")?"application/wasm":"application/octet-stream",s=n.startsWith(d)?e[i]:void 0;return s?new Response(s,{headers:{"content-type":t}}):new Response(null,{status:404})}function u(n,e){self.postMessage({doing:n,done:e})}})();
+`,M=[],v=null,A=!1,u=null;self.onmessage=({data:t})=>{typeof t=="string"?(M.push(t),I()):Q(t).catch(async e=>{u?await j(u):self.postMessage({failed:String(e)})})};async function Q({engine:t,files:e,fragment:n,kept:o,store:s,machine:c}){S("Starting Python …",.35);let r=s===null?null:await caches.open(s),i=r&&await E(r);u=i&&r;let d=u&&setTimeout(j,J,u),f=new g(e["site.zip"]);i||await f.bringIn();let y=await f.entries(),p=new Map([...y].flatMap(([a,h])=>G.test(a)?[[`${D}/${a}`,h]]:[])),{fetch:N,_createPyodideModule:T}=self;self.fetch=async a=>c&&String(a).endsWith(".wasm")?N(c):X(String(a),e,p),self._createPyodideModule=a=>T(Object.assign(a,{dynamicLibraries:[...p.keys()]}));let l=await loadPyodide({indexURL:P,lockFileContents:t.lock,packageBaseUrl:P,...i?{_loadSnapshot:i}:{_makeSnapshot:r!==null}}),{WORKERFS:_}=l.FS.filesystems;_.reader={readAsArrayBuffer:a=>a.read()},l.FS.mount(_,{blobs:[...y].map(([a,h])=>({name:a,data:h}))},D),i?m(i.buffer):(S("Loading the solver …",.7),l.runPython(V)),r&&!i&&l.runPython(q);let B=r&&!i?F(l,[...p.keys()]):null,$=()=>M.splice(0);l.registerJsModule("linkwork_page",{take:$,tell:a=>self.postMessage(a),turn:K}),l.runPython(Z),d&&clearTimeout(d),S("Solving …",.9);let[H,x]=[l.globals.get("begin"),l.globals.get("work")];H(n,o?.name??"",o?.saved??"",o?.text??""),v="Suspending"in WebAssembly?()=>x.callPromising():()=>Promise.resolve(x()),await I(),f.leaveOutside(),r&&B&&await O(r,B)}async function j(t){await b(t),self.postMessage({again:M})}async function I(){if(!(A||v===null)){A=!0;try{for(;await v();)await K()}catch(t){u&&await b(u),self.postMessage({failed:String(t)})}A=!1}}function K(){return new Promise(t=>{let{port1:e,port2:n}=new MessageChannel;e.onmessage=()=>{e.close(),t()},n.postMessage(null)})}function X(t,e,n){let o=t.slice(P.length),s=e[o]??n.get(o)?.read();return s?new Response(s):new Response(null,{status:404})}function S(t,e){self.postMessage({doing:t,done:e})}})();

@@ -1,0 +1,1 @@
+"""Motions in time of Linkwork, Exudyn and a stabilised integrator."""

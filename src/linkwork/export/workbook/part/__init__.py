@@ -1,0 +1,1 @@
+"""What workbooks have of the forces of each kind of part."""

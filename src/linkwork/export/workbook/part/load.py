@@ -1,0 +1,1 @@
+"""Loads are forces of the sheet Forces: they have no reactions of their own."""
