@@ -3,6 +3,7 @@
 * ``{terminal}``: commands, run while the site is built, with their output;
 * ``{mechanism} NAME``: a mechanism file, shown and checked;
 * ``{live} NAME``: a mechanism that moves in the page;
+* ``{equations} 25-27``: equations by number;
 * ``{open}`text <NAME; O2 A=38>```: a link that opens a mechanism,
   moving, and in the app if the site has one.
 """
@@ -31,6 +32,7 @@ from linkwork.foundation.internal import internal_members
 from scripts.docsite import mathml, text_files
 from scripts.docsite.api_page import ALIASES, is_built_by_users
 from scripts.docsite.commands_run import commands_of, run_command
+from scripts.docsite.equation_lines import equation_lines
 from scripts.docsite.live_pages import Opened, opened
 
 __all__ = ["setup"]
@@ -47,6 +49,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("terminal", Terminal)
     app.add_directive("mechanism", MechanismFile)
     app.add_directive("live", Live)
+    app.add_directive("equations", Equations)
     app.add_role("open", Open())
     app.connect("missing-reference", _resolve_python)
     app.connect("autodoc-process-signature", _public_signature)
@@ -98,6 +101,22 @@ class Terminal(_OnPage):
     def _cut(self, lines: list[str]) -> list[str]:
         most = self.options.get("lines", len(lines))
         return lines if len(lines) <= most else [*lines[:most], f"… {len(lines) - most} more lines"]
+
+
+class Equations(_OnPage):
+    """Equations by their numbers, from the page of all equations."""
+
+    required_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        page = Path(self.env.srcdir) / "equations.md"
+        self.env.note_dependency(str(page))
+        try:
+            text = equation_lines(page.read_text(encoding="utf-8"), self.arguments[0])
+        except LookupError as error:
+            raise self.error(str(error)) from None
+        return [nodes.literal_block(text, text, language="text", classes=["equations"])]
 
 
 class MechanismFile(_OnPage):
