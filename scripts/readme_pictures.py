@@ -1,6 +1,6 @@
 """The pictures of the README: the moving rapier drive, and the card for links to the project.
 
-python scripts/readme_pictures.py       writes docs/images/rapier-drive.webp and docs/images/card.png
+python scripts/readme_pictures.py  writes docs/images/rapier-drive.webp and docs/images/card.png
 """
 
 from __future__ import annotations
