@@ -221,7 +221,7 @@ link = "crank"
         ('law = "ln(t)"\nto = 1', "input.law", "has no finite value or rate at t = 0 s"),
         ('law = [{ law = "dwell", over = 1 }]\nto = 2', "input",
          "goes on to 2 s, but a law ends at 1 s"),
-        ('law = [{ law = "table", times = [0.2, 0.1], values = [1, 2] }]', "input.law[0].times",
+        ('law = [{ law = "table", times = [0.2, 0.1], values = [1, 2] }]', "input.law[0].times[1]",
          "must increase from 0"),
     ],
 )  # fmt: skip
