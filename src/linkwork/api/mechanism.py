@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwork import batch, drawing, export, motion, textfile, viewer
+from linkwork import batch, drawing, motion, textfile, viewer
 from linkwork.api import solving
-from linkwork.api.designed import DesignedMechanism
+from linkwork.api.exported import ExportedMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_names
@@ -25,7 +25,7 @@ __all__ = ["Mechanism"]
 
 
 @internal("description", "read", "solving_page")
-class Mechanism(DesignedMechanism):
+class Mechanism(ExportedMechanism):
     """A planar mechanism: solve, sweep, check, draw, animate and export it.
 
     The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and
@@ -285,65 +285,6 @@ class Mechanism(DesignedMechanism):
         return viewer.mechanism_html(
             repr(self).strip("<>"), self.solve(), self.equations().mathml()
         )
-
-    def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
-        """Write a sweep as an Excel workbook whose formulas solve the cycle again.
-
-        Parameters
-        ----------
-        path : str or Path
-            The .xlsx file.
-        motion : Motion, optional
-            A sweep of this mechanism; by default :meth:`sweep`.
-
-        Returns
-        -------
-        tuple of str
-            The parts of the workbook that contain values only and do not recalculate.
-
-        Raises
-        ------
-        InputError
-            If the suffix is not .xlsx, or the motion belongs to another mechanism.
-        MissingPackageError
-            If XlsxWriter is not installed.
-        """
-        if as_path(path).suffix.lower() != ".xlsx":
-            raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
-        cycle = self.sweep() if motion is None else motion
-        written = export.workbook_of(self.model, cycle)
-        as_path(path).write_bytes(written.content)
-        return written.notices
-
-    def to_code(self, path: str | Path, motion: Motion | None = None) -> None:
-        """Write the solver as a program in another language, which needs no Linkwork.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file; its suffix selects the language: ``.py`` (NumPy), ``.m`` (Octave, MATLAB),
-            ``.c`` (C99), ``.js``, ``.st`` (structured text of IEC 61131-3).
-        motion : Motion, optional
-            A sweep of this mechanism, whose table the program computes again; by default
-            :meth:`sweep`.
-
-        Raises
-        ------
-        InputError
-            If there is no such language, or no formulas of the mechanism's equations.
-
-        Examples
-        --------
-        >>> import linkwork as lw, pathlib, tempfile
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     lw.example("four-bar").to_code(f"{folder}/four_bar.py")
-        ...     lines = pathlib.Path(folder, "four_bar.py").read_text().splitlines()
-        >>> lines[1]
-        'Four-bar linkage, open.'
-        """
-        cycle = self.sweep() if motion is None else motion
-        text = export.code_of(self.model, cycle, as_path(path))
-        as_path(path).write_text(text, "utf-8")
 
     def save(self, path: str | Path) -> None:
         """Write the mechanism as a TOML file.

@@ -39,6 +39,7 @@ _COMMANDS = (
     "link",
     "synthesize",
     "code",
+    "robot",
     "study",
     "compile",
     "examples",

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
         code_of as code_of,
         language_of as language_of,
     )
+    from linkwork.export.robot.robot_file import (
+        check_robot_file as check_robot_file,
+        robot_of as robot_of,
+    )
     from linkwork.export.workbook.workbook import (
         WrittenWorkbook as WrittenWorkbook,
         workbook_of as workbook_of,

@@ -77,6 +77,11 @@ class Bodies(LoadedBodies):
         x, y = self.points[point]
         return vector(self.numbers(x), self.numbers(y))
 
+    def side_of(self, line: tuple[str, str], point: str) -> float:
+        """1 if a point is to the left of a line in the sketch, else -1."""
+        a, b, c = (self.sketched(each) for each in (*line, point))
+        return 1.0 if ((b - a).conjugate() * (c - a)).imag > 0 else -1.0
+
     def bodies_at(self, point: str) -> Iterator[str]:
         """The links that carry a point, in the file's order."""
         for link, points in self.links.items():

@@ -197,6 +197,9 @@ class Cam(NamedPart):
             return self.cam, guide.link
         return self.cam, str(self.link) if guide is None else pinned(linkage, guide.point_on_line)
 
+    def pairs(self, linkage: Bodies) -> None:
+        return None
+
     def check(self, checks: PartChecks) -> None:
         """Check that the cam has one follower and one shape."""
         if not checks.link(self.cam, "cam"):

@@ -97,6 +97,9 @@ class Curve(NamedPart):
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return pinned(linkage, self.point), self.on
 
+    def pairs(self, linkage: Bodies) -> None:
+        return None
+
     def check(self, checks: PartChecks) -> None:
         """Check that curve and point are on different links."""
         if not checks.link(self.on, "on"):

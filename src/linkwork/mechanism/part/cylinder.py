@@ -10,6 +10,7 @@ from linkwork.foundation.file_keys import Key, Text
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.figures import Figure, Outlines
 from linkwork.mechanism.joint import JointKind
+from linkwork.mechanism.part.pairs import AddedBody, Pair, PairKind, Pairs
 from linkwork.mechanism.part.part import POINT_PAIR, NamedPart, PartChecks
 
 __all__ = ["Cylinder", "Strut"]
@@ -77,6 +78,23 @@ class Cylinder(NamedPart):
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.ends
+
+    def pairs(self, linkage: Bodies) -> Pairs:
+        ends = zip(self.ends, self.between, strict=True)
+        slide = Pair(
+            kind=PairKind.SLIDE,
+            name=self.name,
+            bodies=self.ends,
+            point=self.between[1],
+            line=self.between,
+        )
+        return Pairs(
+            bodies=tuple(
+                AddedBody(name=end, points=(point,), angle=self.angle_name, pinned=True)
+                for end, point in ends
+            ),
+            pairs=(slide,),
+        )
 
     def check(self, checks: PartChecks) -> None:
         checks.ends(self.between)

@@ -88,6 +88,9 @@ class NoncircularGear(ToothedPart, ArmPair):
     pitch_curve: tuple[tuple[Number, Number], ...] = ()
     start: Number = 0
 
+    def pairs(self, linkage: Bodies) -> None:
+        return None
+
     def check(self, checks: PartChecks) -> None:
         """Check the wheels, the arm and the law."""
         super().check(checks)

@@ -20,6 +20,7 @@ from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.dimensions import LARGEST, Number
 from linkwork.mechanism.figures import Disc, Figure, Outline, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
+from linkwork.mechanism.part.pairs import Pairs
 
 __all__ = [
     "AGREE", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
@@ -116,6 +117,10 @@ class Part:
         if self.kind is None:
             return None
         return Joint(kind=self.kind, name=self.label, links=self.joined(linkage))
+
+    def pairs(self, linkage: Bodies) -> Pairs | None:
+        """The kinematic pairs of which it consists; ``None`` if curves roll or slide in it."""
+        return Pairs()
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         """The links of the joint."""

@@ -11,6 +11,15 @@ from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines
 from linkwork.mechanism.joint import JointKind
+from linkwork.mechanism.part.pairs import (
+    AddedBody,
+    Coupling,
+    Pair,
+    PairKind,
+    Pairs,
+    meshing,
+    sliding_block,
+)
 from linkwork.mechanism.part.part import LINK, POINT, POINT_PAIR, NamedPart, PartChecks
 
 __all__ = ["Rolling", "RollingLine"]
@@ -120,6 +129,29 @@ class Rolling(NamedPart):
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.wheel, self.on
+
+    def pairs(self, linkage: Bodies) -> Pairs:
+        radius = linkage.numbers(self.radius)
+        if self.line is not None:
+            turns = ((self.wheel, radius), (self.on, -radius))
+            slide = (self.name, linkage.side_of(self.line, self.center))
+            rolls = Coupling(name=self.name, turns=turns, slide=slide)
+            block = sliding_block(self.name, self.on, self.line, self.center)
+            return replace(block.with_pin(self.wheel), couplings=(rolls,))
+        assert self.circle is not None
+        assert self.circle_radius is not None
+        arm = AddedBody(name=f"{self.name} arm", points=(self.circle, self.center), angle=self.name)
+        ends = {self.circle: (self.on, arm.name), self.center: (arm.name, self.wheel)}
+        radii = (linkage.numbers(self.circle_radius), radius)
+        wheels, outside = (self.on, self.wheel), not self.inside
+        return Pairs(
+            bodies=(arm,),
+            pairs=tuple(
+                Pair(kind=PairKind.PIN, name=point, bodies=bodies, point=point)
+                for point, bodies in ends.items()
+            ),
+            couplings=(meshing(self.name, wheels, arm.name, radii, outside=outside),),
+        )
 
     def check(self, checks: PartChecks) -> None:
         """Check that the wheel is on a line or circle of another link."""

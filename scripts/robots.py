@@ -1,0 +1,85 @@
+"""Files for robots, loaded by MuJoCo and yourdfpy and compared with the sweep."""
+
+from __future__ import annotations
+
+import io
+from importlib import import_module
+from xml.etree import ElementTree as Tree
+
+import numpy as np
+
+import linkwork as lw
+from linkwork.export.robot.mjcf import mjcf_of
+from linkwork.export.robot.robot import Robot
+from linkwork.export.robot.urdf import urdf_of
+from linkwork.foundation.errors import InputError
+from linkwork.results.motion import Motion
+
+__all__ = ["LOADERS", "compared_robot"]
+
+#: Packages that load the formats.
+LOADERS = {".mjcf": "mujoco", ".urdf": "yourdfpy"}
+_STEP = 13  # every so many rows of a sweep
+
+
+def compared_robot(name: str, suffix: str) -> str:
+    """How far a loaded robot differs from the sweep, or why there is none."""
+    mechanism = lw.example(name)
+    try:
+        robot = Robot(mechanism.model, mechanism.solve())
+        if suffix == ".mjcf":
+            return _moved(robot, mechanism.sweep())
+        return _coupled(robot, mechanism)
+    except InputError as error:
+        return f"refused: {error}"
+
+
+def _moved(robot: Robot, motion: Motion) -> str:
+    """Joint values imposed in MuJoCo: points, gaps of loops, couplings, freedom."""
+    mujoco = import_module("mujoco")
+    model = mujoco.MjModel.from_xml_string(mjcf_of(robot))
+    data = mujoco.MjData(model)
+    size = robot.start.length * robot.metre
+    values = robot.values(motion)
+    away = gap = slip = 0.0
+    for row in np.flatnonzero(motion.found)[::_STEP]:
+        for name, (value, _) in values.items():
+            data.joint(name).qpos[0] = value[row]
+        mujoco.mj_forward(model, data)
+        for body, points in robot.tree.graph.bodies.items():
+            for point in points:
+                x, y, _ = data.site(f"{body}/{point}").xpos
+                place = motion.place(point).v[row] * robot.metre
+                away = max(away, abs(complex(x, y) - place) / size)
+        for edge in robot.tree.closing:
+            first, second = (data.site(f"{body}/{edge.point}").xpos for body in edge.bodies)
+            gap = max(gap, float(np.abs(first - second).max()) / size)
+        if model.ntendon:
+            slip = max(slip, float(np.abs(data.ten_length - model.tendon_length0).max()))
+    wrong = "" if away <= 1e-9 and gap <= 1e-12 and slip <= 1e-9 else " WRONG"
+    return f"points {away:.1e}, gaps {gap:.1e}, couplings {slip:.1e}{wrong}"
+
+
+def _coupled(robot: Robot, mechanism: lw.Mechanism) -> str:
+    """The largest ratio of true to stated errors of polynomials on ten times finer rows."""
+    text = urdf_of(robot, mechanism.sweep())
+    loaded = import_module("yourdfpy").URDF.load(
+        io.BytesIO(text.encode()), build_scene_graph=False, load_meshes=False
+    )
+    description = mechanism.description
+    several = len(description.inputs) > 1
+    rows = description.rows(description.inputs[0])
+    step = None if several else float(rows[1] - rows[0]) / 10.0
+    values, worst, stated = robot.values(mechanism.sweep(step=step)), 0.0, 0.0
+    for own in Tree.fromstring(text).findall("coupling"):
+        x, y = (values[own.attrib[key]][0] for key in ("driven", "joint"))
+        low, high, error = (float(own.attrib[key]) for key in ("low", "high", "error"))
+        inside = (x >= low) & (x <= high) & np.isfinite(y)
+        s = (2.0 * x[inside] - low - high) / (high - low)
+        series = np.polynomial.chebyshev.chebval(s, np.array((own.text or "").split(), float))
+        worst = max(worst, float(np.abs(series - y[inside]).max()) / error)
+        stated = max(stated, error)
+    same = len(loaded.robot.joints) == len(robot.tree.joints)
+    wrong = "" if worst <= 1.0 and same else " WRONG"
+    rows_told = " (rows of the table: several inputs)" if several else ""
+    return f"error {stated:.1e} stated, {worst:.2f} of it seen{rows_told}{wrong}"

@@ -1,0 +1,125 @@
+"""The mechanism as a file of other programs: workbooks, programs, robots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwork import export
+from linkwork.api.designed import DesignedMechanism
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
+
+if TYPE_CHECKING:
+    from linkwork.results.motion import Motion
+
+__all__ = ["ExportedMechanism"]
+
+
+class ExportedMechanism(DesignedMechanism):
+    """A mechanism that can be written for other programs."""
+
+    def to_excel(self, path: str | Path, motion: Motion | None = None) -> tuple[str, ...]:
+        """Write a sweep as an Excel workbook whose formulas solve the cycle again.
+
+        Parameters
+        ----------
+        path : str or Path
+            The .xlsx file.
+        motion : Motion, optional
+            A sweep of this mechanism; by default :meth:`sweep`.
+
+        Returns
+        -------
+        tuple of str
+            The parts of the workbook that contain values only and do not recalculate.
+
+        Raises
+        ------
+        InputError
+            If the suffix is not .xlsx, or the motion belongs to another mechanism.
+        MissingPackageError
+            If XlsxWriter is not installed.
+        """
+        if as_path(path).suffix.lower() != ".xlsx":
+            raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
+        cycle = self.sweep() if motion is None else motion
+        written = export.workbook_of(self.model, cycle)
+        as_path(path).write_bytes(written.content)
+        return written.notices
+
+    def to_code(self, path: str | Path, motion: Motion | None = None) -> None:
+        """Write the solver as a program in another language, which needs no Linkwork.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its suffix selects the language: ``.py`` (NumPy), ``.m`` (Octave, MATLAB),
+            ``.c`` (C99), ``.js``, ``.st`` (structured text of IEC 61131-3).
+        motion : Motion, optional
+            A sweep of this mechanism, whose table the program computes again; by default
+            :meth:`sweep`.
+
+        Raises
+        ------
+        InputError
+            If there is no such language, or no formulas of the mechanism's equations.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").to_code(f"{folder}/four_bar.py")
+        ...     lines = pathlib.Path(folder, "four_bar.py").read_text().splitlines()
+        >>> lines[1]
+        'Four-bar linkage, open.'
+        """
+        cycle = self.sweep() if motion is None else motion
+        text = export.code_of(self.model, cycle, as_path(path))
+        as_path(path).write_text(text, "utf-8")
+
+    def to_robot(
+        self,
+        path: str | Path,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        configuration: str | None = None,
+        motion: Motion | None = None,
+    ) -> None:
+        """Write the mechanism for a simulator of robots.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its suffix selects the format: ``.mjcf`` (MuJoCo, with the real loops),
+            ``.sdf`` (with all joints), ``.urdf`` (a tree whose joints follow the driven one).
+        at : float or mapping, optional
+            The input of the start position, at which all joint values are zero; by default that of
+            :meth:`solve`.
+        configuration : str, optional
+            The configuration of the start position.
+        motion : Motion, optional
+            Of URDF, the sweep through the start position that gives limits and polynomials; by
+            default :meth:`sweep`.
+
+        Raises
+        ------
+        InputError
+            If there is no such format, no start position, or no equivalent of a part.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").to_robot(f"{folder}/bar.mjcf", at=60)
+        ...     text = pathlib.Path(folder, "bar.mjcf").read_text("utf-8")
+        >>> text.count("<joint "), text.count("<connect ")
+        (3, 1)
+        """
+        suffix = export.check_robot_file(as_path(path))
+        start = self.solve(at, configuration=configuration)
+        if suffix == ".urdf" and motion is None:
+            motion = self.sweep(configuration=configuration)
+        text = export.robot_of(self.model, start, motion, as_path(path))
+        as_path(path).write_text(text, "utf-8")

@@ -1,0 +1,1 @@
+"""Mechanisms as trees of joints for simulators of robots: MJCF, URDF, SDF."""

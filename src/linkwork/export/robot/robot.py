@@ -1,0 +1,202 @@
+"""A mechanism as bodies with frames and masses, joined by a tree, in metres and kilograms."""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.export.robot.joint_graph import JointGraph
+from linkwork.export.robot.joint_tree import JointTree, TreeJoint
+from linkwork.forces.geometry import Geometry
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
+from linkwork.foundation.units import LENGTHS, MASSES
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.cylinder import Cylinder
+from linkwork.mechanism.part.pairs import PairKind
+from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
+from linkwork.results.position import Position
+
+__all__ = ["Inertia", "Robot"]
+
+_DENSITY = 1.0  # kg/m of bodies without a mass in the file
+_SMALL = 0.01  # of the longest link: the least size of a body, for its inertia
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inertia:
+    """Mass [kg], centre of mass in the body's frame [m], moment of inertia about it [kg m²]."""
+
+    mass: float
+    center: complex
+    inertia: float
+
+
+class Robot:
+    """A mechanism at its start position.
+
+    Parameters
+    ----------
+    model : Model
+    start : Position
+        Where all joint values are zero.
+
+    Raises
+    ------
+    InputError
+        If the mechanism has no links and joints, an unknown unit of length, no start position, or
+        a part that files for robots cannot describe.
+    """
+
+    def __init__(self, model: Model, start: Position) -> None:
+        description = model.description
+        if not isinstance(description, Linkage):
+            raise InputError(
+                f'mechanism "{description.name}" is given by equations: files for robots need '
+                "points and links"
+            )
+        if description.length not in LENGTHS:
+            known = ", ".join(LENGTHS)
+            raise InputError(
+                f'"{description.length}" cannot be converted to metres: write length = one of '
+                f"{known}"
+            )
+        if not start.status.ok:
+            raise InputError(f"no start position: {start.status.value}")
+        self.linkage, self.model = description, model
+        self.metre = float(LENGTHS[description.length])
+        self.tree = JointTree.of(JointGraph.of(description))
+        self.start = Geometry(model, start)
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        return self.linkage.name
+
+    def place(self, point: str) -> complex:
+        """A point in the start position [m]."""
+        return complex(self.start.place(point).v[0]) * self.metre
+
+    def frame(self, body: str) -> tuple[complex, float]:
+        """The origin [m] and the angle of a body's frame in the start position."""
+        if body == GROUND:
+            return 0j, 0.0
+        return self.place(self.tree.origin(body)), float(self.tree.angle(self.start, body)[0][0])
+
+    def local(self, body: str, place: complex) -> complex:
+        """A place of the start position in the frame of a body [m]."""
+        origin, angle = self.frame(body)
+        return (place - origin) * cmath.rect(1.0, -angle)
+
+    def mounted(self, joint: TreeJoint) -> tuple[complex, float]:
+        """The frame of a joint's child in that of its parent, in the start position."""
+        origin, angle = self.frame(joint.child)
+        return self.local(joint.parent, origin), angle - self.frame(joint.parent)[1]
+
+    def axis(self, joint: TreeJoint) -> complex:
+        """The direction of a slide in the frame of its child, a unit vector."""
+        assert joint.edge.line is not None
+        a, b = map(self.place, joint.edge.line)
+        if joint.edge.name in self.linkage_cylinders:
+            angle = self.tree.angle(self.start, joint.child)[0][0]
+            along = cmath.rect(1.0, float(angle))
+        else:
+            along = (b - a) / abs(b - a)
+        return along * cmath.rect(1.0, -self.frame(joint.child)[1])
+
+    @cached_property
+    def linkage_cylinders(self) -> frozenset[str]:
+        """Cylinders, whose two points may coincide."""
+        return frozenset(part.name for part in self.linkage.of(Cylinder))
+
+    def points(self, body: str) -> dict[str, complex]:
+        """The points of a body in its frame [m]."""
+        return {p: self.local(body, self.place(p)) for p in self.tree.graph.bodies[body]}
+
+    def inertia(self, body: str) -> Inertia:
+        """What the file gives, or a slender bar with a stated mass per length."""
+        places = list(self.points(body).values())
+        least = _SMALL * self.start.length * self.metre
+        extent = max([abs(a - b) for a in places for b in places] + [least])
+        given = self.linkage.spelled_masses().get(body)
+        if given is None:
+            mass = _DENSITY * extent
+            middle = sum(places) / len(places)
+            return Inertia(mass=mass, center=middle, inertia=mass * extent**2 / 12.0)
+        numbers, mass = self.linkage.numbers, 0.0
+        mass = numbers(given.mass) * float(MASSES[self.linkage.mass])
+        inertia = numbers(given.inertia) * float(MASSES[self.linkage.mass]) * self.metre**2
+        first = self.place(self.linkage.links[body][0])
+        x, y = map(numbers, given.center or (0, 0))
+        center = complex(x, y) * self.metre
+        if given.shape == "rod":
+            span = abs(self.place(self.linkage.links[body][1]) - first)
+            center, inertia = span / 2.0 + 0j, mass * span**2 / 12.0
+        turned = center * cmath.rect(1.0, self.frame(body)[1])
+        # simulators refuse bodies without inertia
+        inertia = max(inertia, mass * least**2 / 12.0)
+        return Inertia(mass=mass, center=self.local(body, first + turned), inertia=inertia)
+
+    def gravity(self) -> complex:
+        """The acceleration of free fall [m/s²]; zero without gravity in the file."""
+        given = self.linkage.gravity
+        if given is None:
+            return 0j
+        size = given.acceleration(self.linkage.numbers, self.linkage.length) * self.metre
+        if given.angle is None:
+            return -1j * size
+        return cmath.rect(size, self.linkage.numbers(given.angle) * self.linkage.angle.radians)
+
+    def values(self, motion: Motion) -> dict[str, tuple[Array, Array]]:
+        """Joint values in the rows of a motion and their derivatives by the leading input.
+
+        In rad and m, from the start position, (B,) each; NaN in rows without a position.
+        """
+        geometry, found = Geometry(self.model, motion), {}
+        for joint in self.tree.joints:
+            if joint.edge.kind is PairKind.FIXED:
+                continue
+            value, rate = self.tree.value(geometry, joint)
+            scale = self.metre if joint.edge.kind is PairKind.SLIDE else 1.0
+            zero = self.tree.value(self.start, joint)[0][0]
+            found[joint.name] = (scale * (value - zero), scale * np.asarray(rate))
+        return found
+
+    def per_metre(self, name: str) -> float:
+        """Length units of the file per unit of a joint value."""
+        slides = {j.name for j in self.tree.joints if j.edge.kind is PairKind.SLIDE}
+        return 1.0 / self.metre if name in slides else 1.0
+
+    def leading(self) -> TreeJoint | None:
+        """The joint of the tree that the leading input drives."""
+        names = self.model.motion_quantities.names
+        which = self.linkage.inputs[list(names.inputs).index(names.lead)]
+        kind, name = which.drives
+        if kind in ("slider", "cylinder"):
+            return next((j for j in self.tree.joints if j.edge.name == name), None)
+        pairs = self.tree.graph.driven()
+        k = self.linkage.inputs.index(which)
+        own = (j for j in self.tree.joints if j.edge.kind is PairKind.PIN)
+        return next((j for j in own if pairs.get(frozenset((j.parent, j.child))) == k), None)
+
+    def notes(self) -> list[str]:
+        """What a reader of the file has to know."""
+        bodies = [b for b in self.tree.graph.bodies if b != GROUND]
+        assumed = [b for b in bodies if b not in self.linkage.spelled_masses()]
+        lines = ["Metres, kilograms, radians; the mechanism moves in the plane x-y."]
+        lines.append("All joint values are zero in the start position.")
+        if assumed:
+            lines.append(
+                f"Assumed masses, slender bars of {_DENSITY:g} kg/m: {', '.join(assumed)}."
+            )
+        if self.linkage.gravity is None:
+            lines.append("No gravity.")
+        left = {type(part).title.lower() for part in self.linkage.parts if part.acts}
+        if left:
+            lines.append(f"Not written: {', '.join(sorted(left))}.")
+        return lines

@@ -1,0 +1,123 @@
+"""Robots: trees whose forward kinematics give the sweep's points, and refusals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree as Tree
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.export.robot.mjcf import mjcf_of
+from linkwork.export.robot.robot import Robot
+from linkwork.results.motion import Motion
+from tests.export.coarse import coarse
+from tests.library_mechanisms import read_example
+
+# forward kinematics through five bodies at most, in units of the longest link
+_ROUNDING = 1e-12
+
+
+def _robot(name: str) -> tuple[Robot, Motion]:
+    mechanism = read_example(name)
+    return Robot(mechanism.model, mechanism.solve()), mechanism.sweep()
+
+
+def _numbers(element: Tree.Element, key: str) -> list[float]:
+    return [float(number) for number in element.attrib[key].split()]
+
+
+def _places(
+    body: Tree.Element,
+    origin: complex,
+    turn: complex,
+    values: dict[str, float],
+    found: dict[str, complex],
+) -> None:
+    """Forward kinematics of nested bodies of MJCF in the plane."""
+    for site in body.findall("site"):
+        x, y, _ = _numbers(site, "pos")
+        found[site.attrib["name"]] = origin + turn * complex(x, y)
+    for child in body.findall("body"):
+        x, y, _ = _numbers(child, "pos")
+        w, _, _, z = _numbers(child, "quat")
+        place, angle = origin + turn * complex(x, y), turn * complex(w, z) ** 2
+        joint = child.find("joint")
+        if joint is not None and joint.attrib["type"] == "slide":
+            a, b, _ = _numbers(joint, "axis")
+            place += angle * complex(a, b) * values[joint.attrib["name"]]
+        elif joint is not None:
+            angle *= np.exp(1j * values[joint.attrib["name"]])
+        _places(child, place, angle, values, found)
+
+
+@pytest.mark.parametrize("name", ["four-bar", "crank-shaper", "geared-five-bar", "rolling-wheel"])
+def test_trees_move_as_the_sweep(name: str) -> None:
+    robot, motion = _robot(name)
+    root = Tree.fromstring(mjcf_of(robot))
+    world = root.find("worldbody")
+    assert world is not None
+    values, size = robot.values(motion), robot.start.length * robot.metre
+    for row in np.flatnonzero(motion.found)[::40]:
+        found: dict[str, complex] = {}
+        now = {joint: float(value[row]) for joint, (value, _) in values.items()}
+        _places(world, 0j, 1.0 + 0j, now, found)
+        for site, place in found.items():
+            point = site.partition("/")[2]
+            wanted = motion.place(point).v[row] * robot.metre
+            assert abs(place - wanted) <= _ROUNDING * size, (site, row)
+        # couplings of wheels stay as they are in the start position
+        for fixed in root.iter("fixed"):
+            total = sum(
+                float(j.attrib["coef"]) * now[j.attrib["joint"]] for j in fixed.findall("joint")
+            )
+            assert abs(total) <= 1e-11, fixed.attrib["name"]
+
+
+def test_files_have_all_bodies_and_joints(tmp_path: Path) -> None:
+    mechanism = coarse(read_example("crank-shaper"), 48)
+    robot = Robot(mechanism.model, mechanism.solve())
+    bodies, joints = len(robot.tree.graph.bodies) - 1, len(robot.tree.joints)
+    roots = {}
+    for suffix in ("mjcf", "urdf", "sdf"):
+        mechanism.to_robot(tmp_path / f"x.{suffix}")
+        roots[suffix] = Tree.parse(tmp_path / f"x.{suffix}").getroot()
+    closing = len(robot.tree.closing)
+    assert bodies == joints
+    assert len(list(roots["mjcf"].iter("body"))) == bodies
+    assert len(roots["mjcf"].findall("equality/*")) == closing > 0
+    assert len(roots["urdf"].findall("link")) == bodies + 1
+    assert len(roots["urdf"].findall("joint/mimic")) == len(roots["urdf"].findall("coupling"))
+    assert len(roots["sdf"].findall("model/joint")) == joints + closing
+
+
+def test_a_urdf_ends_at_the_dead_points(tmp_path: Path) -> None:
+    lengths = {"O2 A": 80, "A B": 120, "O4 B": 80, "O2 O4": 100}
+    mechanism = coarse(lw.example("four-bar").changed(lengths=lengths), 72)
+    motion, start = mechanism.sweep(), mechanism.solve()
+    from_start = np.radians(motion.limits[0].input - start.input["crank"])
+    mechanism.to_robot(tmp_path / "x.urdf", motion=motion)
+    root = Tree.parse(tmp_path / "x.urdf").getroot()
+    limit = next(j for j in root.findall("joint") if j.find("mimic") is None).find("limit")
+    assert limit is not None
+    ends = [float(limit.attrib[key]) for key in ("lower", "upper")]
+    assert min(abs(end - from_start) for end in ends) <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "reason"),
+    [
+        ("eccentric-cam", "x.mjcf", '"disc" (cam'),
+        ("rapier-drive", "x.mjcf", "is given by equations"),
+        ("three-rpr", "x.sdf", '"unit" cannot be converted to metres'),
+        ("geared-five-bar", "x.sdf", "couples turning wheels"),
+        ("rolling-wheel", "x.urdf", "URDF has no loops"),
+        ("four-bar", "x.xml", "the suffix of a robot is one of .mjcf, .urdf, .sdf"),
+    ],
+)
+def test_refusals_say_why(name: str, file: str, reason: str, tmp_path: Path) -> None:
+    with pytest.raises(lw.InputError) as raised:
+        read_example(name).to_robot(tmp_path / file)
+    assert reason in str(raised.value)
+    assert not (tmp_path / file).exists()
