@@ -270,6 +270,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "link",
         "synthesize",
         "code",
+        "robot",
         "study",
         "compile",
         "examples",
