@@ -181,6 +181,8 @@ def test_what_has_no_effect_or_no_sense_is_refused(text: str, message: str) -> N
         ('speeds = ["0 rpm", "5 rpm"]\ntorques = [1, 2]\nfree_speed = 3',
          ["4 input.motor.free_speed is used with stall only"]),
         ('stall = 1\nfree_speed = "0 rpm"', ["3 input.motor.free_speed must not be 0"]),
+        ('stall = -12\nfree_speed = "1500 rpm"',
+         ["3 input.motor.free_speed must have the sign of stall: the torque falls with the speed"]),
         ("stall = 1e200", ["2 input.motor.stall 1e+200 is too large: at most 1e+100"]),
     ],
 )  # fmt: skip

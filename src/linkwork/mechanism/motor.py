@@ -93,6 +93,8 @@ class Motor:
                 continue
             if key == ("free_speed",) and found == 0.0:
                 yield key, "must not be 0"
+            elif self.stall is not None and not problems and numbers(self.stall) * found < 0.0:
+                yield key, "must have the sign of stall: the torque falls with the speed"
             elif found <= below:
                 yield key, f"must rise: {speed} is not above the speed before it"
             below = found
