@@ -22,7 +22,7 @@ PER_INCH = {"mm": 25.4, "cm": 2.54, "m": 0.0254, "in": 1.0}
 #: With dimensions that no number depends on, units of unknown size, formulas of loads, or equations
 #: of plain numbers.
 REFUSED = {
-    "ackermann-steering", "compressor", "crank-press", "door-closer", "klann-leg",
+    "ackermann-steering", "compressor", "crank-press", "door-closer", "klann-leg", "toggle-latch",
     "newton-another-root", "newton-convergence", "newton-extremum", "three-rpr", "trotbot-leg",
 }  # fmt: skip
 
