@@ -190,7 +190,7 @@ def test_a_motor_is_refused_at_the_row_of_its_table(motor: str, messages: list[s
     """Not at the stall torque, which it does not have."""
     told = _told("", INPUT + "[input.motor]\n" + motor)
     lines = INPUT.count("\n") + 1
-    found = [f"{int(told_.split()[0]) - lines} {told_.partition(' ')[2]}" for told_ in told]
+    found = [f"{int(each.split()[0]) - lines} {each.partition(' ')[2]}" for each in told]
     assert found == messages
 
 
@@ -260,3 +260,32 @@ def test_a_load_with_a_gap_leaves_the_rest_of_the_motion_exact() -> None:
     )
     assert gap.found.all()
     assert gap["rocker"] == pytest.approx(smooth["rocker"], rel=1e-12)
+
+
+ANGLE = """format = 1
+length = "m"
+[dimensions]
+a = 0.04
+b = 0.12
+"α" = 0
+[loops]
+main = "a*e^(i*θ2) + b*e^(i*θ3) = d*e^(i*α)"
+[guess]
+"θ2" = 60
+"θ3" = -17
+d = 0.135
+[input]
+variable = "θ2"
+[tolerances]
+"""
+
+
+def test_a_dimension_of_loops_may_be_an_angle() -> None:
+    """Half a degree is more than every length in metres, and no mistake."""
+    tilted = lw.loads(ANGLE + '"α" = { deviation = 0.5 }\n')
+    assert tilted.tolerance("d", at=60).root_sum_square > 0.0
+    with pytest.raises(lw.MechanismFileError) as caught:
+        lw.loads(ANGLE + "a = { deviation = 1e9 }\n")
+    assert [problem.message for problem in caught.value.problems] == [
+        "must be smaller than all lengths and a full turn, got 1e+09"
+    ]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+import linkwork as lw
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.loops import PlainEquations
@@ -112,3 +113,13 @@ def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:
     save(read_text(SAMPLES["cubic"]).description, link)
     assert link.is_symlink()
     assert read_file(path).description.name == "A cubic that makes Newton cycle"
+
+
+@pytest.mark.parametrize("suffix", ["xlsx", "py", "mjcf", "html"])
+def test_files_of_other_programs_are_refused_by_our_error_too(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / "nowhere" / f"bar.{suffix}"
+    bar = lw.example("four-bar")
+    write: dict[str, Any] = {"xlsx": bar.to_excel, "py": bar.to_code, "mjcf": bar.to_robot, "html": bar.animate}
+    with pytest.raises(InputError) as caught:
+        write[suffix](path)
+    assert str(caught.value) == f'cannot write "{path}": No such file or directory'

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwork import export
+from linkwork import export, textfile
 from linkwork.api.designed import DesignedMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
@@ -38,7 +38,8 @@ class ExportedMechanism(DesignedMechanism):
         Raises
         ------
         InputError
-            If the suffix is not .xlsx, or the motion belongs to another mechanism.
+            If the suffix is not .xlsx, the motion belongs to another mechanism, or the file cannot
+            be written.
         MissingPackageError
             If XlsxWriter is not installed.
         """
@@ -46,7 +47,7 @@ class ExportedMechanism(DesignedMechanism):
             raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
         cycle = self.sweep() if motion is None else motion
         written = export.workbook_of(self.model, cycle)
-        as_path(path).write_bytes(written.content)
+        textfile.save_bytes(written.content, path)
         return written.notices
 
     def to_code(self, path: str | Path, motion: Motion | None = None) -> None:
@@ -64,7 +65,8 @@ class ExportedMechanism(DesignedMechanism):
         Raises
         ------
         InputError
-            If there is no such language, or no formulas of the mechanism's equations.
+            If there is no such language, no formulas of the mechanism's equations, or the file
+            cannot be written.
 
         Examples
         --------
@@ -77,7 +79,7 @@ class ExportedMechanism(DesignedMechanism):
         """
         cycle = self.sweep() if motion is None else motion
         text = export.code_of(self.model, cycle, as_path(path))
-        as_path(path).write_text(text, "utf-8")
+        textfile.save_text(text, path)
 
     def to_robot(
         self,
@@ -106,7 +108,8 @@ class ExportedMechanism(DesignedMechanism):
         Raises
         ------
         InputError
-            If there is no such format, no start position, or no equivalent of a part.
+            If there is no such format, no start position, no equivalent of a part, or the file
+            cannot be written.
 
         Examples
         --------
@@ -122,4 +125,4 @@ class ExportedMechanism(DesignedMechanism):
         if suffix == ".urdf" and motion is None:
             motion = self.sweep(configuration=configuration)
         text = export.robot_of(self.model, start, motion, as_path(path))
-        as_path(path).write_text(text, "utf-8")
+        textfile.save_text(text, path)

@@ -221,7 +221,7 @@ class Mechanism(ExportedMechanism):
             solver=solver,
             progress=progress,
         )
-        as_path(path).write_bytes(content)
+        textfile.save_bytes(content, path)
 
     def solving_page(self, sliders: Sequence[str], motion: Motion) -> SolvingPage:
         """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""

@@ -1,8 +1,8 @@
 """Ctrl-C: one quiet end, whatever the program does at that moment.
 
-Python raises ``KeyboardInterrupt`` where the program stands. Two kinds of code lose it: where an
-object is deleted CPython drops every exception, and some libraries turn all exceptions into their
-own. So the interrupt is remembered too.
+Python raises ``KeyboardInterrupt`` at whatever instruction runs. Two kinds of code lose it: CPython
+drops every exception of an object that is being deleted, and some libraries turn all exceptions
+into their own. So the interrupt is remembered too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from types import FrameType
 
 __all__ = [
     "INTERRUPTED",
-    "go_on_unless_interrupted",
+    "check_interrupt",
     "ignore_interrupts",
     "was_interrupted",
     "watch_interrupts",
@@ -40,7 +40,7 @@ def was_interrupted() -> bool:
     return _came.is_set()
 
 
-def go_on_unless_interrupted() -> None:
+def check_interrupt() -> None:
     """Raise an interrupt once more that a library has dropped; long work calls this regularly."""
     if _came.is_set():
         raise KeyboardInterrupt

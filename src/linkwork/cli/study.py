@@ -22,7 +22,7 @@ from linkwork.batch.study import (
 )
 from linkwork.batch.study.chunk_manifest import chunks_with_entry
 from linkwork.batch.study.plan_file import read_plan_bytes
-from linkwork.cli.interrupts import go_on_unless_interrupted
+from linkwork.cli.interrupts import check_interrupt
 from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
 from linkwork.cli.terminal import print_json, print_lines, wrapped
@@ -145,14 +145,14 @@ def _how_to_go_on(asked: Study, store: str) -> list[str]:
 def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None]]:
     """A progress line that rewrites itself, on the error stream of a terminal only."""
     if quiet or not sys.stderr.isatty():
-        yield lambda progress: go_on_unless_interrupted()
+        yield lambda progress: check_interrupt()
         return
     began = monotonic()
     width = 0
 
     def tell(progress: Progress) -> None:
         nonlocal width
-        go_on_unless_interrupted()
+        check_interrupt()
         if monotonic() - began > _PATIENCE:
             line = progress_line(progress)
             click.echo("\r" + line.ljust(width), nl=False, err=True)

@@ -16,7 +16,7 @@ from typing import Any
 
 import click
 
-from linkwork.cli.interrupts import go_on_unless_interrupted
+from linkwork.cli.interrupts import check_interrupt
 from linkwork.cli.text_table import WIDTH
 
 __all__ = [
@@ -185,7 +185,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         A function to call with the finished fraction, 0 to 1.
     """
     if not sys.stderr.isatty():
-        yield lambda fraction: go_on_unless_interrupted()
+        yield lambda fraction: check_interrupt()
         return
     began = time.monotonic()
     bar = click.progressbar(length=_BAR_STEPS, label=label, file=sys.stderr)
@@ -198,7 +198,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
     def tell(fraction: float) -> None:
         nonlocal shown
-        go_on_unless_interrupted()
+        check_interrupt()
         with lock:
             if not shown and time.monotonic() - began > _PATIENCE:
                 shown = True

@@ -8,11 +8,11 @@ import numpy as np
 
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.input_travel import InputTravel
-from linkwork.dynamics.reduction import Place, Reduction
+from linkwork.dynamics.reduction import Reduction
 from linkwork.dynamics.simulated import bounds_of, check_masses_move, model_name, start_speeds
 from linkwork.equations.input_motion import law_motions
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, KeyWords
 from linkwork.foundation.names import canonical
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
@@ -36,7 +36,7 @@ def simulate_inputs(
     policy: ChangePointPolicy,
     certify: bool,
     forced: bool,
-    place: Place,
+    place: KeyWords,
     progress: Callable[[float], None] | None,
 ) -> Motion:
     """The motion of several inputs at times (B,): some may have laws, the others are free.

@@ -17,7 +17,7 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import key_text
+from linkwork.foundation.errors import KeyWords, key_text
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.units import force_of_inertia
 from linkwork.mechanism.linkage import Linkage
@@ -26,7 +26,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.results.quantity import Rate
 
-__all__ = ["FAR", "NEAR", "Displaced", "Forcing", "Place", "Reduction", "State"]
+__all__ = ["FAR", "NEAR", "Displaced", "Forcing", "Reduction", "State"]
 
 
 class Displaced(Geometry):
@@ -57,8 +57,6 @@ class State:
 
 #: A further generalised force along the leader at B states, such as friction, (B,).
 Forcing = Callable[[State], Array]
-#: The words for a key of the file.
-Place = Callable[[Sequence[str | int]], str]
 
 
 class Reduction:
@@ -79,7 +77,7 @@ class Reduction:
         model: Model,
         named: Model,
         forcing: Sequence[Forcing] = (),
-        place: Place = key_text,
+        place: KeyWords = key_text,
     ) -> None:
         description = model.description
         assert isinstance(description, LoadedBodies)

@@ -9,12 +9,12 @@ import numpy as np
 
 from linkwork.dynamics.curve import PositionCurve, curve_of
 from linkwork.dynamics.input_simulation import simulate_inputs
-from linkwork.dynamics.reduction import Forcing, Place, Reduction
+from linkwork.dynamics.reduction import Forcing, Reduction
 from linkwork.dynamics.sample import Sample
 from linkwork.dynamics.simulated import bounds_of, check_loaded, start_speeds
 from linkwork.dynamics.travel import Travel
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, key_text
+from linkwork.foundation.errors import InputError, KeyWords, key_text
 from linkwork.foundation.plain_numbers import as_told, finite_number
 from linkwork.foundation.policy import ChangePointPolicy
 from linkwork.foundation.status import Status
@@ -44,7 +44,7 @@ def simulate(
     change_points: str | ChangePointPolicy = ChangePointPolicy.STOP,
     certify: bool = True,
     forcing: Sequence[Forcing] = (),
-    place: Place = key_text,
+    place: KeyWords = key_text,
     progress: Callable[[float], None] | None = None,
 ) -> Motion:
     """The motion in time under masses, loads, springs and a motor.
@@ -109,7 +109,7 @@ def start_of(
     policy: ChangePointPolicy,
     certify: bool,
     forcing: Sequence[Forcing] = (),
-    place: Place = key_text,
+    place: KeyWords = key_text,
 ) -> Start:
     """The loads, and the curve of positions through the start."""
     check_loaded(model)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from linkwork.forces.applied import load_formulas
 from linkwork.forces.quantities import check_formulas
 from linkwork.forces.system import solve_forces
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, key_text
+from linkwork.foundation.errors import InputError, KeyWords, key_text
 from linkwork.foundation.value_types import check_class
 from linkwork.motion.in_time import model_in_time
 from linkwork.motion.model import Model
@@ -23,10 +23,8 @@ from linkwork.results.reactions import ForceStatus, Reactions
 
 __all__ = ["forces_of_motion", "forces_of_position"]
 
-Place = Callable[[Sequence[str | int]], str]
 
-
-def forces_of_position(model: Model, position: Position, place: Place = key_text) -> Reactions:
+def forces_of_position(model: Model, position: Position, place: KeyWords = key_text) -> Reactions:
     """Efforts and reactions at one position; ``place`` words the key of a load without a value.
 
     Raises
@@ -37,7 +35,7 @@ def forces_of_position(model: Model, position: Position, place: Place = key_text
     return _reactions(model, position, dict(position.input), position.input_units, (), place)
 
 
-def forces_of_motion(model: Model, motion: Motion, place: Place = key_text) -> Reactions:
+def forces_of_motion(model: Model, motion: Motion, place: KeyWords = key_text) -> Reactions:
     """Efforts and reactions in all rows of a motion of the mechanism; raises like
     :func:`forces_of_position`, and for other motions.
     """
@@ -54,7 +52,7 @@ def _reactions(
     inputs: Mapping[str, Array] | Mapping[str, float],
     input_units: Mapping[str, str],
     shape: tuple[int, ...],
-    place: Place,
+    place: KeyWords,
 ) -> Reactions:
     if not getattr(model.description, "loaded", False):
         raise InputError(

@@ -17,7 +17,7 @@ Wrong input raises an error. A computation that fails returns a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
@@ -26,6 +26,7 @@ from linkwork.foundation.internal import internal
 __all__ = [
     "ExpressionError",
     "InputError",
+    "KeyWords",
     "LinkworkError",
     "MechanismError",
     "MechanismFileError",
@@ -246,6 +247,10 @@ class NotConvergedError(LinkworkError):
     """
 
     exit_code = 1
+
+
+#: Words the path of a key for a message.
+KeyWords = Callable[[Sequence[str | int]], str]
 
 
 def key_text(key: Sequence[str | int]) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from linkwork.foundation.elementwise import phase, vector
+from linkwork.foundation.elementwise import phase, plain_value, vector
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.dimensions import Number
@@ -78,9 +79,9 @@ class Bodies(LoadedBodies):
         return vector(self.numbers(x), self.numbers(y))
 
     def side_of(self, line: tuple[str, str], point: str) -> float:
-        """1 if a point is to the left of a line in the sketch, else -1."""
-        a, b, c = (self.sketched(each) for each in (*line, point))
-        return 1.0 if ((b - a).conjugate() * (c - a)).imag > 0 else -1.0
+        """The side of a line on which a point is sketched: 1 for left, -1 for right."""
+        start, end, place = map(self.sketched, (*line, point))
+        return math.copysign(1.0, plain_value(((place - start) * (end - start).conjugate()).imag))
 
     def bodies_at(self, point: str) -> Iterator[str]:
         """The links that carry a point, in the file's order."""

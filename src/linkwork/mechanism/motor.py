@@ -82,7 +82,9 @@ class Motor:
         if self.stall is not None:
             torques = {("stall",): self.stall}
         for key, torque in torques.items():
-            numbers.check_amount(lambda at, told: problems.append((tuple(at), told)), key, torque)
+            numbers.check_amount(
+                lambda at, message: problems.append((tuple(at), message)), key, torque
+            )
         yield from problems
         below = -math.inf
         for key, speed in self._speeds:

@@ -90,6 +90,8 @@ def _limit(description: Description, varied: VariedNumber) -> tuple[float, str]:
     if varied.table == "angles":
         return description.angle.turn, "a full turn"
     extent = _extent(description)
+    if varied.table == "dimensions":  # a length or an angle
+        return max(extent, description.angle.turn), "all lengths and a full turn"
     return extent, f"the largest length, {extent:g}"
 
 

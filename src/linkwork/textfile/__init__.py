@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from linkwork.textfile.text_edits import TextEdits as TextEdits
     from linkwork.textfile.writer import (
         save as save,
+        save_bytes as save_bytes,
         save_text as save_text,
         write_text as write_text,
     )

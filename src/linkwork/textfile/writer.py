@@ -21,7 +21,7 @@ from linkwork.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["save", "save_text", "write_tables", "write_text"]
+__all__ = ["save", "save_bytes", "save_text", "write_tables", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
@@ -73,10 +73,15 @@ def save(description: Description, path: Path | str) -> None:
 
 def save_text(text: str, path: Path | str) -> None:
     """Write a text to a file as UTF-8, completely or not at all; raises like :func:`save`."""
+    save_bytes(text.encode("utf-8"), path)
+
+
+def save_bytes(data: bytes, path: Path | str) -> None:
+    """Write a file, completely or not at all; raises like :func:`save`."""
     target = as_path(path)
     try:
         target = target.resolve()
-        _replace(target, text.encode("utf-8"))
+        _replace(target, data)
     except (OSError, ValueError, RuntimeError) as error:
         raise unwritten(path, error) from None
 

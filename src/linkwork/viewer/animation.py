@@ -18,6 +18,7 @@ from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import given_or
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
+from linkwork.textfile.writer import save_bytes
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import Loops, motion_page
@@ -158,7 +159,7 @@ def animate_motion(
     """Write a motion to a file; see :meth:`linkwork.results.motion.Motion.animate`."""
     kind = check_animation(path, options)
     content = animation({"motion": motion}, kind, options=options, progress=progress)
-    as_path(path).write_bytes(content)
+    save_bytes(content, path)
 
 
 def _film(

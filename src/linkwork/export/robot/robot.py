@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.units import LENGTHS, MASSES
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.cylinder import Cylinder
 from linkwork.mechanism.part.pairs import PairKind
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
@@ -102,17 +100,12 @@ class Robot:
         """The direction of a slide in the frame of its child, a unit vector."""
         assert joint.edge.line is not None
         a, b = map(self.place, joint.edge.line)
-        if joint.edge.name in self.linkage_cylinders:
+        if joint.edge.bodies[0] in self.tree.graph.turning:  # a cylinder: its points may coincide
             angle = self.tree.angle(self.start, joint.child)[0][0]
             along = cmath.rect(1.0, float(angle))
         else:
             along = (b - a) / abs(b - a)
         return along * cmath.rect(1.0, -self.frame(joint.child)[1])
-
-    @cached_property
-    def linkage_cylinders(self) -> frozenset[str]:
-        """Cylinders, whose two points may coincide."""
-        return frozenset(part.name for part in self.linkage.of(Cylinder))
 
     def points(self, body: str) -> dict[str, complex]:
         """The points of a body in its frame [m]."""
@@ -128,7 +121,7 @@ class Robot:
             mass = _DENSITY * extent
             middle = sum(places) / len(places)
             return Inertia(mass=mass, center=middle, inertia=mass * extent**2 / 12.0)
-        numbers, mass = self.linkage.numbers, 0.0
+        numbers = self.linkage.numbers
         mass = numbers(given.mass) * float(MASSES[self.linkage.mass])
         inertia = numbers(given.inertia) * float(MASSES[self.linkage.mass]) * self.metre**2
         first = self.place(self.linkage.links[body][0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["SPAN", "Contact", "beside"]
+__all__ = ["SPAN", "Contact", "offset_contact"]
 
 #: The distance of the points ``a`` and ``b``.
 SPAN = "hypot(bx-ax, by-ay)"
@@ -20,7 +20,9 @@ class Contact:
     way: tuple[str, str]
 
 
-def beside(name: str, center: str, line: tuple[str, str], side: float, reach: float) -> Contact:
+def offset_contact(
+    name: str, center: str, line: tuple[str, str], side: float, reach: float
+) -> Contact:
     """``reach`` to the left of a line from a centre; the unit vector is to its ``side``."""
     return Contact(
         name=name,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Holder
@@ -11,10 +9,8 @@ from linkwork.forces.geometry import Geometry
 from linkwork.forces.part.contact import sliding
 from linkwork.forces.size import Size
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.elementwise import plain_value
-from linkwork.mechanism.linkage import Linkage
 
-__all__ = ["across_line", "along_line", "line_of", "rub_on_line", "side_of"]
+__all__ = ["across_line", "along_line", "line_of", "rub_on_line"]
 
 
 def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
@@ -22,13 +18,6 @@ def line_of(line: tuple[str, str], geometry: Geometry) -> ComplexArray:
     span = geometry.place(line[1]).v - geometry.place(line[0]).v
     unit: ComplexArray = span / np.abs(span)
     return unit
-
-
-def side_of(line: tuple[str, str], point: str, linkage: Linkage) -> float:
-    """The side of a line on which a point is sketched: 1 for left, -1 for right."""
-    start, end, place = map(linkage.sketched, (*line, point))
-    across = plain_value(((place - start) * (end - start).conjugate()).imag)
-    return math.copysign(1.0, across)
 
 
 def along_line(bodies: FreeBodies, point: str, on: str, line: tuple[str, str]) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwork.forces.free_bodies import FreeBodies
-from linkwork.forces.part.guide import line_of, side_of
+from linkwork.forces.part.guide import line_of
 from linkwork.forces.part.teeth import mesh
 from linkwork.mechanism.part.rack import Rack
 
@@ -16,7 +16,7 @@ def write(rack: Rack, bodies: FreeBodies) -> None:
     slider = rack.guide(linkage)
     assert slider is not None
     # from the pinion to the rack
-    side = side_of(slider.line, rack.center, linkage)
+    side = linkage.side_of(slider.line, rack.center)
     away = -side * 1j * line_of(slider.line, geometry)
     place = geometry.place(rack.center).v + linkage.numbers(rack.radius) * away
     links = (rack.pinion, slider.link)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.forces.free_bodies import FreeBodies, Reading
-from linkwork.forces.part.guide import along_line, line_of, side_of
+from linkwork.forces.part.guide import along_line, line_of
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.mechanism.part.rolling import Rolling
 from linkwork.results.quantity import Kind
@@ -40,7 +40,7 @@ def _contact(
     center, small = geometry.place(rolling.center).v, linkage.numbers(rolling.radius)
     if rolling.line is not None:
         along = line_of(rolling.line, geometry)
-        away = side_of(rolling.line, rolling.center, linkage) * 1j * along
+        away = linkage.side_of(rolling.line, rolling.center) * 1j * along
         return center - small * away, away, along
     assert rolling.circle is not None
     middle, large = geometry.place(rolling.circle).v, linkage.numbers(rolling.circle_radius or 0)

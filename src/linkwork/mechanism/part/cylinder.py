@@ -10,7 +10,7 @@ from linkwork.foundation.file_keys import Key, Text
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.figures import Figure, Outlines
 from linkwork.mechanism.joint import JointKind
-from linkwork.mechanism.part.pairs import AddedBody, Pair, PairKind, Pairs
+from linkwork.mechanism.part.pairs import AddedBody, KinematicPairs, Pair, PairKind
 from linkwork.mechanism.part.part import POINT_PAIR, NamedPart, PartChecks
 
 __all__ = ["Cylinder", "Strut"]
@@ -79,7 +79,7 @@ class Cylinder(NamedPart):
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.ends
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         ends = zip(self.ends, self.between, strict=True)
         slide = Pair(
             kind=PairKind.SLIDE,
@@ -88,7 +88,7 @@ class Cylinder(NamedPart):
             point=self.between[1],
             line=self.between,
         )
-        return Pairs(
+        return KinematicPairs(
             bodies=tuple(
                 AddedBody(name=end, points=(point,), angle=self.angle_name, pinned=True)
                 for end, point in ends

@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
-__all__ = ["AddedBody", "Coupling", "Pair", "PairKind", "Pairs", "meshing", "sliding_block"]
+__all__ = [
+    "AddedBody",
+    "Coupling",
+    "KinematicPairs",
+    "Pair",
+    "PairKind",
+    "meshing",
+    "sliding_block",
+]
 
 
 class PairKind(Enum):
@@ -56,14 +64,14 @@ class AddedBody:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pairs:
+class KinematicPairs:
     """The bodies that a part adds, its pairs, and its couplings."""
 
     bodies: tuple[AddedBody, ...] = ()
     pairs: tuple[Pair, ...] = ()
     couplings: tuple[Coupling, ...] = ()
 
-    def with_pin(self, link: str) -> Pairs:
+    def with_pin(self, link: str) -> KinematicPairs:
         """A copy in which a link is pinned to the body that the part adds."""
         (body,) = self.bodies
         (point,) = body.points
@@ -71,12 +79,12 @@ class Pairs:
         return replace(self, pairs=(*self.pairs, pin))
 
 
-def sliding_block(name: str, on: str, line: tuple[str, str], point: str) -> Pairs:
+def sliding_block(name: str, on: str, line: tuple[str, str], point: str) -> KinematicPairs:
     """A block at a point that slides along a line of a body."""
     block = AddedBody(name=f"{name} block", points=(point,), on=on)
     ends = (on, block.name)
     slide = Pair(kind=PairKind.SLIDE, name=name, bodies=ends, point=point, line=line)
-    return Pairs(bodies=(block,), pairs=(slide,))
+    return KinematicPairs(bodies=(block,), pairs=(slide,))
 
 
 def meshing(

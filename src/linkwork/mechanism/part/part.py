@@ -20,7 +20,7 @@ from linkwork.mechanism.description import Key, Problems
 from linkwork.mechanism.dimensions import LARGEST, Number
 from linkwork.mechanism.figures import Disc, Figure, Outline, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
-from linkwork.mechanism.part.pairs import Pairs
+from linkwork.mechanism.part.pairs import KinematicPairs
 
 __all__ = [
     "AGREE", "LINK", "NUMBER_PAIR", "POINT", "POINT_PAIR", "SLIDER",
@@ -118,9 +118,9 @@ class Part:
             return None
         return Joint(kind=self.kind, name=self.label, links=self.joined(linkage))
 
-    def pairs(self, linkage: Bodies) -> Pairs | None:
+    def pairs(self, linkage: Bodies) -> KinematicPairs | None:
         """The kinematic pairs of which it consists; ``None`` if curves roll or slide in it."""
-        return Pairs()
+        return KinematicPairs()
 
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         """The links of the joint."""

@@ -11,7 +11,7 @@ from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc, Figure, Outlines
 from linkwork.mechanism.joint import JointKind
-from linkwork.mechanism.part.pairs import Coupling, Pairs
+from linkwork.mechanism.part.pairs import Coupling, KinematicPairs
 from linkwork.mechanism.part.part import LINK, POINT, SLIDER, PartChecks
 from linkwork.mechanism.part.slider import Slider
 from linkwork.mechanism.part.toothed import PRESSURE_KEY, ToothedPart
@@ -92,13 +92,13 @@ class Rack(ToothedPart):
         assert slider is not None
         return self.pinion, slider.link
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         slider = self.guide(linkage)
         assert slider is not None
         radius = linkage.numbers(self.radius)
         turns = ((self.pinion, radius), (slider.on, -radius))
         slide = (self.slider, -linkage.side_of(slider.line, self.center))
-        return Pairs(couplings=(Coupling(name=self.name, turns=turns, slide=slide),))
+        return KinematicPairs(couplings=(Coupling(name=self.name, turns=turns, slide=slide),))
 
     def check(self, checks: PartChecks) -> None:
         """Check that the pinion is on the link along which the rack slides."""

@@ -14,9 +14,9 @@ from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.pairs import (
     AddedBody,
     Coupling,
+    KinematicPairs,
     Pair,
     PairKind,
-    Pairs,
     meshing,
     sliding_block,
 )
@@ -130,7 +130,7 @@ class Rolling(NamedPart):
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.wheel, self.on
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         radius = linkage.numbers(self.radius)
         if self.line is not None:
             turns = ((self.wheel, radius), (self.on, -radius))
@@ -144,7 +144,7 @@ class Rolling(NamedPart):
         ends = {self.circle: (self.on, arm.name), self.center: (arm.name, self.wheel)}
         radii = (linkage.numbers(self.circle_radius), radius)
         wheels, outside = (self.on, self.wheel), not self.inside
-        return Pairs(
+        return KinematicPairs(
             bodies=(arm,),
             pairs=tuple(
                 Pair(kind=PairKind.PIN, name=point, bodies=bodies, point=point)

@@ -15,7 +15,7 @@ from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
 from linkwork.mechanism.joint import JointKind
 from linkwork.mechanism.part.guide import GuidePart
-from linkwork.mechanism.part.pairs import Pair, PairKind, Pairs
+from linkwork.mechanism.part.pairs import KinematicPairs, Pair, PairKind
 from linkwork.mechanism.part.part import LINK, POINT_PAIR, Inversion, Part, PartChecks
 
 __all__ = ["Slider"]
@@ -98,7 +98,7 @@ class Slider(GuidePart):
     def joined(self, linkage: Bodies) -> tuple[str, ...]:
         return self.link, self.on
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         slide = Pair(
             kind=PairKind.SLIDE,
             name=self.name,
@@ -106,7 +106,7 @@ class Slider(GuidePart):
             point=self.points[0],
             line=self.line,
         )
-        return Pairs(pairs=(slide,))
+        return KinematicPairs(pairs=(slide,))
 
     def kept_angle(self, linkage: Bodies) -> tuple[str, str, float]:
         return self.link, self.on, self._angle_against(linkage)

@@ -11,7 +11,7 @@ from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Guide, Outlines
 from linkwork.mechanism.joint import Joint, JointKind
 from linkwork.mechanism.part.guide import GuidePart
-from linkwork.mechanism.part.pairs import Pairs, sliding_block
+from linkwork.mechanism.part.pairs import KinematicPairs, sliding_block
 from linkwork.mechanism.part.part import LINK, POINT, POINT_PAIR, PartChecks, pinned
 
 __all__ = ["GenevaWheel", "Slot"]
@@ -95,7 +95,7 @@ class Slot(GuidePart):
         links = (pinned(linkage, self.point), self.on)
         return Joint(kind=self.kind, name=self.name, links=links, point=self.point)
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         block = sliding_block(self.name, self.on, self.line, self.point)
         link = pinned(linkage, self.point)
         return block.with_pin(link)

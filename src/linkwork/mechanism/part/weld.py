@@ -11,7 +11,7 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Figure, Outlines
-from linkwork.mechanism.part.pairs import Pair, PairKind, Pairs
+from linkwork.mechanism.part.pairs import KinematicPairs, Pair, PairKind
 from linkwork.mechanism.part.part import Inversion, Part, PartChecks, turning_links
 
 __all__ = ["RigidJoint", "Weld"]
@@ -71,12 +71,12 @@ class Weld(Part):
             return second, first, linkage.numbers(self.angle) * linkage.angle.radians
         return second, first, linkage.sketched_angle(second) - linkage.sketched_angle(first)
 
-    def pairs(self, linkage: Bodies) -> Pairs:
+    def pairs(self, linkage: Bodies) -> KinematicPairs:
         first, second = (linkage.links[link] for link in self.links)
         shared = next(point for point in first if point in second)
         name = self.label.replace(" ", "_")
         pair = Pair(kind=PairKind.FIXED, name=name, bodies=self.links, point=shared)
-        return Pairs(pairs=(pair,))
+        return KinematicPairs(pairs=(pair,))
 
     def check(self, checks: PartChecks) -> None:
         if not checks.two(self.links, "link", "links"):

@@ -11,7 +11,7 @@ from linkwork.foundation.file_keys import Key, ListOf, Number as NumberKey, Text
 from linkwork.mechanism.bodies import Bodies
 from linkwork.mechanism.dimensions import Number
 from linkwork.mechanism.figures import Disc
-from linkwork.mechanism.part.pairs import Pairs, meshing
+from linkwork.mechanism.part.pairs import KinematicPairs, meshing
 from linkwork.mechanism.part.part import LINK, NUMBER_PAIR, Inversion, NamedPart, PartChecks
 
 __all__ = ["ARM_KEYS", "PHASE_KEY", "SIZE_KEYS", "ArmPair", "WheelPair"]
@@ -129,10 +129,10 @@ class WheelPair(ArmPair):
         if self.ring and sizes[0] == sizes[1] and sizes[0] > 0:
             checks.add("are equal: a wheel inside a ring is smaller than the ring", field)
 
-    def pairs(self, linkage: Bodies) -> Pairs | None:
+    def pairs(self, linkage: Bodies) -> KinematicPairs | None:
         radii, outside = self.pitch_radii(linkage), not self.together
         mesh = meshing(self.name, self.wheels, self.arm, radii, outside=outside)
-        return Pairs(couplings=(mesh,))
+        return KinematicPairs(couplings=(mesh,))
 
     def pitch_radii(self, linkage: Bodies) -> tuple[float, float]:
         """The given radii, or those computed from the teeth."""

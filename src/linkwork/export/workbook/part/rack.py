@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from linkwork.export.workbook.contact import Contact, beside
+from linkwork.export.workbook.contact import Contact, offset_contact
 from linkwork.export.workbook.part.teeth import mesh, pressure
 from linkwork.export.workbook.reaction_cells import Reactions
-from linkwork.forces.part.guide import side_of
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.rack import Rack
 
@@ -20,8 +19,10 @@ def contacts(rack: Rack, linkage: Linkage) -> Iterator[Contact]:
     """The pitch point, and the direction from the pinion to the rack."""
     slider = rack.guide(linkage)
     assert slider is not None
-    side = -side_of(slider.line, rack.center, linkage)
-    yield beside(rack.name, rack.center, slider.line, side, side * linkage.numbers(rack.radius))
+    side = -linkage.side_of(slider.line, rack.center)
+    yield offset_contact(
+        rack.name, rack.center, slider.line, side, side * linkage.numbers(rack.radius)
+    )
 
 
 def write(rack: Rack, reactions: Reactions) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwork.export.workbook.acting import left_of, minus
-from linkwork.export.workbook.contact import SPAN, Contact, beside
+from linkwork.export.workbook.contact import SPAN, Contact, offset_contact
 from linkwork.export.workbook.reaction_cells import Reactions
-from linkwork.forces.part.guide import side_of
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.rolling import Rolling
 
@@ -18,8 +17,8 @@ def contacts(rolling: Rolling, linkage: Linkage) -> Iterator[Contact]:
     """The point of contact, and the normal towards the wheel."""
     small = linkage.numbers(rolling.radius)
     if rolling.line is not None:
-        side = side_of(rolling.line, rolling.center, linkage)
-        yield beside(rolling.name, rolling.center, rolling.line, side, -side * small)
+        side = linkage.side_of(rolling.line, rolling.center)
+        yield offset_contact(rolling.name, rolling.center, rolling.line, side, -side * small)
         return
     assert rolling.circle is not None
     large = linkage.numbers(rolling.circle_radius or 0)
@@ -40,7 +39,7 @@ def write(rolling: Rolling, reactions: Reactions) -> None:
     grip = left_of(away)
     line = rolling.line
     # along the line, or counter-clockwise about the centre of the circle
-    on_left = line is not None and side_of(line, rolling.center, reactions.linkage) > 0.0
+    on_left = line is not None and reactions.linkage.side_of(line, rolling.center) > 0.0
     if rolling.inside or on_left:
         grip = minus(grip[0]), minus(grip[1])
     reactions.pair(f"{name}.tangent", rolling.wheel, rolling.on, name, grip)

@@ -1,4 +1,4 @@
-"""Welds: a moment beside the force of the pin that their links share."""
+"""Welds: a moment, in addition to the force of the pin that their links share."""
 
 from __future__ import annotations
 
