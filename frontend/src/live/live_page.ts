@@ -92,7 +92,11 @@ export class LivePage {
       hint: (text) => this.hint && (this.hint.textContent = text),
     });
     this.canvas = new CanvasTools(desk, this.editor);
-    this.readiness = new Readiness(desk, (chosen) => this.editor.select(chosen));
+    this.readiness = new Readiness(
+      desk,
+      (chosen) => this.editor.select(chosen),
+      () => this.editor.choose("move"),
+    );
     this.plots = new Plots(desk);
     this.circuits = new CircuitsPanel(desk, (page) => this.look(page));
     this.simulate = new SimulatePanel(desk, {
@@ -297,7 +301,7 @@ export class LivePage {
     this.plots.renew();
     this.newton.renew();
     this.editor.renew(file);
-    this.readiness.show(file);
+    this.readiness.show(file, this.editor.edited);
     this.page?.places.drawing.element.querySelector(".lw-gaps")?.remove();
   }
 
@@ -306,6 +310,7 @@ export class LivePage {
     this.page?.destroy();
     [this.page, this.moving, this.sketched, this.charted] = [null, null, null, false];
     this.editor.rest();
+    this.readiness.rest();
   }
 
   private motion(found: MotionFound): void {
@@ -384,6 +389,7 @@ export class LivePage {
     } else {
       drawing.see(null);
       this.sketched = null;
+      this.readiness.rest();
     }
     this.sheet();
     if (!edited) this.display();

@@ -255,14 +255,14 @@ def test_a_belt_is_added_and_removed_with_its_wheel(open_live: Open, served: Ser
     link.get_by_role("button", name="Add link").click()
     page.locator(".lw-readiness li", has_text="wheel").wait_for()  # nothing turns it yet
     page.get_by_role("button", name="Undo").click()
-    page.locator(".lw-readiness").wait_for(state="hidden")
+    page.locator(".lw-complete").wait_for()
     served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page.get_by_text("has been read again").wait_for()
     page.locator(".lw-group summary", has_text="Remove").click()
     page.get_by_role("button", name="Remove belt", exact=True).click()
     page.locator(".lw-readiness li").first.wait_for()
     page.get_by_role("button", name="Remove link wheel").click()
-    page.locator(".lw-readiness").wait_for(state="hidden")
+    page.locator(".lw-complete").wait_for()
     page.locator("[data-of=wheel]").first.wait_for(state="detached")
     assert lw.loads(served.workbench.text).description == lw.loads(FOUR_BAR).description
 
@@ -275,7 +275,7 @@ def test_what_no_longer_moves_can_be_edited_at_once(open_live: Open, served: Ser
     page.locator(".lw-tools [aria-pressed=true]", has_text="Select").wait_for()
     assert page.get_by_role("button", name="Move", exact=True).is_disabled()
     page.get_by_role("button", name="Undo").click()
-    page.locator(".lw-readiness").wait_for(state="hidden")
+    page.locator(".lw-complete").wait_for()
     page.get_by_role("button", name="Move", exact=True).click()
     page.locator(".lw-transport").wait_for()
     assert served.workbench.text == FOUR_BAR

@@ -1,4 +1,4 @@
-// What a draft lacks to be a mechanism: each line with its remedies and a button that goes there.
+// What a draft lacks to be a mechanism: each line with its remedies and a button that goes there; that it lacks nothing any more.
 
 import type { FileState, Lack } from "../../messages";
 import { html } from "../../svg";
@@ -8,17 +8,38 @@ import type { Chosen } from "./inspector";
 export class Readiness {
   readonly element = html("section", { class: "lw-readiness", "aria-label": "What the mechanism lacks", role: "status" });
 
+  /** Whether the last state of the file lacked something, or has just ceased to. */
+  private news = false;
+
   constructor(
     private readonly desk: Desk,
     private readonly goTo: (chosen: Chosen) => void,
+    private readonly move: () => void,
   ) {}
 
-  show(file: FileState): void {
-    this.element.hidden = file.lacks.length === 0;
+  /** `edited`: the sketch is shown, and not the motion. */
+  show(file: FileState, edited: boolean): void {
+    const lacks = file.lacks.length > 0;
+    this.news = lacks || (edited && this.news);
+    this.element.hidden = !this.news;
     this.element.replaceChildren();
     if (this.element.hidden) return;
     const list = html("ul", {}, this.element);
     for (const lack of file.lacks) this.entry(list, lack);
+    if (!lacks) this.complete(list);
+  }
+
+  /** The motion is shown, or another file. */
+  rest(): void {
+    if (this.element.querySelector("li:not(.lw-complete)")) return;
+    [this.news, this.element.hidden] = [false, true];
+  }
+
+  private complete(list: Element): void {
+    const line = html("li", { class: "lw-complete" }, list);
+    html("span", {}, line, "This is a mechanism, and it moves.");
+    const button = html("button", { type: "button", class: "lw-remedy" }, line, "Show the motion");
+    button.addEventListener("click", this.move);
   }
 
   private entry(list: Element, lack: Lack): void {
