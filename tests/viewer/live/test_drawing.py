@@ -127,7 +127,7 @@ def test_a_crank_rocker_with_a_path_takes_eight_actions(
     sheet.remedy("Fix A and D")
     sheet.remedy("Drive link2")
     complete = sheet.page.locator(".lw-readiness")
-    assert "This is a mechanism, and it moves." in complete.inner_text()
+    assert "The mechanism is complete." in complete.inner_text()
     sheet.key("t")
     sheet.click((-15, 35))
     complete.get_by_role("button", name="Show the motion").click()

@@ -37,7 +37,7 @@ export class Readiness {
 
   private complete(list: Element): void {
     const line = html("li", { class: "lw-complete" }, list);
-    html("span", {}, line, "This is a mechanism, and it moves.");
+    html("span", {}, line, "The mechanism is complete.");
     const button = html("button", { type: "button", class: "lw-remedy" }, line, "Show the motion");
     button.addEventListener("click", this.move);
   }
