@@ -80,8 +80,8 @@ def _design_lines(found: Synthesis) -> list[str]:
 
     columns = [
         Column(header="", cells=[str(design.number) for design in designs], align="right"),
-        Column(header="mechanism", cells=[design.group.given.kind.value for design in designs]),
-        Column(header="driven at", cells=[design.drive.value for design in designs]),
+        Column(header="mechanism", cells=[design.mechanism for design in designs]),
+        Column(header="driven at", cells=[design.driven for design in designs]),
         column(f"transmission [{task.angle.value}]", [design.transmission for design in designs]),
         column(f"size [{task.length}]", [design.size for design in designs]),
     ]
@@ -106,7 +106,7 @@ def _verdict(found: Synthesis) -> list[str]:
         lines += wrapped(told)
     shown = _examples(found)
     for design in shown:
-        reason = f"{design.group.given.kind.value} driven at {design.drive.value}: "
+        reason = f"{design.mechanism} driven at {design.driven}: "
         lines += wrapped(reason + design.defects[0].message, "  ", "    ")
     more = len(found.refused) - len(shown)
     if more > 0:

@@ -86,7 +86,7 @@ def _counts(found: Synthesis) -> Iterator[str]:
 def _caption(found: Synthesis, design: SynthesizedDesign) -> str:
     task = found.task
     return (
-        f"{design.number}: {design.group.given.kind.value} driven at {design.drive.value}, "
+        f"{design.number}: {design.mechanism} driven at {design.driven}, "
         f"transmission angle {design.transmission:.4g}{task.angle.sign} or more, longest link "
         f"{design.size:.4g} {task.length}"
     )
@@ -112,7 +112,7 @@ def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
         numbers = (design.transmission, design.size, design.error, design.score)
         cells = [
             f'<td data-key="{k + 1}">{number}</td>',
-            f"<td>{design.group.given.kind.value}</td><td>{design.drive.value}</td>",
+            f"<td>{design.mechanism}</td><td>{design.driven}</td>",
             *(f'<td data-key="{value}">{_number(value)}</td>' for value in numbers),
             f"<td>{html.escape(defect)}</td>",
         ]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
-from linkwork.design.improvement.mechanism_fit import PathGoal, fit_numbers
+from linkwork.design.improvement.free_timing import freely_timed
+from linkwork.design.improvement.mechanism_fit import PathGoal, fit_numbers, path_misses
 from linkwork.design.improvement.settings import Goal, Improvement
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, LinkworkError, MechanismError, Problem
@@ -21,6 +22,7 @@ from linkwork.mechanism.varied_number import VariedNumber, number_named, with_nu
 from linkwork.motion.model import Model, model_of
 from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_least_squares import Box
+from linkwork.results.motion import Motion
 
 __all__ = ["ImprovedDesign", "improved_designs"]
 
@@ -30,7 +32,7 @@ _FAR = 2.0  # longest numbers, by which others may change
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
 
-@internal("description")
+@internal("description", "motion")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImprovedDesign:
     """A mechanism with improved numbers.
@@ -49,6 +51,12 @@ class ImprovedDesign:
         Whether all rows of its table are proved to be on one branch.
     message : str
         Why it is not sound, and how the search ended.
+    inputs : tuple of float
+        The leading inputs at the points; none without points [file units].
+    misses : tuple of float
+        The distances from the points, on the branch of the table; NaN where this has no position.
+    motion : Motion, optional
+        Its table with the proofs; ``None`` if it has no position.
 
     Examples
     --------
@@ -65,6 +73,9 @@ class ImprovedDesign:
     rms: float
     sound: bool
     message: str
+    inputs: tuple[float, ...] = ()
+    misses: tuple[float, ...] = ()
+    motion: Motion | None = None
 
 
 def improved_designs(
@@ -78,8 +89,8 @@ def improved_designs(
     Parameters
     ----------
     goals : sequence of Mapping
-        ``{"of": "stroke(d)", "target": 40}``, or timed points: ``{"point": "F", "points": [...],
-        "inputs": [...]}``.
+        ``{"of": "stroke(d)", "target": 40}``, or points: ``{"point": "F", "points": [...],
+        "inputs": [...]}``; without inputs timing is free, in order or with ``"order": "any"``.
 
     Raises
     ------
@@ -101,16 +112,34 @@ def improved_designs(
     starts = x * (1.0 + settings.spread * rng.uniform(-1.0, 1.0, (count, len(x))))
     starts[0] = x
     box = _box(model, numbers, x, settings)
-    path = _path(model, points[0]) if points else None
-    found = fit_numbers(model, motion, numbers, box, box.inside(starts), path, others, progress)
-    rows = 1 if path is None else len(path.places)
+    paths = _paths(model, motion, points[0]) if points else (None,)
+    fits = []
+    for part, path in enumerate(paths):
+
+        def tell(fraction: float, done: int = part) -> None:
+            if progress is not None:
+                progress((done + fraction) / len(paths))
+
+        begin = box.inside(starts)
+        fits.append((path, fit_numbers(model, motion, numbers, box, begin, path, others, tell)))
+        if fits[-1][1].interrupted:
+            break
+    best = sorted(
+        (float(found.total[k]), part, int(k))
+        for part, (_, found) in enumerate(fits)
+        for k in np.flatnonzero(np.isfinite(found.total))
+    )
     designs: list[ImprovedDesign] = []
-    for k in np.argsort(found.total, kind="stable"):
-        if not np.isfinite(found.total[k]) or _is_known(found.x[k], designs):
+    for total, part, k in best:
+        path, found = fits[part]
+        if _is_known(found.x[k], designs):
             continue
-        rms = float(np.sqrt(found.path[k] / rows))
         told = "interrupted: the best so far; " if found.interrupted else ""
-        designs.append(_design(model, numbers, found.x[k], float(found.total[k]), rms, told))
+        design = replace(_design(model, numbers, found.x[k], told), total=total)
+        if path is not None:
+            rms = float(np.sqrt(found.path[k] / len(path.places)))
+            design = _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
+        designs.append(design)
     return tuple(sorted(designs, key=lambda design: not design.sound))
 
 
@@ -164,7 +193,7 @@ def _box(model: Model, numbers: Sequence[VariedNumber], x: Array, settings: Impr
     return Box(least=least, most=most)
 
 
-def _path(model: Model, goal: Mapping[str, Any]) -> PathGoal:
+def _paths(model: Model, motion: Motion, goal: Mapping[str, Any]) -> tuple[PathGoal, ...]:
     description = model.description
     traced = next(iter(description.trace), None)
     name = goal.get("point", traced)
@@ -174,11 +203,19 @@ def _path(model: Model, goal: Mapping[str, Any]) -> PathGoal:
     if spelled not in model.equations.points:
         raise InputError(f'"{name}" is no point of {description.name}')
     places = np.array([complex(*place) for place in goal["points"]])
-    inputs = np.asarray(goal.get("inputs", ()), dtype=float)
-    if len(inputs) != len(places) or not len(places):
+    if len(places) < 2:
+        raise InputError(f"{len(places)} points are no path: give two or more")
+    if goal.get("inputs") is None:
+        ordered = goal.get("order", "as given") != "any"
+        return freely_timed(model, motion, spelled, places, ordered)
+    inputs = np.asarray(goal["inputs"], dtype=float)
+    if len(inputs) != len(places):
         raise InputError(f"{len(places)} points need as many inputs, got {len(inputs)}")
     scale = float(model.input_scale[0])
-    return PathGoal(point=spelled, places=places, inputs=inputs * scale, timed=True, ordered=True)
+    timed = PathGoal(
+        point=spelled, places=places, inputs=inputs * scale, timed=True, ordered=True
+    )
+    return (timed,)
 
 
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:
@@ -187,11 +224,12 @@ def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:
 
 
 def _design(
-    model: Model, numbers: Sequence[VariedNumber], x: Array, total: float, rms: float, told: str
+    model: Model, numbers: Sequence[VariedNumber], x: Array, told: str
 ) -> ImprovedDesign:
     """The design with its proof: a certified sweep of its whole table."""
     new = dict(zip(numbers, map(float, x), strict=True))
     description = with_numbers(model.description, new)
+    motion = None
     try:
         motion = sweep(model_of(description))
         lost = int(np.count_nonzero(~motion.certified))
@@ -201,8 +239,32 @@ def _design(
     return ImprovedDesign(
         description=description,
         numbers={q.name: value for q, value in new.items()},
-        total=total,
-        rms=rms,
+        total=np.nan,
+        rms=0.0,
         sound=not lost,
         message=told,
+        motion=motion,
+    )
+
+
+def _on_path(
+    design: ImprovedDesign,
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    path: PathGoal,
+    t: Array,
+) -> ImprovedDesign:
+    """The design with its distances from the points, measured on its own proved branch."""
+    order = slice(None, None, -1 if path.falling else 1)
+    own = tuple(map(float, t[order] / model.input_scale[0]))
+    misses = np.full(len(own), np.nan)
+    if design.motion is not None and design.motion.found.any():
+        x = np.array(list(design.numbers.values()))
+        at = replace(path, inputs=t, timed=True)
+        misses = path_misses(model_of(design.description), design.motion, numbers, at, x)[order]
+    told, sound = design.message, design.sound
+    if not np.isfinite(misses).all():
+        told, sound = f"{told}; not all points lie on the branch of its table", False
+    return replace(
+        design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told
     )

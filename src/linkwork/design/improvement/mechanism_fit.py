@@ -29,7 +29,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.quantities.definition import MotionRows
 from linkwork.results.quantity import Kind
 
-__all__ = ["FittedNumbers", "PathGoal", "fit_numbers"]
+__all__ = ["FittedNumbers", "PathGoal", "fit_numbers", "path_misses"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
 _ROUNDS = (60, 200, 200)  # steps of all lanes, then of the better half
@@ -52,6 +52,8 @@ class PathGoal:
         Whether the inputs are given.
     ordered : bool
         Whether free inputs keep their order.
+    falling : bool
+        Whether the points are listed from the last to the first, so that inputs rise.
     """
 
     point: str
@@ -59,6 +61,7 @@ class PathGoal:
     inputs: Array
     timed: bool
     ordered: bool
+    falling: bool = False
 
     @property
     def lost(self) -> float:
@@ -138,6 +141,30 @@ def fit_numbers(
     )
 
 
+def path_misses(
+    model: Model, motion: Motion, numbers: Sequence[VariedNumber], path: PathGoal, x: Array
+) -> Array:
+    """The distances of one mechanism from timed points, (N,), reached from the nearest rows of its
+    motion; NaN where it has no position on their branch.
+    """
+    away = _inputs_away(path.inputs, motion, model)
+    solved = SolvedLanes(model, numbers, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
+    found = solved.at(x[None], path.inputs[None], np.zeros(1, dtype=int))
+    place = found.rows.place(path.point).v
+    value = found.values([place.real, place.imag])[0][0]
+    return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))
+
+
+def _inputs_away(at: Array, motion: Motion, model: Model) -> Array:
+    """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
+    lead = next(iter(motion.inputs))
+    table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
+    away = at[:, None] - table
+    if model.equations.inputs[0].kind == Kind.ANGLE.value:
+        away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
+    return np.where(motion.found, np.abs(away), np.inf)
+
+
 class _Problem:
     def __init__(
         self,
@@ -180,10 +207,7 @@ class _Problem:
 
     def _rows(self, at: Array) -> SolvedLanes:
         """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
-        away = at[:, None] - self.table
-        if self.turns:
-            away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
-        away = np.where(self.motion.found, np.abs(away), np.inf)
+        away = _inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
         return SolvedLanes(self.model, self.numbers, self.x, q, at, self.lanes)
 

@@ -24,8 +24,8 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
     task, designs = found.task, found.designs
     columns: dict[str, AnyArray] = {
         "design": np.arange(1, len(designs) + 1),
-        "mechanism": np.array([design.group.given.kind.value for design in designs]),
-        "drive": np.array([design.drive.value for design in designs]),
+        "mechanism": np.array([design.mechanism for design in designs]),
+        "drive": np.array([design.driven for design in designs]),
         "delivered": np.array([design.delivered for design in designs]),
     }
     units = dict.fromkeys(columns, "")
@@ -36,7 +36,7 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
         "error": (found.error_unit, [design.error for design in designs]),
     }
     for name in _POINTS:
-        places = [design.design.points.get(name, complex(np.nan, np.nan)) for design in designs]
+        places = [design.points.get(name, complex(np.nan, np.nan)) for design in designs]
         if not np.isnan(np.array([*places, 0j])[:-1]).all():
             numbers[f"{name}.x"] = task.length, [place.real for place in places]
             numbers[f"{name}.y"] = task.length, [place.imag for place in places]

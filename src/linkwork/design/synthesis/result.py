@@ -13,6 +13,7 @@ import numpy as np
 from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.defect_messages import Defect, defects_of
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.completeness import Completeness
@@ -137,6 +138,26 @@ class SynthesizedDesign:
         """The driven link."""
         return self.group.drive
 
+    @property
+    def driven(self) -> str:
+        """The driven link in words."""
+        return self.drive.value
+
+    @property
+    def mechanism(self) -> str:
+        """The kind of mechanism."""
+        return self.group.given.kind.value
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary; none, since all of them are found."""
+        return {}
+
+    @property
+    def points(self) -> dict[str, complex]:
+        """The points at the first position [length]."""
+        return self.design.points
+
     @cached_property
     def kinds(self) -> tuple[DefectKind, ...]:
         """The kinds of its defects; none for a sound design."""
@@ -166,8 +187,17 @@ class SynthesizedDesign:
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.given.miss[self.index])
-        is_angle = self.group.output == "rocker"
-        return self.group.task.angle.from_radians(miss) if is_angle else miss
+        return self.group.task.angle.from_radians(miss) if self._is_rocker else miss
+
+    @property
+    def _is_rocker(self) -> bool:
+        return self.group.output == "rocker"
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the error."""
+        task = self.group.task
+        return task.angle.value if self._is_rocker else task.length
 
     @cached_property
     def design(self) -> Design:
@@ -199,9 +229,9 @@ class SynthesizedDesign:
         """Plain data, as in the command line's JSON."""
         return {
             "file": file,
-            "mechanism": self.group.given.kind.value,
-            "points": {name: [z.real, z.imag] for name, z in self.design.points.items()},
-            "drive": self.drive.value,
+            "mechanism": self.mechanism,
+            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
+            "drive": self.driven,
             "delivered": self.delivered,
             TRANSMISSION_ANGLE.word: self.transmission,
             "size": self.size,
@@ -236,7 +266,7 @@ class Synthesis:
     message : str
         The same in words of the task.
     dyads : tuple of Dyad
-    designs : tuple of SynthesizedDesign
+    designs : tuple of SynthesizedDesign, or of ImprovedMechanism
         Every mechanism with every driven link: sound ones by score, then refused ones.
     starts : int
         Starts of a least-squares fit; 0 where equations are solved.
@@ -253,17 +283,17 @@ class Synthesis:
     completeness: Completeness
     message: str
     dyads: tuple[Dyad, ...]
-    designs: tuple[SynthesizedDesign, ...]
+    designs: tuple[SynthesizedDesign | ImprovedMechanism, ...]
     starts: int = 0
     interrupted: bool = False
 
     @property
-    def delivered(self) -> tuple[SynthesizedDesign, ...]:
+    def delivered(self) -> tuple[SynthesizedDesign | ImprovedMechanism, ...]:
         """The sound designs that the task asks for."""
         return tuple(design for design in self.designs if design.delivered)
 
     @property
-    def refused(self) -> tuple[SynthesizedDesign, ...]:
+    def refused(self) -> tuple[SynthesizedDesign | ImprovedMechanism, ...]:
         """The designs with defects."""
         return tuple(design for design in self.designs if design.kinds)
 
@@ -306,8 +336,7 @@ class Synthesis:
     @property
     def error_unit(self) -> str:
         """The unit of the errors of designs."""
-        turns = any(design.group.output == "rocker" for design in self.designs[:1])
-        return self.task.angle.value if turns else self.task.length
+        return self.designs[0].error_unit if self.designs else self.task.length
 
     def to_dict(self, files: Mapping[int, str] | None = None) -> dict[str, Any]:
         """Plain data, as in the command line's JSON; ``files`` of designs by their place."""

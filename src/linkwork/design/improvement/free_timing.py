@@ -1,0 +1,72 @@
+"""Points without inputs: where a fit begins along the path of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.design.improvement.mechanism_fit import PathGoal
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.rounding import EQUAL_ROWS
+from linkwork.motion.model import Model
+from linkwork.results.motion import Motion
+from linkwork.results.quantity import Kind
+
+__all__ = ["freely_timed"]
+
+_SHARES = (0.1, 0.25, 0.5, 0.75, 1.0)  # of the path's length, for points along a part of it
+_SHIFTS = 36  # of the first point along the path
+
+
+def freely_timed(
+    model: Model, motion: Motion, point: str, places: ComplexArray, ordered: bool
+) -> tuple[PathGoal, ...]:
+    """Goals with free timing, each with inputs at which the mechanism as it is comes near the points.
+
+    In any order each point takes the nearest row. In order there is one goal for each sense of the
+    input: points at the same shares of arc length on a part of the path, the part and its begin those
+    of least squares.
+    """
+    lead = next(iter(motion.inputs))
+    rows = np.flatnonzero(motion.found)
+    at = np.asarray(motion.inputs[lead])[rows] * float(model.input_scale[0])
+    path = np.asarray(motion[f"{point}.x"])[rows] + 1j * np.asarray(motion[f"{point}.y"])[rows]
+    goal = PathGoal(point=point, places=places, inputs=at[:0], timed=False, ordered=ordered)
+    if not ordered:
+        nearest = np.abs(places[:, None] - path).argmin(axis=1)
+        return (replace(goal, inputs=at[nearest]),)
+    around = model.equations.inputs[0].kind == Kind.ANGLE.value and bool(
+        abs(abs(at[-1] - at[0]) - FULL_TURN) <= EQUAL_ROWS * FULL_TURN
+    )
+    goals = []
+    for falling in (False, True):
+        listed = places[::-1] if falling else places
+        matches = _matches(at, path, listed, around)
+        best = min(matches, key=lambda match: float(np.sum(np.abs(match[1] - listed) ** 2)))
+        goals.append(replace(goal, places=listed, inputs=best[0], falling=falling))
+    return tuple(goals)
+
+
+def _matches(
+    at: Array, path: ComplexArray, places: ComplexArray, around: bool
+) -> Iterator[tuple[Array, ComplexArray]]:
+    """Rising inputs for the points, and where the mechanism is then, for each part and begin."""
+    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
+    steps = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(places)))])
+    along = steps / steps[-1] if steps[-1] > 0.0 else np.linspace(0.0, 1.0, len(places))
+    total, turn = length[-1], at[-1] - at[0]
+    # the last of N points on a whole closed path is one step before its end
+    shares = (*_SHARES[:-1], 1.0 - 1.0 / len(places)) if around else _SHARES
+    for share in shares:
+        free = 1.0 if around else 1.0 - share
+        for first in np.linspace(0.0, free, _SHIFTS, endpoint=not around):
+            s = first + share * along
+            laps, inside = np.divmod(s, 1.0) if around else (0.0 * s, s)
+            where = np.interp(inside * total, length, np.arange(len(at)))
+            inputs = np.interp(where, np.arange(len(at)), at) + laps * turn
+            low = where.astype(int)
+            high = np.minimum(low + 1, len(at) - 1)
+            yield inputs, path[low] + (where - low) * (path[high] - path[low])
