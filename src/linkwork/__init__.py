@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from linkwork.batch.limits import (
         FamilyLimits as FamilyLimits,
     )
-    from linkwork.design.improvement.improving import (
+    from linkwork.design.improvement.improved_design import (
         ImprovedDesign as ImprovedDesign,
     )
     from linkwork.design.synthesis.defect_messages import (

@@ -24,6 +24,7 @@ from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.gradients import EVERY, gradient_campaign
+from tests.campaigns.improvement import PARTS as IMPROVEMENTS, improvement_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.links import link_campaign
@@ -40,7 +41,13 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
-_OWN_PART = {"gradients": 1, "parallel-trains": 1, "poses": 1000, "precision-points": 4}
+_OWN_PART = {
+    "gradients": 1,
+    "improve": 1,
+    "parallel-trains": 1,
+    "poses": 1000,
+    "precision-points": 4,
+}
 #: Mechanisms in random order, so that a smaller campaign is a sample of all of them.
 _GRADIENTS = np.random.default_rng(20).permutation(EVERY)
 
@@ -144,6 +151,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
     "gradients": (_gradients, EVERY),
+    "improve": (improvement_campaign, IMPROVEMENTS),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -55,7 +55,11 @@ def test_goals_without_a_meaning_are_refused() -> None:
         bar.improve({"of": "rocker"})
     with pytest.raises(MechanismError, match="contradict each other"):
         bar.improve({"of": "rocker", "least": 3.0, "most": 2.0})
-    with pytest.raises(InputError, match="need as many inputs"):
-        bar.improve({"point": "B", "points": [(1, 2)]})
-    with pytest.raises(InputError, match="needs rates"):
-        bar.improve({"of": "B.x.velocity", "target": 1.0})
+    with pytest.raises(MechanismError, match="need as many inputs"):
+        bar.improve({"point": "B", "points": [(1, 2), (3, 4)], "inputs": [1]})
+    with pytest.raises(MechanismError, match="same as point 1"):
+        bar.improve({"point": "B", "points": [(1, 2), (1, 2)]})
+    with pytest.raises(MechanismError, match=r"is no key of a goal \(keys: target"):
+        bar.improve({"of": "rocker", "taget": 1.0})
+    with pytest.raises(InputError, match="mixes numbers of the motion"):
+        bar.improve({"of": "stroke(rocker) - rocker", "target": 1.0})

@@ -10,7 +10,7 @@ from linkwork.api.dynamic import DynamicMechanism
 from linkwork.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from linkwork.design.improvement.improving import ImprovedDesign
+    from linkwork.design.improvement.improved_design import ImprovedDesign
     from linkwork.foundation.arrays import Array
     from linkwork.results.motion import Motion
     from linkwork.results.position import Position
@@ -113,23 +113,27 @@ class DesignedMechanism(DynamicMechanism):
         *,
         vary: Sequence[str] = (),
         bounds: Mapping[str, tuple[float, float]] | None = None,
+        fit: str = "least squares",
         starts: int = 16,
         spread: float = 0.05,
         seed: int = 1,
         progress: Callable[[float], None] | None = None,
     ) -> tuple[ImprovedDesign, ...]:
-        """Designs that meet goals best, by least squares from many starts.
+        """Designs that meet goals best, from many starts.
 
         Parameters
         ----------
         goal : Mapping, or sequence of Mapping
-            Timed points ``{"point": "F", "points": [(x, y), …], "inputs": […]}``; a quantity at
-            inputs ``{"of": "rocker", "at": […], "values": […]}``; a quantity, or a number of the
-            motion, with ``target``, ``least`` or ``most``; each with ``weight``. File units.
+            Points ``{"point": "F", "points": [(x, y), …], "inputs": […]}``, without inputs in their
+            order or with ``"order": "any"``; a quantity at inputs ``{"of": "rocker", "at": […],
+            "values": […]}``; a quantity, a number of the motion (``dwell(d, 2)``) or a formula of
+            either, with ``target``, ``least`` or ``most``; each with ``weight``. File units.
         vary : sequence of str
             Numbers that vary; by default lengths, angles, offsets, dimensions and fixed pivots.
         bounds : Mapping[str, (number, number)], optional
             By default lengths change by a factor of four at most.
+        fit : str
+            "least squares", or "minimax": the largest miss counts.
         starts, spread, seed : int, number, int
             Starts about the mechanism as it is, their relative spread, and their seed; the first
             one is the mechanism itself.
@@ -158,9 +162,15 @@ class DesignedMechanism(DynamicMechanism):
         """
         wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
         settings = design.Improvement(
-            vary=tuple(vary), bounds=bounds or {}, starts=starts, spread=spread, seed=seed
+            vary=(vary,) if isinstance(vary, str) else tuple(vary),
+            bounds=bounds or {},
+            fit=fit,
+            starts=starts,
+            spread=spread,
+            seed=seed,
         )
-        return design.improved_designs(self.model, wanted, settings, progress)
+        goals = tuple(map(design.read_goal, wanted))
+        return design.improved_designs(self.model, goals, settings, progress)
 
     def tolerance(
         self,

@@ -81,6 +81,16 @@ class Task:
         return cls._of("function", function=own, **tables)
 
     @classmethod
+    def improve(cls, mechanism: str | Path, **tables: Any) -> Self:
+        """A task that improves a mechanism: a file, or an example of the library.
+
+        ``goal``, ``goals``, ``point``, ``vary``, ``bounds``, ``starts``, ``spread``, ``front`` and
+        ``seed`` are keys of the table ``improve``; all others are tables of the task.
+        """
+        own = {key: tables.pop(key) for key in _OF_IMPROVEMENTS if key in tables}
+        return cls._of("improve", mechanism=str(mechanism), improve=own, **tables)
+
+    @classmethod
     def load(cls, path: str | Path) -> Self:
         """The task in a file.
 
@@ -158,6 +168,9 @@ class Task:
         return f'<Task "{self.name}": {self.described.kind}>'
 
 
+_OF_IMPROVEMENTS = (
+    "goal", "goals", "point", "vary", "bounds", "starts", "spread", "front", "seed",
+)  # fmt: skip
 _OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
 
 

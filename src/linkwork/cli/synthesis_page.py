@@ -42,7 +42,9 @@ def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
         yield "interrupted", "the designs are the best found until then"
     driven = len(found.designs)
     yield "mechanisms", str(found.linkages)
-    each = "driven at A0" if found.starts else "one for each link that can be driven"
+    each = "one for each link that can be driven"
+    if found.starts:
+        each = f"driven at {found.designs[0].driven}" if found.designs else "none found"
     yield "designs", f"{driven}, {each}"
     for kind, count in found.defects.items():
         yield kind.value, f"{count}"
@@ -86,9 +88,13 @@ def _design_lines(found: Synthesis) -> list[str]:
         column(f"size [{task.length}]", [design.size for design in designs]),
     ]
     if any(design.error for design in designs):
-        columns.append(column(f"error [{found.error_unit}]", [d.error for d in designs]))
+        columns.append(column(_error(found), [d.error for d in designs]))
     columns.append(column("score", [design.score for design in designs]))
     return table_lines(columns)
+
+
+def _error(found: Synthesis) -> str:
+    return f"error [{found.error_unit}]" if found.error_unit else "error"
 
 
 def _verdict(found: Synthesis) -> list[str]:

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     from linkwork.design.flywheel import flywheel as flywheel
     from linkwork.design.harmonic_analysis import harmonics as harmonics
     from linkwork.design.improvement.improving import improved_designs as improved_designs
-    from linkwork.design.improvement.settings import Improvement as Improvement
+    from linkwork.design.improvement.settings import (
+        Improvement as Improvement,
+        read_goal as read_goal,
+    )
     from linkwork.design.inflection import inflection_circle as inflection_circle
     from linkwork.design.motor_check import motor_check as motor_check
     from linkwork.design.sensitivity import (

@@ -145,6 +145,9 @@ class DifferentiatedRows(QuantityValues):
     @cached_property
     def variables(self) -> dict[str, Jet]:
         """All variables by symbol, with as many derivatives on the tape as asked for."""
+        return self._differentiated()
+
+    def _differentiated(self) -> dict[str, Jet]:
         known = self.solution, *self._rates
         columns: list[list[Any]] = [[part[:, k] for k in range(part.shape[1])] for part in known]
         for order in range(self.order + 1):

@@ -278,7 +278,7 @@ class _Part:
         taped = kind(model, numbers, self.v, needs, plays)
         with np.errstate(all="ignore"):
             columns: Sequence[Any] = (
-                (taped.leading_input,) if self.of is None else self.of.columns(taped)
+                (taped.leading_input,) if self.of is None else self.of.columns(taped, taped.speed)
             )
             given = (self.weights.value, self.weights.first, self.weights.second)
             total: Any = np.zeros(len(self.v))

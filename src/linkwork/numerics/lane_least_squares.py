@@ -28,6 +28,7 @@ _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
 _LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
 _IDLE = 1e-13  # relative decrease of the sum of squares: rounding
 _MOST_IDLE = 3  # steps in a row
+_ROUNDINGS = 8.0 * EPSILON  # relative change of numbers: rounding
 _SINGULAR = 1e-13  # of the largest diagonal entry: keeps the matrix regular
 
 
@@ -223,8 +224,10 @@ def minimise(
     x = box.inside(fit.x)
     t = fit.t if sequenced is None else sequenced.ordered(fit.t)
     now = evaluate(x, t, lanes)
-    # sums of another problem are of no use here
-    work = replace(fit, x=x, t=t, total=now.total, idle=np.zeros_like(fit.idle))
+    # sums and damping of another problem are of no use here
+    damping = np.minimum(fit.damping, _FIRST_DAMPING)
+    idle = np.zeros_like(fit.idle)
+    work = replace(fit, x=x, t=t, total=now.total, damping=damping, idle=idle)
     interrupted = False
     try:
         for _ in range(steps):
@@ -265,8 +268,11 @@ def _step(
     there = evaluate(x, t, lanes)
     total = there.total
     better = total < work.total
-    gained = work.total - total > _IDLE * work.total
-    idle = np.where(better & gained, 0, np.where(better, work.idle + 1, work.idle))
+    with np.errstate(invalid="ignore"):  # infinite sums have no difference
+        change = np.abs(work.total - total)
+    # a step that changes the sum by rounding alone gains nothing, in whichever direction
+    still = (change <= _IDLE * work.total) | _unmoved(work.x, x) & _unmoved(work.t, t)
+    idle = np.where(still, work.idle + 1, np.where(better, 0, work.idle))
     damping = np.where(
         better, np.maximum(work.damping * _LESS, _SMALLEST_DAMPING), work.damping * _MORE
     )
@@ -281,6 +287,12 @@ def _step(
         ),
         now.replaced(better, there),
     )
+
+
+def _unmoved(old: Array, new: Array) -> BoolArray:
+    """Lanes whose numbers (D, K) change by rounding alone."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray((np.abs(new - old) <= _ROUNDINGS * np.abs(old)).all(axis=1))
 
 
 def _either(which: BoolArray, new: Array, old: Array) -> Array:

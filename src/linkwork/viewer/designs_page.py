@@ -93,10 +93,10 @@ def _caption(found: Synthesis, design: SynthesizedDesign) -> str:
 
 
 def _head(found: Synthesis) -> str:
-    task = found.task
+    task, unit = found.task, f"[{found.error_unit}]" if found.error_unit else ""
     names = (
         "design", "mechanism", "drive", f"transmission [{task.angle.value}]",
-        f"size [{task.length}]", f"error [{found.error_unit}]", "score", "defect",
+        f"size [{task.length}]", f"error {unit}".strip(), "score", "defect",
     )  # fmt: skip
     return "".join(f"<th><button>{html.escape(name)}</button></th>" for name in names)
 

@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis.task_file import read_task, read_task_text
+from linkwork.design.synthesis.task_file import read_task_text
 from linkwork.design.synthesis.task_keys import TASK
 from linkwork.textfile.schema import schema_of
 from linkwork.textfile.toml_text import data_of
@@ -123,12 +123,6 @@ def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
     rolled = [(0, 0, 0), (1, 0, 90), (1, 1, 180), (0, 1, 270)]
     with pytest.raises(lw.MechanismError, match=r"a rotation about \[0.5, 0.5\]"):
         lw.Task.motion(rolled).solve()
-
-
-def test_a_kind_without_a_solver_says_so() -> None:
-    assert read_task(_EXAMPLES[0]).kind
-    with pytest.raises(lw.InputError, match="cannot be solved yet"):
-        lw.Task(read_task_text("format = 1\ntask = 'improve'\n")).solve()
 
 
 def test_a_mechanism_of_any_kind_is_judged_by_its_circuits() -> None:

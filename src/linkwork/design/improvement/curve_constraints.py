@@ -20,7 +20,7 @@ from linkwork.foundation.arrays import Array, IndexArray
 __all__ = ["CurveConstraints"]
 
 _MARGIN = 1e-6  # sizes of the goal: by which constraints hold in the end
-_DEAD = np.radians(1.0)  # the least transmission angle of all: dead points are kept off
+_DEAD = np.radians(0.25)  # the least transmission angle of all: dead points are kept off
 
 
 class CurveConstraints:
@@ -29,6 +29,8 @@ class CurveConstraints:
     def __init__(self, kind: type[CouplerCurves], goal: CurveGoal, lanes: int) -> None:
         self.kind, self.goal = kind, goal
         self._curves = kind(np.ones(1))
+        #: The weight of the residuals of constraints, which grows.
+        self.weight = 1.0
         self._point_shift = np.zeros((lanes, len(goal.points)))
         self._shift = np.zeros(
             (lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1])
@@ -39,7 +41,14 @@ class CurveConstraints:
         h, by_x = self._constraints(x)
         h = h + self._shift[lanes]  # eq. (155)
         broken = h > 0.0
-        return np.where(broken, h, 0.0), np.where(broken[:, :, None], by_x, 0.0)
+        weight = self.weight
+        return np.where(broken, weight * h, 0.0), np.where(broken[:, :, None], weight * by_x, 0.0)
+
+    def weigh(self, weight: float) -> None:
+        """Change the weight; the multipliers, weight² times the shifts, stay."""
+        for shift in (self._shift, self._point_shift):
+            shift *= (self.weight / weight) ** 2
+        self.weight = weight
 
     def at_points(
         self, x: Array, angles: Array, lanes: IndexArray
@@ -50,11 +59,12 @@ class CurveConstraints:
         if self.goal.must_turn:
             return None
         cosine, by_x, by_angle = self._curves.cosines(x, angles)
-        sign = np.sign(cosine) * self.goal.size
+        weight = self.weight
+        sign = weight * np.sign(cosine) * self.goal.size
         h = np.abs(cosine) * self.goal.size - self._most + self._point_shift[lanes]
         broken = h > 0.0
         return (
-            np.where(broken, h, 0.0 * h),
+            np.where(broken, weight * h, 0.0 * h),
             np.where(broken[:, :, None], by_x * sign[:, :, None], 0.0),
             np.where(broken, by_angle * sign, 0.0),
         )
@@ -64,7 +74,7 @@ class CurveConstraints:
         self._shift[lanes] = np.maximum(0.0, self._constraints(x)[0] + self._shift[lanes])
         points = self.at_points(x[:, : len(self.kind.names)], angles, lanes)
         if points is not None:
-            self._point_shift[lanes] = np.nan_to_num(points[0])
+            self._point_shift[lanes] = np.nan_to_num(points[0]) / self.weight
 
     @property
     def _most(self) -> float:

@@ -24,9 +24,15 @@ __all__ = ["FittedCurves", "fit_curve"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad]: far above rounding
 _DRAWS = 6  # for each start that is kept
-#: Lanes that go on, as shares of the starts, and the steps they do; after each the multipliers of
-#: constraints change.
-_STAGES = ((1.0, 12), (0.4, 30), (0.12, 120), *((0.04, 200),) * 4)
+#: Lanes that go on, as shares of the starts, the steps they do, and the weight of constraints; after
+#: each the multipliers of constraints change.
+_STAGES = (
+    (1.0, 12, 10.0),
+    (0.4, 30, 30.0),
+    (0.12, 120, 30.0),
+    *((0.04, 200, 30.0),) * 3,
+    *((0.04, 200, 100.0),) * 2,
+)
 _FEWEST = 12  # lanes of a stage
 _PART = 128  # lanes of one thread
 _SAME_DIMENSIONS = 0.01  # relative difference of dimensions
@@ -78,9 +84,10 @@ def fit_curve(
     problem = _Problem(kind, goal, found)
     fit = starts_of(problem.entries(found), problem.own(found))
     numbers = np.arange(len(fit))
-    work = sum(share * steps for share, steps in _STAGES)
+    work = sum(share * steps for share, steps, _ in _STAGES)
     done = 0.0
-    for share, steps in _STAGES:
+    for share, steps, weight in _STAGES:
+        problem.constraints.weigh(weight)
         keep = np.argsort(fit.total, kind="stable")[: max(_FEWEST, round(share * starts))]
         if done:
             fit, numbers = fit.take(keep), numbers[keep]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.design.improvement.mechanism_fit import PathGoal
+from linkwork.design.improvement.goals import PathGoal
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.rounding import EQUAL_ROWS
@@ -24,11 +24,11 @@ _SHIFTS = 36  # of the first point along the path
 def freely_timed(
     model: Model, motion: Motion, point: str, places: ComplexArray, ordered: bool
 ) -> tuple[PathGoal, ...]:
-    """Goals with free timing, each with inputs at which the mechanism as it is comes near the points.
+    """Goals with free timing, with inputs at which the mechanism as it is comes near the points.
 
     In any order each point takes the nearest row. In order there is one goal for each sense of the
-    input: points at the same shares of arc length on a part of the path, the part and its begin those
-    of least squares.
+    input: points at the same shares of arc length on a part of the path. The part and where it
+    begins are those of least squares.
     """
     lead = next(iter(motion.inputs))
     rows = np.flatnonzero(motion.found)

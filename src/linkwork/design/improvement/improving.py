@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.free_timing import freely_timed
-from linkwork.design.improvement.mechanism_fit import PathGoal, fit_numbers, path_misses
-from linkwork.design.improvement.settings import Goal, Improvement
+from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.mechanism_fit import fit_numbers, path_misses
+from linkwork.design.improvement.settings import Goal, Improvement, Points
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError, LinkworkError, MechanismError, Problem
-from linkwork.foundation.internal import internal
+from linkwork.foundation.errors import (
+    InputError,
+    LinkworkError,
+    MechanismError,
+    Problem,
+    UnknownNameError,
+    choices,
+)
 from linkwork.foundation.names import GROUND, find_spelling
-from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, number_named, with_numbers
 from linkwork.motion.model import Model, model_of
@@ -24,95 +30,51 @@ from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_least_squares import Box
 from linkwork.results.motion import Motion
 
-__all__ = ["ImprovedDesign", "improved_designs"]
+__all__ = [
+    "FACTOR",
+    "STARTS",
+    "box_of",
+    "improved_designs",
+    "numbers_to_vary",
+    "point_named",
+]
 
-_STARTS = 16
-_FACTOR = 4.0  # by which lengths may change, unless bounds are given
+STARTS = 16
+FACTOR = 4.0  # by which lengths may change, unless bounds are given
 _FAR = 2.0  # longest numbers, by which others may change
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
 
-@internal("description", "motion")
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ImprovedDesign:
-    """A mechanism with improved numbers.
-
-    Parameters
-    ----------
-    description : Description
-        With its new numbers.
-    numbers : Mapping[str, float]
-        Those that varied [file units].
-    total : float
-        The weighted sum of squares of all misses.
-    rms : float
-        The root mean square of the distances from the points; 0 without points [length].
-    sound : bool
-        Whether all rows of its table are proved to be on one branch.
-    message : str
-        Why it is not sound, and how the search ended.
-    inputs : tuple of float
-        The leading inputs at the points; none without points [file units].
-    misses : tuple of float
-        The distances from the points, on the branch of the table; NaN where this has no position.
-    motion : Motion, optional
-        Its table with the proofs; ``None`` if it has no position.
-
-    Examples
-    --------
-    >>> import linkwork as lw
-    >>> goal = {"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}
-    >>> best = lw.example("four-bar").improve(goal, vary=["A B", "O4 B"], starts=4)[0]
-    >>> sorted(best.numbers), best.sound
-    (['A B', 'O4 B'], True)
-    """
-
-    description: Description
-    numbers: Mapping[str, float]
-    total: float
-    rms: float
-    sound: bool
-    message: str
-    inputs: tuple[float, ...] = ()
-    misses: tuple[float, ...] = ()
-    motion: Motion | None = None
-
-
 def improved_designs(
     model: Model,
-    goals: Sequence[Mapping[str, Any]],
+    goals: Sequence[Goal | Points],
     settings: Improvement,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[ImprovedDesign, ...]:
     """Different local minima, sound ones first, then by their misses.
-
-    Parameters
-    ----------
-    goals : sequence of Mapping
-        ``{"of": "stroke(d)", "target": 40}``, or points: ``{"point": "F", "points": [...],
-        "inputs": [...]}``; without inputs timing is free, in order or with ``"order": "any"``.
 
     Raises
     ------
     InputError, MechanismError
         For goals that contradict themselves, or a mechanism without a motion.
     """
-    points = [goal for goal in goals if "points" in goal]
-    others = [
-        Goal(**{k: _plain(v) for k, v in goal.items()}) for goal in goals if goal not in points
-    ]
-    _check(settings, points, others)
-    numbers = _varied(model, settings.vary)
+    _check(settings, goals)
+    points = next((goal for goal in goals if isinstance(goal, Points)), None)
+    others = [goal for goal in goals if isinstance(goal, Goal)]
+    numbers = numbers_to_vary(model, settings.vary)
+    if not numbers:
+        raise InputError(f'"{model.description.name}" has no number that can vary alone')
     x = np.array([float(q.of(model.description)) for q in numbers])
     motion = sweep(model, certify=False)
     if not motion.found.any():
         raise InputError(f'"{model.description.name}" has no position: improve one that moves')
     rng = np.random.default_rng(settings.seed)
-    count = settings.starts or _STARTS
+    count = settings.starts or STARTS
     starts = x * (1.0 + settings.spread * rng.uniform(-1.0, 1.0, (count, len(x))))
     starts[0] = x
-    box = _box(model, numbers, x, settings)
-    paths = _paths(model, motion, points[0]) if points else (None,)
+    box = box_of(model, numbers, settings)
+    paths = _paths(model, motion, points) if points else (None,)
+    minimax = settings.fit == "minimax"
     fits = []
     for part, path in enumerate(paths):
 
@@ -121,21 +83,28 @@ def improved_designs(
                 progress((done + fraction) / len(paths))
 
         begin = box.inside(starts)
-        fits.append((path, fit_numbers(model, motion, numbers, box, begin, path, others, tell)))
-        if fits[-1][1].interrupted:
+        found = fit_numbers(
+            model, motion, numbers, box, begin, path, others, minimax=minimax, progress=tell
+        )
+        fits.append((path, found))
+        if found.interrupted:
             break
     best = sorted(
-        (float(found.total[k]), part, int(k))
+        (float((found.largest if minimax else found.total)[k]), part, int(k))
         for part, (_, found) in enumerate(fits)
         for k in np.flatnonzero(np.isfinite(found.total))
     )
     designs: list[ImprovedDesign] = []
-    for total, part, k in best:
+    for _, part, k in best:
         path, found = fits[part]
         if _is_known(found.x[k], designs):
             continue
         told = "interrupted: the best so far; " if found.interrupted else ""
-        design = replace(_design(model, numbers, found.x[k], told), total=total)
+        design = replace(
+            _design(model, numbers, found.x[k], told),
+            total=float(found.total[k]),
+            largest=float(found.largest[k]),
+        )
         if path is not None:
             rms = float(np.sqrt(found.path[k] / len(path.places)))
             design = _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
@@ -143,23 +112,19 @@ def improved_designs(
     return tuple(sorted(designs, key=lambda design: not design.sound))
 
 
-def _plain(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list | tuple | np.ndarray) else value
-
-
-def _check(settings: Improvement, points: Sequence[object], goals: Sequence[Goal]) -> None:
+def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
     found = [(key, message) for key, message in settings.problems()]
     for k, goal in enumerate(goals):
         found += [(("goals", k, *key), message) for key, message in goal.problems()]
-    if not points and not goals:
+    if not goals:
         found.append((("goals",), "are missing: say what is wanted"))
-    if len(points) > 1:
+    if sum(isinstance(goal, Points) for goal in goals) > 1:
         found.append((("goals",), "name points twice: one point follows them"))
     if found:
         raise MechanismError([Problem(key=k, message=m) for k, m in found], "the improvement")
 
 
-def _varied(model: Model, names: Sequence[str]) -> tuple[VariedNumber, ...]:
+def numbers_to_vary(model: Model, names: Sequence[str]) -> tuple[VariedNumber, ...]:
     """The numbers asked for, or all lengths, angles, offsets, dimensions and fixed pivots."""
     numbers, _ = chosen_numbers(model, names or None)
     if names:
@@ -179,11 +144,19 @@ def _varied(model: Model, names: Sequence[str]) -> tuple[VariedNumber, ...]:
     )
 
 
-def _box(model: Model, numbers: Sequence[VariedNumber], x: Array, settings: Improvement) -> Box:
+def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Box:
+    """The bounds of numbers.
+
+    Raises
+    ------
+    InputError
+        For bounds of a number that does not vary.
+    """
+    x = np.array([float(q.of(model.description)) for q in numbers])
     far = _FAR * float(np.abs(x).max())
     is_length = np.array([q.table == "lengths" for q in numbers])
-    least = np.where(is_length, x / _FACTOR, x - far)
-    most = np.where(is_length, x * _FACTOR, x + far)
+    least = np.where(is_length, x / FACTOR, x - far)
+    most = np.where(is_length, x * FACTOR, x + far)
     for name, (low, high) in settings.bounds.items():
         number = number_named(model.description, name)
         if number not in numbers:
@@ -193,29 +166,32 @@ def _box(model: Model, numbers: Sequence[VariedNumber], x: Array, settings: Impr
     return Box(least=least, most=most)
 
 
-def _paths(model: Model, motion: Motion, goal: Mapping[str, Any]) -> tuple[PathGoal, ...]:
-    description = model.description
-    traced = next(iter(description.trace), None)
-    name = goal.get("point", traced)
-    if name is None:
-        raise InputError(f'"{description.name}" traces no point: name one, "point": "P"')
+def point_named(model: Model, name: str) -> str:
+    """A point as the mechanism spells it.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none.
+    """
     spelled = find_spelling(name, model.equations.points)
     if spelled not in model.equations.points:
-        raise InputError(f'"{name}" is no point of {description.name}')
-    places = np.array([complex(*place) for place in goal["points"]])
-    if len(places) < 2:
-        raise InputError(f"{len(places)} points are no path: give two or more")
-    if goal.get("inputs") is None:
-        ordered = goal.get("order", "as given") != "any"
-        return freely_timed(model, motion, spelled, places, ordered)
-    inputs = np.asarray(goal["inputs"], dtype=float)
-    if len(inputs) != len(places):
-        raise InputError(f"{len(places)} points need as many inputs, got {len(inputs)}")
-    scale = float(model.input_scale[0])
-    timed = PathGoal(
-        point=spelled, places=places, inputs=inputs * scale, timed=True, ordered=True
-    )
-    return (timed,)
+        known = choices("points", model.equations.points, name)
+        raise UnknownNameError(f'there is no point "{name}" {known}')
+    return spelled
+
+
+def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
+    description = model.description
+    name = goal.point or next(iter(description.trace), None)
+    if name is None:
+        raise InputError(f'"{description.name}" traces no point: name one, point = "P"')
+    spelled = point_named(model, name)
+    places = np.array([complex(*place) for place in goal.points])
+    if goal.inputs is None:
+        return freely_timed(model, motion, spelled, places, goal.order != "any")
+    inputs = np.asarray(goal.inputs, dtype=float) * float(model.input_scale[0])
+    return (PathGoal(point=spelled, places=places, inputs=inputs, timed=True, ordered=True),)
 
 
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:
@@ -223,9 +199,7 @@ def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:
     return any(np.abs(other - x).max() <= _EQUAL_NUMBERS * np.abs(x).max() for other in others)
 
 
-def _design(
-    model: Model, numbers: Sequence[VariedNumber], x: Array, told: str
-) -> ImprovedDesign:
+def _design(model: Model, numbers: Sequence[VariedNumber], x: Array, told: str) -> ImprovedDesign:
     """The design with its proof: a certified sweep of its whole table."""
     new = dict(zip(numbers, map(float, x), strict=True))
     description = with_numbers(model.description, new)
@@ -240,6 +214,7 @@ def _design(
         description=description,
         numbers={q.name: value for q, value in new.items()},
         total=np.nan,
+        largest=np.nan,
         rms=0.0,
         sound=not lost,
         message=told,
@@ -265,6 +240,4 @@ def _on_path(
     told, sound = design.message, design.sound
     if not np.isfinite(misses).all():
         told, sound = f"{told}; not all points lie on the branch of its table", False
-    return replace(
-        design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told
-    )
+    return replace(design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told)

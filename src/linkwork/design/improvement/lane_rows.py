@@ -7,6 +7,7 @@ come from one tape, and those of a quantity g(v, u; p) by the implicit function 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues
 
-__all__ = ["LaneRows", "WrittenDesigns"]
+__all__ = ["LaneRows", "RatedRows", "WrittenDesigns"]
 
 _ZERO = np.zeros(())
 
@@ -82,8 +83,8 @@ class LaneRows(DifferentiatedRows):
         model, self.tape = written.model, written.tape
         self.description, self.taped = written.description, written.taped
         # the row of the mechanism itself, which has no position here, leads
-        led = np.concatenate([np.full((1, v.shape[1]), np.nan), v])
-        lost: BoolArray = ~np.isfinite(led).all(axis=1)
+        led = _led(v)
+        lost: BoolArray = np.logical_not(np.isfinite(led).all(axis=1))
         links: Any = _Column([angle.constant for angle in self.taped.links.values()])
         dimensions: Any = _Column(list(self.taped.dimensions.values()))
         QuantityValues.__init__(self, model, lost, np.where(lost, np.nan, 0.0), links, dimensions)
@@ -106,13 +107,69 @@ class LaneRows(DifferentiatedRows):
 
     def slopes(self, results: Sequence[Any], by: Sequence[int]) -> tuple[Array, Array]:
         """Real results (B, m), and their derivatives by inputs of the tape, (B, m, len(by))."""
+        return self._slopes(results, by, 1 + len(self.solution))
+
+    def _slopes(self, results: Sequence[Any], by: Sequence[int], rows: int) -> tuple[Array, Array]:
         kept, self.tape.inputs = self.tape.inputs, list(by)
         rates = self.tape.forward(results)
         self.tape.inputs = kept
-        rows = 1 + len(self.solution)
         values = [np.broadcast_to(getattr(x, "values", x), rows) for x in results]
         slopes = [np.broadcast_to(np.real(rate), (len(by), rows)) for rate in rates]
         return (
             np.stack(values, axis=1)[1:],
             np.stack(slopes, axis=0).transpose(2, 0, 1)[1:],
         )
+
+
+class RatedRows(LaneRows):
+    """Solved rows whose derivatives by the leading input are on the tape too, eq. (120).
+
+    Parameters
+    ----------
+    rows : LaneRows
+    numbers : sequence of int
+        Nodes of the numbers.
+    inverse : (B, n, n)
+        Of the Jacobians.
+    first : (B, N)
+        The derivatives of all variables by the leading input.
+    order : int
+        1 or 2.
+    """
+
+    def __init__(
+        self, rows: LaneRows, numbers: Sequence[int], inverse: Array, first: Array, order: int
+    ) -> None:
+        self.__dict__.update(rows.__dict__)
+        del self.__dict__["variables"]
+        self.__dict__.pop("speed", None)
+        self._points, self.order = {}, order
+        self.solution, self._inverse = _led(rows.solution), _led(inverse)
+        self.__dict__["_rates"] = self._led_rates(first)
+
+    def _led_rates(self, first: Array) -> tuple[Array, Array]:
+        """First and second derivatives of the variables, the latter only if asked for."""
+        rates, second = _led(first), np.zeros_like(_led(first))
+        if self.order > 1:
+            parts = (self.solution, rates, second)
+            jets = [Jet(*(part[:, k] for part in parts)) for k in range(rates.shape[1])]
+            bent = [row.d2 for row in self._residuals(dict(zip(self._symbols, jets, strict=True)))]
+            rows = [np.broadcast_to(getattr(x, "values", x), len(rates)) for x in bent]
+            # J q'' = -(all other terms of F'')
+            solved = self._inverse @ np.stack(rows, axis=1)[:, :, None]
+            second[:, : self.count] = -solved[:, :, 0]
+        return rates, second
+
+    @cached_property
+    def variables(self) -> dict[str, Jet]:
+        """All variables by symbol, see :class:`DifferentiatedRows`."""
+        return self._differentiated()
+
+    def slopes(self, results: Sequence[Any], by: Sequence[int]) -> tuple[Array, Array]:
+        """As of :class:`LaneRows`."""
+        return self._slopes(results, by, len(self.solution))
+
+
+def _led(values: Array) -> Array:
+    """Values with a row of the mechanism itself, which has none, before them."""
+    return np.concatenate([np.full((1, *values.shape[1:]), np.nan), values])

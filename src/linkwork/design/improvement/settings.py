@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from typing import Any
 
-__all__ = ["Goal", "Improvement"]
+from linkwork.foundation.errors import MechanismError, Problem, choices
+
+__all__ = ["FITS", "Goal", "Improvement", "Points", "read_goal"]
+
+#: How misses count.
+FITS = ("least squares", "minimax")
 
 Problems = Iterator[tuple[tuple[str | int, ...], str]]
 
@@ -55,6 +61,74 @@ class Goal:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Points:
+    """Points that a point of the mechanism passes.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        In order of travel [length].
+    point : str
+        The point that passes them; "": the first traced one.
+    inputs : tuple of float, optional
+        The leading inputs there [file units]; ``None``: free timing.
+    order : str
+        "as given" or "any", of free timing.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    point: str = ""
+    inputs: tuple[float, ...] | None = None
+    order: str = "as given"
+
+    def problems(self) -> Problems:
+        """What contradicts itself."""
+        if len(self.points) < 2:
+            yield ("points",), f"{len(self.points)} points are no path: give two or more"
+        for k, (one, other) in enumerate(zip(self.points, self.points[1:], strict=False), start=2):
+            if one == other:
+                yield ("points", k - 1), f"is the same as point {k - 1}: leave one out"
+        if self.inputs is not None and len(self.inputs) != len(self.points):
+            told = f"{len(self.points)} points need as many inputs, got {len(self.inputs)}"
+            yield ("inputs",), told
+        if self.order not in _ORDERS:
+            yield ("order",), f'must be "as given" or "any", got "{self.order}"'
+        if self.order == "any" and self.inputs is not None:
+            yield ("order",), "has no effect on points with inputs: leave it out"
+
+
+_ORDERS = ("as given", "any")
+
+
+def read_goal(given: Mapping[str, Any]) -> Goal | Points:
+    """A goal, or points, from a table with their fields.
+
+    Raises
+    ------
+    MechanismError
+        For a key that neither has, or one that is missing.
+    """
+    kind: type[Goal] | type[Points] = Points if "points" in given else Goal
+    known = [own.name for own in fields(kind)]
+    found = [
+        Problem(key=(key,), message=f"is no key of a goal {choices('keys', known, key)}")
+        for key in given
+        if key not in known
+    ]
+    if kind is Goal and "of" not in given:
+        found.append(Problem(key=("of",), message="is missing: the quantity that is wanted"))
+    if found:
+        raise MechanismError(found, "the improvement")
+    return kind(**{key: _plain(entry) for key, entry in given.items()})
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and lists as tuples of plain numbers."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+
+
+@dataclass(frozen=True, kw_only=True)
 class Improvement:
     """How dimensions are improved.
 
@@ -73,6 +147,8 @@ class Improvement:
     front : int
         Designs between two goals; 0 for a weighted sum.
     seed : int
+    fit : str
+        "least squares", or "minimax": the largest weighted miss counts.
     """
 
     point: str = ""
@@ -83,12 +159,15 @@ class Improvement:
     spread: float = 0.05
     front: int = 0
     seed: int = 1
+    fit: str = "least squares"
 
     def problems(self) -> Problems:
         """What contradicts itself."""
         for k, goal in enumerate(self.goals):
             for key, message in goal.problems():
                 yield ("goals", k, *key), message
+        if self.fit not in FITS:
+            yield ("goal",), f'must be "least squares" or "minimax", got "{self.fit}"'
         for name, (low, high) in self.bounds.items():
             if not low <= high:
                 yield ("bounds", name), f"from {low:g} to {high:g} hold no number"

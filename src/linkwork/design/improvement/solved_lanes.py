@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from linkwork.design.improvement.lane_rows import LaneRows, WrittenDesigns
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.design.improvement.lane_rows import LaneRows, RatedRows, WrittenDesigns
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
@@ -34,9 +36,15 @@ class LanePositions:
         D N rows, design by design.
     by_x, by_t : (D N, n, P), (D N, n)
         Derivatives of the unknowns by the numbers and by the leading input.
-    numbers, inputs : sequence of int
+    numbers : sequence of int
         Nodes of the tape.
+    inputs : (p,)
+        The rates of the inputs by the leading one.
     shape : (int, int)
+    inverse : (D N, n, n)
+        Of the Jacobians.
+    sign : (D, N)
+        Of their determinants.
     """
 
     rows: LaneRows
@@ -46,6 +54,8 @@ class LanePositions:
     numbers: Sequence[int]
     inputs: Array
     shape: tuple[int, int]
+    inverse: Array
+    sign: Array
 
     def values(self, results: Sequence[object]) -> tuple[Array, Array, Array]:
         """Real results (D, N, m) on the tape, by numbers (D, N, m, P) and the input (D, N, m)."""
@@ -59,6 +69,36 @@ class LanePositions:
         shape = *self.shape, len(results)
         value = np.where(self.found[:, None], value, np.nan)
         return value.reshape(shape), by_x.reshape(*shape, count), by_t.reshape(shape)
+
+    def rated(self, order: int) -> LaneRows:
+        """The rows with so many derivatives by the leading input, 0 to 2."""
+        if order not in self._rated:
+            lead = np.broadcast_to(self.inputs, (len(self.found), len(self.inputs)))
+            first = np.concatenate([self.by_t, lead], axis=1)
+            self._rated[order] = RatedRows(self.rows, self.numbers, self.inverse, first, order)
+        return self._rated[order]
+
+    @cached_property
+    def _rated(self) -> dict[int, LaneRows]:
+        return {0: self.rows}
+
+    def totals(self, rows: LaneRows, result: Any) -> tuple[Array, Array]:
+        """A real result of rows or rated rows, (D, N), and by the numbers, (D, N, P)."""
+        if rows is self.rows:
+            value, by_x, _ = self.values([result])
+            return value[:, :, 0], by_x[:, :, 0]
+        value, by_x = rows.slopes([result], self.numbers)
+        value = np.where(self.found, value[:, 0], np.nan)
+        return value.reshape(self.shape), by_x[:, 0].reshape(*self.shape, -1)
+
+    def plain(self, column: Any) -> AnyArray:
+        """The values of a column of rows, (D, N); NaN where there is no position."""
+        values = np.broadcast_to(getattr(column, "values", column), 1 + len(self.found))[1:]
+        return np.where(self.found, values, np.nan).reshape(self.shape)
+
+    def widened(self, weights: AnyArray) -> AnyArray:
+        """Weights (D, N) for columns of rows."""
+        return np.concatenate([[0.0], weights.ravel()])
 
 
 class SolvedLanes:
@@ -88,6 +128,7 @@ class SolvedLanes:
     ) -> None:
         self.model, self.numbers = model, tuple(numbers)
         self.lead, self.rate = leading_input(model.rows)
+        self.rows_at = t
         rows, n = len(t), len(model.equations.unknowns)
         # row by row: a row that does not close keeps the last design in which it did
         self.x = np.broadcast_to(x, (lanes, rows, len(x))).copy()
@@ -98,7 +139,7 @@ class SolvedLanes:
         self.total = np.full(lanes, np.inf)
         self._sign: Array | None = None
         first = self.at(x[None, :], t[None, :], np.arange(1))
-        self._sign = self._last_sign
+        self._sign = first.sign
         self.by_x[:] = first.by_x.reshape(1, rows, n, -1)
         self.by_t[:] = first.by_t.reshape(1, rows, n)
 
@@ -134,12 +175,12 @@ class SolvedLanes:
             v = v.copy()
             v[:, :n] -= np.where(np.isfinite(step), step, np.nan)
         sign = np.linalg.slogdet(np.nan_to_num(jacobian))[0].reshape(count, rows)
-        self._last_sign = sign
         fine &= closed
         if self._sign is not None:
             fine &= (sign == self._sign).ravel()
         by = [*written.numbers, *solved.nodes[n:]]
-        by_all = -_solve(jacobian, solved.equations_and_slopes(by)[1])
+        inverse = _solve(jacobian, np.broadcast_to(np.eye(n), jacobian.shape))
+        by_all = -inverse @ solved.equations_and_slopes(by)[1]
         rate = self.rate
         return LanePositions(
             rows=solved,
@@ -149,6 +190,8 @@ class SolvedLanes:
             numbers=written.numbers,
             inputs=rate,
             shape=(count, rows),
+            inverse=inverse,
+            sign=sign,
         )
 
     def keep(

@@ -13,7 +13,6 @@ import numpy as np
 from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.defect_messages import Defect, defects_of
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.completeness import Completeness
@@ -266,8 +265,10 @@ class Synthesis:
     message : str
         The same in words of the task.
     dyads : tuple of Dyad
-    designs : tuple of SynthesizedDesign, or of ImprovedMechanism
-        Every mechanism with every driven link: sound ones by score, then refused ones.
+    designs : tuple of SynthesizedDesign
+        Every mechanism with every driven link: sound ones by score, then refused ones. Of
+        ``task = "improve"`` each is an ImprovedMechanism, which has the same properties but those
+        of a loop.
     starts : int
         Starts of a least-squares fit; 0 where equations are solved.
     interrupted : bool
@@ -283,17 +284,17 @@ class Synthesis:
     completeness: Completeness
     message: str
     dyads: tuple[Dyad, ...]
-    designs: tuple[SynthesizedDesign | ImprovedMechanism, ...]
+    designs: tuple[Any, ...]
     starts: int = 0
     interrupted: bool = False
 
     @property
-    def delivered(self) -> tuple[SynthesizedDesign | ImprovedMechanism, ...]:
+    def delivered(self) -> tuple[Any, ...]:
         """The sound designs that the task asks for."""
         return tuple(design for design in self.designs if design.delivered)
 
     @property
-    def refused(self) -> tuple[SynthesizedDesign | ImprovedMechanism, ...]:
+    def refused(self) -> tuple[Any, ...]:
         """The designs with defects."""
         return tuple(design for design in self.designs if design.kinds)
 

@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
+from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
 from linkwork.design.synthesis.motion_synthesis import solve_motion
 from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
@@ -23,7 +27,8 @@ from linkwork.design.synthesis.travel import Range
 from linkwork.design.synthesis.verdicts import judge
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.value_types import check_flags
 
 __all__ = ["SOLVERS", "solve_task", "wishes_of"]
@@ -48,12 +53,11 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
     Raises
     ------
     InputError
-        If no solver knows the kind of the task, or the task contradicts itself.
+        If the task contradicts itself.
     """
     check_flags(progress)
-    if task.kind not in SOLVERS:
-        known = ", ".join(SOLVERS)
-        raise InputError(f'task = "{task.kind}" cannot be solved yet: the solvers know {known}')
+    if task.kind == "improve":
+        return _improved(task, progress)
     found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
         JudgedDesigns(
@@ -84,11 +88,46 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
     )
 
 
+def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
+    """Improved designs, sound ones by falling score."""
+    designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
+    transmission, size, miss = (
+        np.array([getattr(design, name) for design in designs], dtype=float)
+        for name in ("transmission", "size", "error")
+    )
+    scores = _scores(task, transmission * task.angle.radians, size, miss)
+    entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
+    ranked: list[ImprovedMechanism] = []
+    for place, (refused, _, k) in enumerate(entries, start=1):
+        sound = sum(not other[0] for other in entries)
+        number = place - sound if refused else place
+        delivered = not refused and number <= task.rank.deliver
+        ranked.append(
+            replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
+        )
+    seed = (task.improvement or Improvement()).seed
+    told = f"a sample: different local minima from {starts} starts with seed {seed}"
+    return Synthesis(
+        task=task,
+        complex=len(designs),
+        real=len(designs),
+        proved=sum(design.improved.sound for design in designs),
+        triples=0,
+        linkages=len(designs),
+        completeness=Completeness.SAMPLED,
+        message=f"interrupted: the best so far of {starts} starts" if interrupted else told,
+        dyads=(),
+        designs=tuple(ranked),
+        starts=starts,
+        interrupted=interrupted,
+    )
+
+
 def wishes_of(task: Task, drive: Drive) -> Wishes:
     """The wishes of a task in radians, lengths and complex points, for one driven link."""
     wanted = task.wanted
     return Wishes(
-        ordered=wanted.ordered,
+        ordered=wanted.ordered and not _is_timed_around(task),
         range=_range(task, wanted, drive),
         transmission=task.in_radians(wanted.transmission),
         region=np.array([complex(*corner) for corner in wanted.region]),
@@ -97,6 +136,18 @@ def wishes_of(task: Task, drive: Drive) -> Wishes:
         ratio=wanted.ratio,
         obstacles=np.array(wanted.obstacles, dtype=float).reshape(-1, 3),
     )
+
+
+def _is_timed_around(task: Task) -> bool:
+    """Whether given inputs rise or fall by a whole turn: the first and last position then have one
+    input, and the given order is theirs.
+    """
+    given = [position.input for position in task.positions]
+    if len(given) < 2 or any(value is None for value in given):
+        return False
+    steps = np.diff(np.array(given, dtype=float))
+    monotone = bool((steps > 0.0).all() or (steps < 0.0).all())
+    return monotone and abs(steps.sum()) >= task.angle.turn * (1.0 - EQUAL_ROWS)
 
 
 def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
@@ -116,7 +167,7 @@ def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesi
         (not sound, 0.0 if not sound else -float(score), group, k, float(score))
         for group, part in enumerate(judged)
         for k, (sound, score) in enumerate(
-            zip(part.verdicts.sound, _scores(task, part), strict=True)
+            zip(part.verdicts.sound, _scores_of(task, part), strict=True)
         )
     ]
     entries.sort()
@@ -133,17 +184,21 @@ def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesi
         )
 
 
-def _scores(task: Task, part: JudgedDesigns) -> Array:
+def _scores_of(task: Task, part: JudgedDesigns) -> Array:
+    return _scores(task, part.verdicts.transmission, part.verdicts.size, part.given.miss)
+
+
+def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array:
     """Weighted means of transmission, smallness and exactness, (D,), each from 0 to 1."""
-    rank, verdicts = task.rank, part.verdicts
-    size = _task_size(task)
-    parts = [
-        (rank.transmission, np.nan_to_num(verdicts.transmission) / _RIGHT),
-        (rank.size, size / (size + verdicts.size)),
-        (rank.error, 1.0 / (1.0 + part.given.miss / size)),
-    ]
+    rank, size = task.rank, _task_size(task)
+    with np.errstate(invalid="ignore"):
+        parts = [
+            (rank.transmission, transmission / _RIGHT),
+            (rank.size, size / (size + sizes)),
+            (rank.error, 1.0 / (1.0 + miss / size)),
+        ]
     total = sum(weight for weight, _ in parts) or 1.0
-    return np.asarray(sum(weight * score for weight, score in parts) / total)
+    return np.asarray(sum(weight * np.nan_to_num(score) for weight, score in parts) / total)
 
 
 def _task_size(task: Task) -> float:

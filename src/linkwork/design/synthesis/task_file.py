@@ -164,6 +164,7 @@ def _function(table: dict[str, Any]) -> FunctionGoal:
 
 def _improvement(table: dict[str, Any]) -> Improvement:
     own = {key: entry for key, entry in table.items() if key != "goal"}
+    own["fit"] = table.get("goal", Improvement.fit)
     own["goals"] = tuple(map(_goal, table.get("goals", [])))
     own["bounds"] = {name: tuple(pair) for name, pair in table.get("bounds", {}).items()}
     own["vary"] = tuple(table.get("vary", ()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from linkwork.design.improvement.settings import FITS
 from linkwork.foundation.file_keys import (
     Constant,
     Either,
@@ -182,7 +183,12 @@ _RANK = Key(
 )
 _GOALS = Tables(
     (
-        Key("of", Text(), 'A quantity, "B.y", or a number of a motion, "stroke(d)"', required=True),
+        Key(
+            "of",
+            Text(),
+            'A quantity, a number of a motion, "stroke(d)", or a formula',
+            required=True,
+        ),
         Key("target", PlainNumber(), "The wanted value"),
         Key("least", PlainNumber(), "The smallest value allowed"),
         Key("most", PlainNumber(), "The largest value allowed"),
@@ -195,7 +201,7 @@ _IMPROVE = Key(
     "improve",
     Table(
         (
-            Key("goal", Text(("least squares",)), "How misses count; default least squares"),
+            Key("goal", Text(FITS), "How misses count; default least squares"),
             Key("point", Text(), "The point that follows the positions; default the first traced"),
             Key("vary", ListOf(Text(), "number", 1), 'Numbers to vary: ["O2 A", "O4.x"]'),
             Key("goals", _GOALS, "Goals besides the positions"),
@@ -228,7 +234,7 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            'The kinds of mechanisms: "four-bar", "slider-crank"',
+            'Kinds: "four-bar", "slider-crank"; of task = "improve" a file, or an example',
         ),
         _POSITIONS,
         _GIVEN,

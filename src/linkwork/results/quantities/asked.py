@@ -174,8 +174,14 @@ class AskedOfMotion:
         """Whether it needs derivatives or the path of a point, not only values."""
         return self.quantity.of_point or self.quantity.needs > 0
 
-    def columns(self, solved: Solved) -> tuple[Array, Array, Array]:
-        """The quantity and both derivatives with respect to the leading input, in file units."""
+    def columns(
+        self, solved: Solved, speed: Array | float | None = None
+    ) -> tuple[Array, Array, Array]:
+        """The quantity and both derivatives with respect to the leading input, in file units;
+        derivatives only where the number :attr:`follows` them.
+        """
+        if not self.follows:
+            return self.of.values(solved, speed), UNKNOWN, UNKNOWN
         if self.quantity.of_point:
             place = solved.place(self.of.name)
             return place.v, place.d1, place.d2

@@ -1,0 +1,303 @@
+"""Goals of an improvement: misses of designs in lanes, and their derivatives by the numbers.
+
+A goal is a quantity of rows (``B.y``, ``rocker.d1``), a number of the motion (``stroke(d)``,
+``time_ratio(d)``, ``dwell(d, 2)``), or a formula of either (``B.y - 2 * rocker``, ``stroke(d) /
+max(B.transmission)``). Misses are in file units.
+"""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.improvement.settings import Goal
+from linkwork.design.improvement.solved_lanes import LanePositions
+from linkwork.design.sensitivity import LIMITS
+from linkwork.expression.grammar import CONSTANTS, parse
+from linkwork.expression.jets import Jet, evaluate
+from linkwork.expression.tree import Node, names_in
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray
+from linkwork.foundation.errors import InputError, UnknownNameError
+from linkwork.motion.model import Model
+from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
+from linkwork.results.quantities.index import MOTION_QUANTITIES
+from linkwork.results.quantity import Kind
+
+__all__ = ["Misses", "PathGoal", "goal_of"]
+
+_WORDS = "|".join(quantity.word for quantity in MOTION_QUANTITIES)
+_CALL = re.compile(rf"\b(?:{_WORDS})\s*\([^()]*\)")
+_NUMBER = "number_{}_of_the_motion"
+_ZERO = np.zeros(())
+_STIFF = 100.0  # weight of bounds: their shifts converge faster
+_MARGIN = 1e-7  # relative: by which bounds hold in the end
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PathGoal:
+    """Points that a point of the mechanism passes.
+
+    Parameters
+    ----------
+    point : str
+    places : (N,) complex
+        [length]
+    inputs : (N,)
+        Leading inputs there, or with free timing where to begin [rad or length].
+    timed : bool
+        Whether the inputs are given.
+    ordered : bool
+        Whether free inputs keep their order.
+    falling : bool
+        Whether the points are listed from the last to the first, so that inputs rise.
+    """
+
+    point: str
+    places: ComplexArray
+    inputs: Array
+    timed: bool
+    ordered: bool
+    falling: bool = False
+
+    @property
+    def lost(self) -> float:
+        """The miss of a point at which the mechanism does not close [length]."""
+        return 4.0 * float(np.abs(self.places - self.places.mean()).max())
+
+    def misses(self, found: LanePositions) -> tuple[Array, Array, Array]:
+        """Vectors from the points (D, N, 2), by the numbers and by the inputs.
+
+        A row that does not close yet counts as a large miss, and waits.
+        """
+        place = found.rows.place(self.point).v
+        rows, by_x, by_t = found.values([place.real, place.imag])
+        rows = rows - np.stack([self.places.real, self.places.imag], axis=1)
+        lost = ~found.found.reshape(found.shape)
+        rows[lost], by_x[lost], by_t[lost] = self.lost, 0.0, 0.0
+        return rows, by_x, by_t
+
+
+class Misses(ABC):
+    """The misses of a goal.
+
+    Parameters
+    ----------
+    goal : Goal
+    at : (R,)
+        The leading inputs of its rows [rad or length].
+    order : int
+        How many derivatives of the positions it needs.
+    """
+
+    def __init__(self, goal: Goal, at: Array, order: int) -> None:
+        self.goal, self.at, self.order = goal, at, order
+
+    @abstractmethod
+    def values(self, found: LanePositions) -> tuple[Array, Array]:
+        """The quantity (D, K) in file units, and by the numbers, (D, K, P)."""
+
+    #: A full turn, of a quantity that is an angle [file units]; else 0.
+    turn = 0.0
+
+    @property
+    def count(self) -> int:
+        """The number of misses."""
+        return len(self.at)
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether only values beyond bounds are misses."""
+        return not self.goal.values and self.goal.target is None
+
+    def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
+        """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""
+        value, by_x = self.values(found)
+        goal = self.goal
+        if not self.is_bound:
+            wanted: Any = np.array(goal.values) if goal.values else goal.target
+            away = value - wanted
+            if self.turn:
+                away = np.mod(away + 0.5 * self.turn, self.turn) - 0.5 * self.turn
+            return goal.weight * away, goal.weight * by_x, shift
+        low, high = np.zeros_like(value), np.zeros_like(value)
+        # eq. (155)
+        if goal.least is not None:
+            low = np.minimum(0.0, value - _above(goal.least) - shift[0])
+        if goal.most is not None:
+            high = np.maximum(0.0, value + _above(-goal.most) + shift[1])
+        away = low + high + 0.0 * value  # no number where there is no position
+        broken = (away != 0.0)[:, :, None]
+        new = np.nan_to_num(np.stack([-low, high]))
+        weight = _STIFF * goal.weight
+        return weight * away, weight * np.where(broken, by_x, 0.0), new
+
+
+def _above(bound: float) -> float:
+    return bound + _MARGIN * max(1.0, abs(bound))
+
+
+def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: float) -> Misses:
+    """The misses of a goal.
+
+    Parameters
+    ----------
+    table : (R,)
+        The leading inputs of the motion [rad or length].
+    there : (R,)
+        Where the mechanism as it is has a position.
+    scale : float
+        The unit of inputs in files.
+
+    Raises
+    ------
+    UnknownNameError, InputError
+        For a quantity that is not known, or whose derivatives are not known.
+    """
+    calls = list(dict.fromkeys(found.group() for found in _CALL.finditer(goal.of)))
+    if goal.of.strip() in LIMITS:
+        raise InputError(
+            f'"{goal.of}" cannot be a goal: ask for a wider table of inputs, which has to be '
+            "reached as a whole"
+        )
+    if not calls:
+        at = np.array(goal.at) * scale if goal.at else table[there]
+        return _RowMisses(model, goal, at)
+    if goal.at:
+        raise InputError(f'"{goal.of}" is a number of the whole motion: leave out at and values')
+    return _NumberMisses(model, goal, table, there, calls)
+
+
+class _RowMisses(Misses):
+    """A quantity of rows, or a formula of such quantities."""
+
+    def __init__(self, model: Model, goal: Goal, at: Array) -> None:
+        self.node = None if _is_name(model, goal.of) else parse(goal.of)
+        names = [goal.of] if self.node is None else _names(self.node)
+        self.asked = {name: model.quantities.find(name) for name in names}
+        if not names:
+            raise InputError(f'"{goal.of}" has no quantity of the mechanism')
+        for asked in self.asked.values():
+            _check(asked, goal.of)
+            asked.check_rate(model.speed)
+        super().__init__(goal, at, max(asked.needs for asked in self.asked.values()))
+        self.angle = model.description.angle
+        own = self.asked.get(goal.of)
+        if own is not None and own.own.kind is Kind.ANGLE and own.rate is None:
+            self.turn = FULL_TURN / model.units.scale(Kind.ANGLE)
+
+    def values(self, found: LanePositions) -> tuple[Array, Array]:
+        """See :meth:`Misses.values`."""
+        rows = found.rated(self.order)
+        known = {name: asked.values(rows, rows.speed) for name, asked in self.asked.items()}
+        if self.node is None:
+            total = known[self.goal.of]
+        else:
+            jets = {name: Jet(value, _ZERO, _ZERO) for name, value in known.items()}
+            with np.errstate(all="ignore"):
+                total = evaluate(self.node, jets, self.angle).v
+        value, by_x = found.totals(rows, total)
+        return value, by_x
+
+
+class _NumberMisses(Misses):
+    """A number of the motion, or a formula of such numbers."""
+
+    def __init__(
+        self, model: Model, goal: Goal, table: Array, there: BoolArray, calls: Sequence[str]
+    ) -> None:
+        text, self.there = goal.of, there
+        self.asked: dict[str, AskedOfMotion] = {}
+        for k, call in enumerate(calls):
+            text = text.replace(call, f"({_NUMBER.format(k)})")
+            asked = model.quantities.find_of_motion(call)
+            _check(asked.of, goal.of)
+            asked.of.check_rate(model.speed)
+            self.asked[_NUMBER.format(k)] = asked
+        self.node: Node = parse(text)
+        others = set(_names(self.node)) - set(self.asked)
+        if others:
+            raise InputError(
+                f'"{goal.of}" mixes numbers of the motion with "{min(others)}", which has a value '
+                f"in each row: write min({min(others)}), max or mean"
+            )
+        super().__init__(goal, table, max(asked.needs for asked in self.asked.values()))
+        self.angle = model.description.angle
+
+    @property
+    def count(self) -> int:
+        """One."""
+        return 1
+
+    def values(self, found: LanePositions) -> tuple[Array, Array]:
+        """See :meth:`Misses.values`."""
+        rows = found.rated(self.order)
+        known = {name: self._number(asked, found, rows) for name, asked in self.asked.items()}
+        count = found.shape[0]
+        by_x = np.zeros((count, len(found.numbers)))
+        total = np.zeros(count)
+        with np.errstate(all="ignore"):
+            for name in known:
+                # the formula's derivative by this number
+                jets = {
+                    other: Jet(value, np.full(count, float(other == name)), np.zeros(count))
+                    for other, (value, _) in known.items()
+                }
+                jet = evaluate(self.node, jets, self.angle)
+                total = np.broadcast_to(jet.v, count)
+                by_x = by_x + np.broadcast_to(jet.d1, count)[:, None] * known[name][1]
+        return total[:, None], by_x[:, None, :]
+
+    def _number(self, asked: AskedOfMotion, found: LanePositions, rows: Any) -> tuple[Array, Array]:
+        """A number (D,), whose derivatives (D, P) weigh those of rows."""
+        columns = asked.columns(rows, rows.speed)[: 1 + asked.quantity.needs]
+        shape = found.shape
+        plain = [found.plain(column) for column in columns]
+        lost = [np.full(shape, np.nan)] * (3 - len(plain))
+        numbers = asked.evaluate(self.at, *plain, *lost)
+        # a design that loses positions has no number to compare
+        numbers[(~found.found.reshape(shape) & self.there).any(axis=1)] = np.nan
+        weights: list[AnyArray] = [np.zeros(shape, dtype=part.dtype) for part in plain]
+        for k in np.flatnonzero(np.isfinite(numbers)):
+            own = [part[k] for part in (*plain, *lost)]
+            slopes = asked.quantity.slopes(asked.rows(self.at, *own), asked.numbers)
+            for weight, part in zip(
+                weights, (slopes.value, slopes.first, slopes.second), strict=False
+            ):
+                weight[k] = part
+        total: Any = 0.0
+        for weight, column in zip(weights, columns, strict=True):
+            total = total + np.real(np.conj(found.widened(weight)) * column)
+        _, by_x = found.totals(rows, total)
+        # rows of no weight may have no derivative
+        used = np.any([weight != 0.0 for weight in weights], axis=0)
+        return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
+
+
+def _is_name(model: Model, text: str) -> bool:
+    try:
+        model.quantities.find(text)
+    except UnknownNameError:
+        return False
+    return True
+
+
+def _names(node: Node) -> list[str]:
+    return sorted({name.name for name in names_in(node)} - set(CONSTANTS))
+
+
+def _check(asked: Asked, of: str) -> None:
+    if asked.group is Group.EVIDENCE:
+        raise InputError(f'"{of}" cannot be a goal: it measures how a position was found')
+    if asked.row in asked.names.further:
+        raise InputError(
+            f'"{of}" cannot be a goal: the forces of designs are not known yet; ask for positions, '
+            "velocities or accelerations"
+        )
+    if asked.needs > 2:
+        raise InputError(f'"{of}" cannot be a goal: positions have two derivatives')

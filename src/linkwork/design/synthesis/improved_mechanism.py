@@ -1,0 +1,266 @@
+"""An improved mechanism of any kind with the verdict on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.internal import internal
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.draft import Draft
+from linkwork.results.motion import Motion
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+
+__all__ = ["ImprovedMechanism"]
+
+
+@internal("linkage", "kinds", "improved")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImprovedMechanism:
+    """An improved mechanism, and what keeps it from doing its task.
+
+    Parameters
+    ----------
+    task : Task
+    improved : ImprovedDesign
+    wishes : Wishes
+        Those of the task, in radians.
+    number : int
+        Its rank among the sound designs from 1, or its place among the refused ones.
+    delivered : bool
+        Whether it is sound and among the wanted number of designs.
+    score : float
+        The weighted score of the ranking, 0 to 1.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> goals = [{"of": "stroke(d)", "target": 70}]
+    >>> task = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=2)
+    >>> [design.numbers for design in task.solve().delivered]
+    [{'O2 A': 34.46567317588864}]
+    """
+
+    task: Task
+    improved: ImprovedDesign
+    wishes: Wishes
+    number: int = 0
+    delivered: bool = False
+    score: float = field(default=np.nan)
+
+    @property
+    def mechanism(self) -> str:
+        """The mechanism that was improved, as the task names it."""
+        return self.task.mechanisms[0]
+
+    @property
+    def driven(self) -> str:
+        """The leading input."""
+        return next(iter(self._motion.inputs)) if self._motion is not None else ""
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary [file units]."""
+        return dict(self.improved.numbers)
+
+    @property
+    def _motion(self) -> Motion | None:
+        return self.improved.motion
+
+    @cached_property
+    def _places(self) -> dict[str, ComplexArray]:
+        """The points in the rows that have a position."""
+        motion = self._motion
+        if motion is None:
+            return {}
+        return {name: motion.trace(name)[motion.found] for name in motion.points}
+
+    @property
+    def points(self) -> dict[str, complex]:
+        """The points in the first row that has a position [length]."""
+        return {name: complex(path[0]) for name, path in self._places.items() if len(path)}
+
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        if self.improved.inputs:
+            return self.improved.inputs[0]
+        motion = self._motion
+        if motion is None or not motion.found.any():
+            return float("nan")
+        return float(motion.inputs[self.driven][motion.found][0])
+
+    @cached_property
+    def linkage(self) -> Description:
+        """The mechanism, with the name of its design."""
+        refused = ", refused" if self.kinds else ""
+        name = f"{self.task.name}, design {self.number}{refused}"
+        return replace(self.improved.description, name=name)
+
+    # Measures
+
+    @cached_property
+    def transmission(self) -> float:
+        """The least transmission angle of all dyads in the rows of the table, NaN without dyads
+        [file's angle unit].
+        """
+        motion = self._motion
+        if motion is None or not motion.found.any():
+            return float("nan")
+        names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
+        half = self.task.angle.turn / 2.0
+        rows = [motion[name][motion.found] for name in names]
+        # 40° and 140° transmit equally well
+        return min((float(np.minimum(a, half - a).min()) for a in rows), default=float("nan"))
+
+    @cached_property
+    def _lengths(self) -> Array:
+        """The lengths of links, and the distances of fixed pivots [length]."""
+        description, points = self.improved.description, self.points
+        if not isinstance(description, Draft) or not points:
+            return np.zeros(0)
+        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
+        found = []
+        for name, own in description.links.items():
+            held = [p for p in own if name != GROUND or p in moving]
+            found += [abs(points[p] - points[q]) for p, q in combinations(held, 2)]
+        return np.array([length for length in found if length > 0.0])
+
+    @property
+    def size(self) -> float:
+        """The longest link, or the largest distance of fixed pivots [length]."""
+        return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
+
+    @property
+    def error(self) -> float:
+        """The largest distance from a point, or without points the largest weighted miss."""
+        if self.improved.misses:
+            return float(np.nan_to_num(np.max(self.improved.misses), nan=np.inf))
+        return self.improved.largest
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the error; "" of weighted misses."""
+        return self.task.length if self.improved.misses else ""
+
+    # Verdict
+
+    @property
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+        return tuple(defect.kind for defect in self.defects)
+
+    @cached_property
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design."""
+        return tuple(
+            Defect(kind=kind, between=None, message=message) for kind, message in self._defects()
+        )
+
+    def _defects(self) -> Iterator[tuple[DefectKind, str]]:
+        motion, task = self._motion, self.task
+        if motion is None or not motion.found.any():
+            yield DefectKind.RANGE, self.improved.message
+            return
+        lost = int(np.count_nonzero(~motion.found))
+        if lost:
+            yield DefectKind.RANGE, f"{lost} of {len(motion)} rows have no position"
+        elif not motion.certified.all():
+            unproved = int(np.count_nonzero(~motion.certified))
+            yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"
+        misses = np.array(self.improved.misses)
+        for k in np.flatnonzero(~np.isfinite(misses))[:1]:
+            yield DefectKind.BRANCH, f"position {k + 1} is not on the branch of the table"
+        if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
+            order = np.argsort(self.improved.inputs, kind="stable") + 1
+            told = f"the input passes the positions in the order {', '.join(map(str, order))}"
+            yield DefectKind.ORDER, told
+        sign, wanted = task.angle.sign, task.wanted.transmission
+        if wanted and not self.transmission >= wanted:
+            told = f"transmission angle down to {self.transmission:.6g}{sign}, wanted {wanted:g}"
+            yield DefectKind.TRANSMISSION, f"{told}{sign}"
+        yield from self._geometric_defects()
+
+    def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        outside = [
+            name
+            for name, place in self._pivots().items()
+            if not self.wishes.within_region(np.array([place]), np.zeros(1))[0]
+        ]
+        if outside:
+            yield DefectKind.PIVOTS, f"fixed pivots outside their region: {', '.join(outside)}"
+        lengths = self._lengths
+        if len(lengths):
+            shortest, longest = lengths.min(), lengths.max()
+            if not self.wishes.allows(shortest, longest):
+                told = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
+                yield DefectKind.LENGTHS, told
+        if self._meets_obstacle():
+            told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
+            yield DefectKind.OBSTACLE, told
+
+    def _pivots(self) -> dict[str, complex]:
+        description = self.improved.description
+        if not isinstance(description, Draft):
+            return {}
+        moving = {p for name, own in description.links.items() if name != GROUND for p in own}
+        return {p: self.points[p] for p in description.links.get(GROUND, ()) if p in moving}
+
+    def _meets_obstacle(self) -> bool:
+        """Whether a side of a link comes nearer to a circle than its ends move between rows."""
+        description = self.improved.description
+        if not len(self.wishes.obstacles) or not isinstance(description, Draft):
+            return False
+        for name, own in description.links.items():
+            for p, q in combinations(own, 2) if name != GROUND else ():
+                one, other = self._places[p], self._places[q]
+                moved = max(_largest_step(one), _largest_step(other))
+                for x, y, radius in self.wishes.obstacles:
+                    away = distances_to_segments(np.array(complex(x, y)), one, other)
+                    if away.min() <= radius + 0.5 * moved:
+                        return True
+        return False
+
+    def to_dict(self, file: str | None = None) -> dict[str, Any]:
+        """Plain data, as in the command line's JSON."""
+        return {
+            "file": file,
+            "mechanism": self.mechanism,
+            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
+            "drive": self.driven,
+            "delivered": self.delivered,
+            TRANSMISSION_ANGLE.word: self.transmission,
+            "size": self.size,
+            "error": self.error,
+            "score": self.score,
+            "numbers": self.numbers,
+            "inputs": list(self.improved.inputs),
+            "misses": list(self.improved.misses),
+            "total": self.improved.total,
+            "message": self.improved.message,
+            "defects": [
+                {"kind": defect.kind.name.lower(), "between": None, "message": defect.message}
+                for defect in self.defects
+            ],
+        }
+
+
+def _is_in_order(inputs: tuple[float, ...]) -> bool:
+    steps = np.diff(inputs)
+    return bool((steps > 0.0).all() or (steps < 0.0).all())
+
+
+def _largest_step(path: ComplexArray) -> float:
+    return float(np.abs(np.diff(path)).max(initial=0.0))

@@ -1,0 +1,208 @@
+"""Tasks that improve a mechanism: goals, bounds and wishes, and designs with their verdicts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.improvement.goals import goal_of
+from linkwork.design.improvement.improving import (
+    FACTOR,
+    STARTS,
+    box_of,
+    improved_designs,
+    numbers_to_vary,
+    point_named,
+)
+from linkwork.design.improvement.reach import Reach
+from linkwork.design.improvement.settings import Goal, Improvement, Points
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.errors import InputError, MechanismError, Problem, choices
+from linkwork.foundation.names import GROUND
+from linkwork.foundation.paths import as_path
+from linkwork.foundation.rounding import EQUAL_ROWS
+from linkwork.mechanism.description import Description
+from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.motion.model import Model, model_of
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+from linkwork.results.quantity import Kind
+from linkwork.textfile.library import example_text, examples
+from linkwork.textfile.reader import read_text
+from linkwork.textfile.toml_text import bytes_of, text_of
+
+__all__ = ["improve_mechanism"]
+
+_ROWS = 360  # of a turn, unless the mechanism's table has steps
+_PARTS = 100  # of a range of lengths
+
+
+def improve_mechanism(
+    task: Task, wishes: Wishes, progress: Callable[[float], None] | None
+) -> tuple[tuple[ImprovedMechanism, ...], int, bool]:
+    """Designs that are not ranked yet, the number of starts, and whether they were interrupted.
+
+    Raises
+    ------
+    MechanismError
+        For a mechanism that is not there, names that it does not have, or contradicting goals.
+    """
+    description = _driven(_mechanism(task), task)
+    settings = task.improvement or Improvement()
+    model = model_of(description)
+    _refuse(task, _name_problems(model, settings))
+    numbers = numbers_to_vary(model, settings.vary)
+    bounds, problems = _bounds(description, wishes, numbers, settings)
+    _refuse(task, problems)
+    settings = replace(settings, bounds=bounds)
+    goals: list[Goal | Points] = [*settings.goals, *_transmission_goals(model, task)]
+    if task.positions:
+        points = _points(task, settings)
+        box = box_of(model, numbers, settings)
+        reach = Reach(model.description, numbers, box)
+        name = points.point or next(iter(description.trace), "")
+        _refuse(task, _unreached(reach, name, points))
+        goals.append(points)
+    found = improved_designs(model, goals, settings, progress)
+    designs = [ImprovedMechanism(task=task, improved=design, wishes=wishes) for design in found]
+    interrupted = any(design.message.startswith("interrupted") for design in found)
+    return tuple(designs), settings.starts or STARTS, interrupted
+
+
+def _refuse(task: Task, problems: Iterable[Problem]) -> None:
+    found = tuple(problems)
+    if found:
+        raise MechanismError(found, f'task "{task.name}"')
+
+
+def _mechanism(task: Task) -> Description:
+    if len(task.mechanisms) != 1:
+        told = 'must be one mechanism, of the library or a file: "four-bar", "leg.toml"'
+        _refuse(task, [Problem(key=("mechanism",), message=told)])
+    name = task.mechanisms[0]
+    if name in examples():
+        return read_text(example_text(name), f"{name}.toml").description
+    path = as_path(name) if task.folder is None else task.folder / as_path(name)
+    if not path.is_file():
+        known = choices("examples", examples(), name)
+        told = f'"{name}" is no file beside the task and no example {known}'
+        _refuse(task, [Problem(key=("mechanism",), message=told)])
+    return read_text(text_of(bytes_of(path, str(path)), str(path)), str(path)).description
+
+
+def _driven(description: Description, task: Task) -> Description:
+    """The mechanism with the driven range that the task wants."""
+    wanted = task.wanted
+    if not (wanted.turns_fully or wanted.range) or not description.inputs:
+        return description
+    driven, turn = description.inputs[0], description.angle.turn
+    kinds = {x.name: x.kind for x in model_of(description).equations.inputs}
+    is_angle = kinds[driven.column] == Kind.ANGLE.value
+    told = ""
+    if wanted.turns_fully and not is_angle:
+        told = f'"{driven.column}" is a length, which cannot turn: give {{ from = …, to = … }}'
+    if driven.law is not None:
+        told = "has no effect on a mechanism that is driven by a law of time: leave it out"
+    if told:
+        _refuse(task, [Problem(key=("wanted", "input"), message=told)])
+    if wanted.range is not None:
+        start, stop = wanted.range
+    else:
+        start = description.numbers(driven.start) if driven.start is not None else 0.0
+        stop = start + turn
+    usual = turn / _ROWS if is_angle else abs(stop - start) / _PARTS
+    step = abs(description.numbers(driven.step)) if driven.step is not None else usual
+    count = max(1, math.ceil(abs(stop - start) / step * (1.0 - EQUAL_ROWS)))
+    ranged = replace(driven, start=start, stop=stop, step=(stop - start) / count)
+    return replace(description, inputs=(ranged, *description.inputs[1:]))
+
+
+def _name_problems(model: Model, settings: Improvement) -> Iterator[Problem]:
+    """Names that the mechanism does not have, or that cannot vary or be goals."""
+    there, one = np.ones(1, dtype=bool), np.zeros(1)
+    asked: dict[tuple[str | int, ...], Callable[[], object]] = {}
+    for k, name in enumerate(settings.vary):
+        asked["vary", k] = partial(chosen_numbers, model, [name])
+    for name in settings.bounds:
+        asked["bounds", name] = partial(number_named, model.description, name)
+    for k, goal in enumerate(settings.goals):
+        asked["goals", k, "of"] = partial(goal_of, model, goal, one, there, 1.0)
+    if settings.point:
+        asked["point",] = partial(point_named, model, settings.point)
+    for key, ask in asked.items():
+        try:
+            ask()
+        except InputError as error:
+            told = str(error.args[0] if isinstance(error, KeyError) else error)
+            yield Problem(key=("improve", *key), message=told)
+
+
+def _bounds(
+    description: Description,
+    wishes: Wishes,
+    numbers: Sequence[VariedNumber],
+    settings: Improvement,
+) -> tuple[dict[str, tuple[float, float]], list[Problem]]:
+    """The bounds given, narrowed by those that are wanted, and contradictions between them."""
+    given = {number_named(description, name): pair for name, pair in settings.bounds.items()}
+    bounds, problems = dict(settings.bounds), []
+    for number, (low, high) in _wanted_bounds(description, wishes, numbers):
+        name = next((n for n in bounds if number_named(description, n) == number), number.name)
+        least, most = given.get(number, (-math.inf, math.inf))
+        least, most = max(least, low), min(most, high)
+        if least > most:
+            told = f"excludes {low:g} to {high:g}, which [wanted] asks for: widen one of them"
+            problems.append(Problem(key=("improve", "bounds", name), message=told))
+        bounds[name] = least, most
+    return bounds, problems
+
+
+def _wanted_bounds(
+    description: Description, wishes: Wishes, numbers: Sequence[VariedNumber]
+) -> Iterator[tuple[VariedNumber, tuple[float, float]]]:
+    """Lengths, and the box around the region of fixed pivots."""
+    fixed = description.links.get(GROUND, ()) if isinstance(description, Draft) else ()
+    for number in numbers:
+        if number.table == "lengths" and (wishes.shortest or math.isfinite(wishes.longest)):
+            least = max(wishes.shortest, number.of(description) / FACTOR)
+            yield number, (least, min(wishes.longest, number.of(description) * FACTOR))
+        if number.table == "points" and number.key in fixed and wishes.region.size:
+            along = wishes.region.imag if number.axis else wishes.region.real
+            yield number, (float(along.min()), float(along.max()))
+
+
+def _transmission_goals(model: Model, task: Task) -> Iterator[Goal]:
+    """The least transmission angle of all dyads, as bounds in all rows."""
+    least = task.wanted.transmission
+    for name, asked in model.quantities.derived.items() if least else ():
+        if asked.row is TRANSMISSION_ANGLE:
+            yield Goal(of=name, least=least, most=task.angle.turn / 2.0 - least)
+
+
+def _points(task: Task, settings: Improvement) -> Points:
+    timed = task.positions[0].input is not None
+    inputs = tuple(p.input for p in task.positions if p.input is not None)
+    return Points(
+        points=tuple(position.point for position in task.positions),
+        point=settings.point,
+        inputs=inputs if timed else None,
+        order="as given" if task.wanted.ordered or timed else "any",
+    )
+
+
+def _unreached(reach: Reach, name: str, points: Points) -> Iterator[Problem]:
+    for k, place in enumerate(points.points):
+        pivot, away, most = reach.missing(name, complex(*place))
+        if pivot:
+            told = (
+                f"is {away:g} from {pivot}, out of reach: {name} comes at most {most:g} away from "
+                "it; widen the bounds of lengths or move the position"
+            )
+            yield Problem(key=("positions", k, "point"), message=told)

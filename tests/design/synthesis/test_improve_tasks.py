@@ -1,0 +1,98 @@
+"""Tasks that improve a mechanism of any kind: their files, wishes, designs and refusals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.foundation.errors import MechanismFileError
+
+_HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
+_GOAL = '[[improve.goals]]\nof = "rocker"\nat = [0, 90, 180]\nvalues = [60, 80, 100]\n'
+
+
+def test_a_file_improves_a_mechanism_beside_it_along_a_curve(tmp_path: Path) -> None:
+    (tmp_path / "bar.toml").write_text(lw.example_text("four-bar"))
+    wanted = lw.example("four-bar").with_dimensions({"A B": 124.0})
+    rows = [(*wanted.solve(at=a).points["B"], a) for a in (0.0, 60.0, 120.0, 200.0, 290.0)]
+    (tmp_path / "curve.csv").write_text("".join(f"{x!r},{y!r},{a!r}\n" for x, y, a in rows))
+    task = _HEAD.replace("four-bar", "bar.toml")
+    task += '[curve]\nfile = "curve.csv"\ntiming = "as given"\n'
+    task += '[improve]\npoint = "B"\nvary = ["A B"]\nstarts = 2\n'
+    (tmp_path / "task.toml").write_text(task)
+    found = lw.Task.load(tmp_path / "task.toml").solve()
+    (best,) = found.delivered
+    assert best.numbers["A B"] == pytest.approx(124.0, abs=1e-9)
+    assert best.error < 1e-9
+    files = found.save(tmp_path / "designs")
+    assert lw.load(files[0]).sweep().certified.all()
+    assert lw.load(files[0]).description.lengths["A B"] == best.numbers["A B"]
+    data = found.to_dict()["designs"][0]
+    assert (data["drive"], data["delivered"], data["defects"]) == ("crank", True, [])
+
+
+def test_a_wished_transmission_angle_holds_and_costs_exactness() -> None:
+    goals = [{"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}]
+    given = {"goals": goals, "vary": ["A B", "O4 B"], "starts": 1}
+    free = lw.Task.improve("four-bar", **given).solve()
+    wished = lw.Task.improve("four-bar", **given, wanted={"transmission": {"least": 30}}).solve()
+    assert free.delivered[0].transmission < 29.9
+    assert wished.delivered[0].transmission >= 30.0
+    assert wished.delivered[0].error > free.delivered[0].error
+
+
+def test_designs_that_break_wishes_are_refused_and_the_costliest_is_named() -> None:
+    goals = [{"of": "rocker", "at": [0, 90, 180], "values": [60, 80, 100]}]
+    found = lw.Task.improve(
+        "four-bar", goals=goals, vary=["A B", "O4 B"], starts=1, wanted={"clear_of": [[60, 60, 9]]}
+    ).solve()
+    assert not found.delivered
+    assert [kind.name for kind in found.defects] == ["OBSTACLE"]
+    assert found.costliest == ("clear_of", 1)
+
+
+def test_a_wished_range_is_the_table_of_the_designs() -> None:
+    task = lw.Task.improve(
+        "four-bar",
+        goals=[{"of": "rocker", "at": [30, 90], "values": [60, 80]}],
+        vary=["A B"],
+        starts=1,
+        wanted={"input": {"from": 20, "to": 140}},
+    )
+    design = task.solve().designs[0]
+    assert np.array(lw.api.Mechanism(design.linkage).sweep().inputs["crank"])[[0, -1]] == (
+        pytest.approx([20.0, 140.0])
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        (_HEAD + '[improve]\nvary = ["A B", "A X"]\n' + _GOAL, 5, '"A X" is not a number'),
+        (_HEAD + '[improve]\nvary = ["A B"]\n' + _GOAL.replace("rock", "rokc"), 7, "rocker"),
+        (_HEAD + '[improve.bounds]\n"A X" = [1, 2]\n', 5, '"A X" is not a number'),
+        (_HEAD.replace("four-bar", "fuor-bar") + "[improve]\n" + _GOAL, 3, "four-bar"),
+        (_HEAD + "[improve]\n" + _GOAL.replace("values", "least = 4\nmost = 3\n#"), 8, "contradict"),
+        (_HEAD + '[improve]\npoint = "C"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [3, 4]\n', 5, 'no point "C"'),
+        (_HEAD + '[improve]\npoint = "B"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [1, 2]\n', 8, "same as position 1"),
+        (
+            _HEAD + '[improve]\npoint = "B"\nvary = ["A B"]\n[[positions]]\npoint = [1, 2]\n'
+            "[[positions]]\npoint = [90, 500]\n",
+            10, "is 508.035 from O2, out of reach: B comes at most 180 away",
+        ),
+        (
+            _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
+            5, "excludes",
+        ),
+    ],
+)  # fmt: skip
+def test_a_wrong_task_is_refused_with_its_line(
+    tmp_path: Path, text: str, line: int, message: str
+) -> None:
+    (tmp_path / "task.toml").write_text(text)
+    with pytest.raises(MechanismFileError, match=message) as caught:
+        lw.Task.load(tmp_path / "task.toml").solve()
+    assert line in [problem.line for problem in caught.value.problems]

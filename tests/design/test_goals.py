@@ -1,0 +1,145 @@
+"""Goals of an improvement: numbers of motions, formulas, bounds, the largest miss, free timing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.improvement.goals import goal_of
+from linkwork.design.improvement.settings import Goal
+from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.mechanism.varied_number import number_named
+
+
+def _values(
+    mechanism: lw.Mechanism, of: str, by: tuple[str, ...], at: tuple[float, ...] = ()
+) -> tuple[Array, Array]:
+    """A goal's quantity and its derivatives, of the second of two lanes."""
+    model = mechanism.model
+    motion = mechanism.sweep(certify=False)
+    numbers = [number_named(mechanism.description, name) for name in by]
+    x = np.array([q.of(mechanism.description) for q in numbers])
+    scale = float(model.input_scale[0])
+    table = motion.inputs[next(iter(motion.inputs))] * scale
+    goal = goal_of(model, Goal(of=of, target=0.0, at=at), table, motion.found, scale)
+    q = np.stack([mechanism.solve(at=value).q for value in at]) if at else motion.q
+    lanes = SolvedLanes(model, numbers, x, q, goal.at, 2)
+    inputs = np.broadcast_to(goal.at, (2, len(goal.at)))
+    found = lanes.at(np.array([x, x]), inputs, np.arange(2))
+    value, by_x = goal.values(found)
+    return value[1], by_x[1]
+
+
+@pytest.mark.parametrize(
+    ("example", "of", "by"),
+    [
+        ("slider-crank", "time_ratio(d)", ("O2 A", "B A", "d.offset")),
+        ("slider-crank", "dwell(d, 2)", ("O2 A", "B A", "d.offset")),
+        ("slider-crank", "max(d.d1)", ("O2 A", "B A")),
+        ("four-bar", "path_length(B)", ("O2 A", "A B")),
+        ("four-bar", "min(B.transmission)", ("O2 A", "A B")),
+    ],
+)
+def test_a_number_of_the_motion_has_its_sensitivity_in_every_lane(
+    example: str, of: str, by: tuple[str, ...]
+) -> None:
+    mechanism = lw.example(example)
+    value, by_x = _values(mechanism, of, by)
+    assert value[0] == pytest.approx(mechanism.sweep(certify=False).value(of), rel=1e-12)
+    known = mechanism.gradient(of, by=by)
+    # two ways through the same linear equations
+    assert by_x[0] == pytest.approx([known[name] for name in by], rel=1e-9)
+
+
+@pytest.mark.parametrize("of", ["rocker.d2", "B.velocity", "B.x.acceleration"])
+def test_a_rate_of_rows_has_its_sensitivity_in_every_lane(of: str) -> None:
+    bar, at, by = lw.example("four-bar"), (30.0, 77.0), ("O2 A", "A B")
+    value, by_x = _values(bar, of, by, at)
+    assert value == pytest.approx([bar.solve(at=a)[of] for a in at], rel=1e-12)
+    known = [bar.gradient(of, by=by, at=a) for a in at]
+    assert by_x == pytest.approx(np.array([[rates[n] for n in by] for rates in known]), rel=1e-9)
+
+
+def test_a_formula_of_numbers_follows_the_quotient_rule() -> None:
+    crank, by = lw.example("slider-crank"), ("O2 A", "B A")
+    value, by_x = _values(crank, "2 * stroke(d) / max(A.x)", by)
+    parts = [_values(crank, of, by) for of in ("stroke(d)", "max(A.x)")]
+    (s, ds), (m, dm) = ((v[0], d[0]) for v, d in parts)
+    assert value[0] == pytest.approx(2.0 * s / m, rel=1e-14)
+    assert by_x[0] == pytest.approx(2.0 * (ds * m - s * dm) / m**2, rel=1e-12)
+
+
+def test_the_sensitivity_of_the_extreme_of_a_rate_is_that_of_the_rate() -> None:
+    crank = lw.example("slider-crank")
+    longer = crank.with_dimensions({"O2 A": 40.0 + 1e-5})
+    rise = longer.sweep().value("max(d.d1)") - crank.sweep().value("max(d.d1)")
+    # a difference of 1e-5 is known to its square, relative
+    assert crank.gradient("max(d.d1)", by=["O2 A"])["O2 A"] == pytest.approx(rise / 1e-5, rel=1e-3)
+
+
+def test_a_dwell_and_a_time_ratio_are_met() -> None:
+    crank = lw.example("slider-crank")
+    goals = [{"of": "time_ratio(d)", "target": 1.2}, {"of": "stroke(d)", "target": 70.0}]
+    best = crank.improve(goals, vary=["O2 A", "d.offset"], starts=1)[0]
+    motion = lw.api.Mechanism(best.description).sweep()
+    assert best.sound
+    assert motion.value("time_ratio(d)") == pytest.approx(1.2, abs=1e-9)
+    assert motion.value("stroke(d)") == pytest.approx(70.0, abs=1e-9)
+
+
+def test_a_bound_holds_against_a_goal_that_pulls_across_it() -> None:
+    crank = lw.example("slider-crank")
+    pull = {"of": "stroke(d)", "target": 120.0}
+    bound = {"of": "max(d)", "most": 110.0}
+    best = crank.improve([pull, bound], vary=["O2 A"], starts=1)[0]
+    motion = lw.api.Mechanism(best.description).sweep()
+    assert motion.value("max(d)") <= 110.0
+    free = crank.improve(pull, vary=["O2 A"], starts=1)[0]
+    assert lw.api.Mechanism(free.description).sweep().value("max(d)") > 110.0
+
+
+def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:
+    bar = lw.example("four-bar")
+    goal = {"of": "rocker", "at": [0, 40, 80, 120, 160], "values": [60, 57, 68, 80, 92]}
+    by = ["A B", "O4 B"]
+    squares = bar.improve(goal, vary=by, starts=1)[0]
+    level = bar.improve(goal, vary=by, starts=1, fit="minimax")[0]
+    assert level.largest < 0.99 * squares.largest
+    assert level.total > squares.total
+    # two numbers level three misses, of alternating sign (Chebyshev)
+    motion = lw.api.Mechanism(level.description)
+    misses = [motion.solve(at=a)["rocker"] - v for a, v in zip(goal["at"], goal["values"])]
+    ranked = np.sort(np.abs(misses))[::-1]
+    assert ranked[2] == pytest.approx(ranked[0], rel=0.01)
+
+
+@pytest.mark.parametrize("order", ["as given", "any"])
+def test_points_without_inputs_are_met_on_one_branch(order: str) -> None:
+    bar = lw.example("four-bar")
+    wanted = bar.with_dimensions({"O2 A": 38.0, "A B": 124.0})
+    points = [wanted.solve(at=a).points["B"] for a in (20.0, 75.0, 130.0, 200.0, 290.0)]
+    goal = {"point": "B", "points": points, "order": order}
+    best = bar.improve(goal, vary=["O2 A", "A B"], starts=1 if order == "as given" else 6)[0]
+    assert best.sound
+    assert best.rms < 1e-8
+    assert max(best.misses) < 1e-8
+    if order == "as given":
+        steps = np.diff(best.inputs)
+        assert (steps > 0).all() or (steps < 0).all()
+
+
+def test_what_cannot_be_a_goal_says_why() -> None:
+    bar = lw.example("four-bar")
+    for of, message in (
+        ("stroke(rocker) - rocker", "mixes numbers of the motion"),
+        ("limit.upper", "ask for a wider table"),
+        ("residual", "measures how a position was found"),
+        ("2 * 3", "has no quantity"),
+        ("B.x.jerk", "two derivatives"),
+        ("rokcer", "rocker"),
+    ):
+        with pytest.raises(InputError, match=message):
+            bar.improve({"of": of, "target": 1.0}, starts=1)
