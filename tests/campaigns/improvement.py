@@ -18,6 +18,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.foundation.arrays import Array
+from linkwork.mechanism.linkage import Linkage
 from tests.campaigns import printed_curves as printed
 
 __all__ = ["CURVES", "PARTS", "Curve", "improvement_campaign", "solve_curve_task", "squares"]
@@ -43,11 +44,12 @@ class Curve:
     seconds: float = _SECONDS
     starts: int | None = None
     wanted: dict[str, Any] = field(default_factory=dict)
-    bounds: dict[str, list[float]] = field(default_factory=dict)
+    bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 
 _TURNS = {"input": "turns fully"}
-_AT_ORIGIN = {"A0.x": [0, 0], "A0.y": [0, 0], "B0.y": [0, 0], "input": [0, 0]}
+_ZERO = (0.0, 0.0)
+_AT_ORIGIN = {"A0.x": _ZERO, "A0.y": _ZERO, "B0.y": _ZERO, "input": _ZERO}
 CURVES = (
     Curve(name="line of 6, free", points=printed.LINE, best=1e-20, starts=60,
           wanted={**_TURNS, "lengths": {"least": 5, "most": 60}}),
@@ -75,7 +77,7 @@ def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.Synthesis:
     """The task of a curve, for four-bars."""
     inputs = None
     if curve.step:
-        inputs = (curve.first or 0.0) + curve.step * np.arange(len(curve.points))
+        inputs = [(curve.first or 0.0) + curve.step * k for k in range(len(curve.points))]
     improve: dict[str, Any] = {"bounds": curve.bounds} if curve.bounds else {}
     if starts is not None:
         improve["starts"] = starts
@@ -113,8 +115,7 @@ def _curve(curve: Curve) -> tuple[Counter[str], list[str]]:
     seconds = process_time() - begin
     totals = [squares(design, curve.points) for design in found.delivered]
     best = min(totals, default=np.inf)
-    print(f"  {curve.name}: {best:.6g}, known {curve.best:.6g}, {seconds:.1f} s, "
-          f"{found.sound} sound of {len(found.designs)}", flush=True)  # fmt: skip
+    told = f"{curve.name}: {best:.6g} (known {curve.best:.6g}) in {seconds:.1f} s"
     false = []
     if not best <= curve.best * _WITHIN:
         false.append(f"{curve.name}: {best:.8g} is above {curve.best:.8g}")
@@ -124,7 +125,8 @@ def _curve(curve: Curve) -> tuple[Counter[str], list[str]]:
         steps = np.diff(design.design.inputs)
         if curve.ordered and not ((steps > 0).all() or (steps < 0).all()):
             false.append(f"{curve.name}: delivered out of order")
-    return Counter({"curves": 1, "reached": int(best <= curve.best * _WITHIN)}), false
+    counts = {"curves": 1, "curves reached": int(best <= curve.best * _WITHIN), told: 1}
+    return Counter(counts), false
 
 
 def _jansen() -> tuple[Counter[str], list[str]]:
@@ -136,7 +138,8 @@ def _jansen() -> tuple[Counter[str], list[str]]:
     path = motion.trace("F")[rows]
     places = np.stack([path.real, path.imag], axis=1)
     goal = {"point": "F", "points": places, "inputs": inputs}
-    lengths = dict(leg.description.lengths)
+    assert isinstance(leg.description, Linkage)
+    lengths = {key: leg.description.numbers(own) for key, own in leg.description.lengths.items()}
     reached, begin = 0, process_time()
     for seed in range(_LEG_STARTS):
         rng = np.random.default_rng([5, seed])
@@ -149,9 +152,10 @@ def _jansen() -> tuple[Counter[str], list[str]]:
         solved = lw.api.Mechanism(best[0].description).sweep(certify=False).trace("F")[rows]
         reached += bool(np.sqrt(np.mean(np.abs(solved - path) ** 2)) < _LEG_RMS)
     seconds = (process_time() - begin) / _LEG_STARTS
-    print(f"  Jansen: {reached} of {_LEG_STARTS} starts, {seconds:.2f} s each", flush=True)
+    told = f"leg: {seconds:.2f} s for a start"
     false = [] if reached >= _LEG_SHARE * _LEG_STARTS else [f"Jansen: only {reached} starts"]
-    return Counter({"legs from changed lengths": _LEG_STARTS, "legs reached": reached}), false
+    counts = {"legs from changed lengths": _LEG_STARTS, "legs reached": reached, told: 1}
+    return Counter(counts), false
 
 
 PARTS = len(CURVES) + 1

@@ -103,7 +103,8 @@ def test_a_bound_holds_against_a_goal_that_pulls_across_it() -> None:
 
 def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:
     bar = lw.example("four-bar")
-    goal = {"of": "rocker", "at": [0, 40, 80, 120, 160], "values": [60, 57, 68, 80, 92]}
+    at, values = [0, 40, 80, 120, 160], [60, 57, 68, 80, 92]
+    goal = {"of": "rocker", "at": at, "values": values}
     by = ["A B", "O4 B"]
     squares = bar.improve(goal, vary=by, starts=1)[0]
     level = bar.improve(goal, vary=by, starts=1, fit="minimax")[0]
@@ -111,7 +112,7 @@ def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:
     assert level.total > squares.total
     # two numbers level three misses, of alternating sign (Chebyshev)
     motion = lw.api.Mechanism(level.description)
-    misses = [motion.solve(at=a)["rocker"] - v for a, v in zip(goal["at"], goal["values"])]
+    misses = [motion.solve(at=a)["rocker"] - v for a, v in zip(at, values, strict=True)]
     ranked = np.sort(np.abs(misses))[::-1]
     assert ranked[2] == pytest.approx(ranked[0], rel=0.01)
 

@@ -11,6 +11,7 @@ import linkwork as lw
 from linkwork.foundation.errors import MechanismFileError
 
 _HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
+_HERE = '[improve]\npoint = "{}"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [{}, {}]\n'
 _GOAL = '[[improve.goals]]\nof = "rocker"\nat = [0, 90, 180]\nvalues = [60, 80, 100]\n'
 
 
@@ -29,7 +30,7 @@ def test_a_file_improves_a_mechanism_beside_it_along_a_curve(tmp_path: Path) -> 
     assert best.error < 1e-9
     files = found.save(tmp_path / "designs")
     assert lw.load(files[0]).sweep().certified.all()
-    assert lw.load(files[0]).description.lengths["A B"] == best.numbers["A B"]
+    assert best.linkage.lengths["A B"] == best.numbers["A B"]
     data = found.to_dict()["designs"][0]
     assert (data["drive"], data["delivered"], data["defects"]) == ("crank", True, [])
 
@@ -75,14 +76,18 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
         (_HEAD + '[improve]\nvary = ["A B"]\n' + _GOAL.replace("rock", "rokc"), 7, "rocker"),
         (_HEAD + '[improve.bounds]\n"A X" = [1, 2]\n', 5, '"A X" is not a number'),
         (_HEAD.replace("four-bar", "fuor-bar") + "[improve]\n" + _GOAL, 3, "four-bar"),
-        (_HEAD + "[improve]\n" + _GOAL.replace("values", "least = 4\nmost = 3\n#"), 8, "contradict"),
-        (_HEAD + '[improve]\npoint = "C"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [3, 4]\n', 5, 'no point "C"'),
-        (_HEAD + '[improve]\npoint = "B"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [1, 2]\n', 8, "same as position 1"),
+        (
+            _HEAD + "[improve]\n" + _GOAL.replace("values", "least = 4\nmost = 3\n#"),
+            8, "contradict",
+        ),
+        (_HEAD + _HERE.format("C", 3, 4), 5, 'no point "C"'),
+        (_HEAD + _HERE.format("B", 1, 2), 8, "same as position 1"),
         (
             _HEAD + '[improve]\npoint = "B"\nvary = ["A B"]\n[[positions]]\npoint = [1, 2]\n'
             "[[positions]]\npoint = [90, 500]\n",
             10, "is 508.035 from O2, out of reach: B comes at most 180 away",
         ),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL, 5, "has no effect yet"),
         (
             _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
             5, "excludes",

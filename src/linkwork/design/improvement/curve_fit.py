@@ -24,8 +24,8 @@ __all__ = ["FittedCurves", "fit_curve"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad]: far above rounding
 _DRAWS = 6  # for each start that is kept
-#: Lanes that go on, as shares of the starts, the steps they do, and the weight of constraints; after
-#: each the multipliers of constraints change.
+#: Lanes that go on, as shares of the starts, their steps, and the weight of constraints; after each
+#: the multipliers of constraints change.
 _STAGES = (
     (1.0, 12, 10.0),
     (0.4, 30, 30.0),

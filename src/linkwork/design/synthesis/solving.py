@@ -91,11 +91,8 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
-    transmission, size, miss = (
-        np.array([getattr(design, name) for design in designs], dtype=float)
-        for name in ("transmission", "size", "error")
-    )
-    scores = _scores(task, transmission * task.angle.radians, size, miss)
+    measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
+    scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
     entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
     ranked: list[ImprovedMechanism] = []
     for place, (refused, _, k) in enumerate(entries, start=1):

@@ -185,6 +185,8 @@ class Task:
         if self.improvement is not None:
             for key, message in self.improvement.problems():
                 yield ("improve", *key), message
+            if self.improvement.front:
+                yield ("improve", "front"), "has no effect yet: vary the weights of goals instead"
         yield from self._given_problems()
         yield from self._wish_problems()
 
@@ -232,7 +234,7 @@ class Task:
                 ("positions", 0, "input"),
                 f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}",
             )
-        if self.kind in ("path", "mixed"):
+        if self.kind in ("path", "mixed", "improve"):
             for k, position in enumerate(self.positions):
                 refused = () if self.is_approximate else ("input",)
                 for name in (*refused, "tolerance", "angle_tolerance"):
