@@ -62,6 +62,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_MOTION + "[wanted]\norder = 'none'\n", 19, "wanted.order", 'must be "as given" or "any"'),
         (_MOTION.replace("point = [0, 0]", "point = [0]"), 4, "positions[1].point",
          "needs two coordinates, got 1"),
+        (_MOTION.replace("[40, -40]", "[40, -1e40]"), 7, "positions[2].point[2]",
+         "-1e+40 is beyond ±1e12: choose a larger unit"),
         (_FUNCTION + "of = 'log10(x)'\n", None, "function.x", "is missing: a formula needs"),
         (_FUNCTION + "of = 'ln(x)'\nx = [-1, 1]\ninput = [0, 60]\noutput = [0, 60]\n", 4,
          "function.of", "ln(-1) is not a real number"),
