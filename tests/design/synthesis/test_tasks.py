@@ -127,6 +127,23 @@ def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
         lw.Task.motion(rolled).solve()
 
 
+def test_designs_with_a_link_of_no_length_are_refused_without_warnings(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    task = lw.Task.loads("""format = 1
+task = "mixed"
+mechanism = "four-bar"
+given = { fixed_pivots = [[0, 0], [400, 0]] }
+positions = [
+  { point = [0, 0] }, { point = [0.1, -40] }, { point = [100, -80] },
+  { point = [170, -110], angle = 45 },
+]
+""")
+    first = task.solve().designs[0]
+    assert repr(first) == "<SynthesizedDesign 1: four-bar driven at A0, not proved>"
+    assert not recwarn.list
+
+
 def test_a_kind_without_a_solver_says_so() -> None:
     assert read_task(_EXAMPLES[0]).kind
     with pytest.raises(lw.InputError, match="cannot be solved yet"):
