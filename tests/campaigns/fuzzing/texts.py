@@ -66,7 +66,8 @@ transmission = "mu >= 25"
 #: The ends of tasks of every kind.
 _TASKS = (
     'task = "motion"\n[wanted]\ntransmission = { least = 30 }\n'
-    "lengths = { most = 1400, ratio = 20 }\nclear_of = [[140, 40, 30]]\n[rank]\nby = { transmission = 2, size = 1 }\ndeliver = 5\n",
+    "lengths = { most = 1400, ratio = 20 }\nclear_of = [[140, 40, 30]]\n"
+    "[rank]\nby = { transmission = 2, size = 1 }\ndeliver = 5\n",
     'task = "mixed"\nmechanism = "four-bar"\n[given]\nfixed_pivots = [[0, 0], [400, 0]]\n',
     'task = "path"\nmechanism = ["four-bar", "slider-crank"]\n[wanted]\norder = "any"\n'
     "fixed_pivots = { inside = [[0, 0], [400, 0], [400, 300]] }\n[improve]\nstarts = 10\n",
