@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.export.plates.options import Sizes
 from linkwork.export.plates.outline import Outline
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.internal import internal
 from linkwork.results.table import Table
 
 __all__ = ["Opening", "Pin", "Plate", "PlateStack", "Spacer"]
@@ -81,6 +82,7 @@ class Spacer:
     layers: int
 
 
+@internal("plates", "pins", "sizes", "poses", "span", "length", "spacers")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlateStack:
     """Plates in layers, with the pins and spacers between them.
