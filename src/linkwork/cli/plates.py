@@ -41,6 +41,8 @@ _SIZES = (
     ("kerf", "Width of the cut, halved on either side."),
     ("thickness", "Thickness of plates."),
     ("gap", "Least distance of moving plates in one layer."),
+    ("module", "Module of gears that are given by radii."),
+    ("backlash", "Backlash of gears on the pitch circle."),
     ("sheet", "Width of the sheet of --layout."),
 )
 

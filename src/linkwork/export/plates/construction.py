@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
+import cmath
 import itertools
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkwork.drawing.link_symbols import convex_outline
+from linkwork.export.plates.gears import GearMesh, Wheel, gear_meshes
 from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.plate import Opening, Pin, Plate
-from linkwork.export.plates.rigid_bodies import Guideway, RigidBody, guideways, rigid_bodies
+from linkwork.export.plates.rigid_bodies import (
+    Guideway,
+    RigidBody,
+    guideways,
+    rigid_bodies,
+    same_place,
+)
+from linkwork.export.plates.wheel_plates import wheel_plate
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.linkage import Linkage
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
 __all__ = ["BASE", "Construction"]
 
+_GEAR = 0.8  # of a gear's radius: bars this wide leave room for a pin and a fastener
 #: The plate of the ground.
 BASE = "base"
 
@@ -31,7 +43,8 @@ BASE = "base"
 class Construction:
     """Plates and pins of a linkage.
 
-    ``travel``: the first and the last displacement of each guide [mm]. ``ways``: its guides.
+    ``ways``: its guides; ``travel``: the least and the largest displacement of each [mm].
+    ``holes`` of points and ``more`` of fasteners, by body; ``meshes``: plates of gears in mesh.
     """
 
     linkage: Linkage
@@ -41,6 +54,9 @@ class Construction:
     ways: tuple[Guideway, ...]
     travel: dict[str, tuple[float, float]]
     holes: dict[str, dict[str, complex]] = field(default_factory=dict)
+    more: dict[str, dict[str, complex]] = field(default_factory=dict)
+    meshes: list[frozenset[str]] = field(default_factory=list)
+    gearing: list[str] = field(default_factory=list)
     plates: list[Plate] = field(default_factory=list)
     pins: list[Pin] = field(default_factory=list)
 
@@ -64,6 +80,7 @@ class Construction:
         gaps = [
             abs(a - b) for own in holes.values() for a, b in itertools.combinations(own.values(), 2)
         ]
+        gaps += [_GEAR * mm * disc.radius for disc in model.skeleton.of(Disc) if not disc.ring]
         sizes = sizes_of(options, mm, longest, min(gaps, default=longest))
         found = motion.found
         values = {name: mm * own.value[found] for name, own in motion.sliders.items()}
@@ -72,38 +89,92 @@ class Construction:
         ends = {name: (float(own.min()), float(own.max())) for name, own in values.items()}
         travel = {way.name: ends[way.name] for way in ways}
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
-        made._make()
+        turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
+        points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
+        gears = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        made._make(*gears, turns)
         return made
 
-    def _make(self) -> None:
-        for name, body in _distinct(self.bodies):
-            self.plates.append(self._main_plate(name, body))
-        plate_of = {plate.body: plate.name for plate in self.plates}
+    def _make(
+        self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
+    ) -> None:
+        toothed, whole = [], set()
+        for wheel in wheels:
+            body = self.bodies[wheel.disc.link]
+            own = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
+            slides = any(body.name in (way.on, way.runner) for way in self.ways)
+            guided = slides or body.name == GROUND
+            plate = wheel_plate(own, body, self.holes[body.name], self.sizes, guided=guided)
+            toothed.append(plate.plate)
+            self.more.setdefault(body.name, {}).update(plate.fastened)
+            self.pins += [
+                Pin(name=name, body=body.name, place=place, plates=frozenset(own), fixed=True)
+                for name, place in plate.fastened.items()
+                for own in [{plate.plate.name, self._main_name(body.name)}]
+            ]
+            if plate.whole:
+                whole.add(body.name)
+        for name, _ in _distinct(self.bodies):
+            if name not in whole:
+                self.plates.append(self._main_plate(name))
+        if not any(plate.name == BASE for plate in self.plates):
+            raise InputError("nothing is joined to the ground: there is no base plate")
+        self.plates += toothed
+        names = [plate.name for plate in toothed]
+        self.meshes = [frozenset(names[k] for k in mesh.wheels) for mesh in meshes]
+        for mesh in meshes:
+            one, other = (wheels[k] for k in mesh.wheels)
+            self.gearing.append(
+                f"{mesh.name}: {one.teeth} and {other.teeth} teeth, module {one.module:.6g} mm, "
+                f"pressure angle {math.degrees(one.pressure):g} deg, backlash "
+                f"{one.backlash:.3g} mm"
+            )
+        for plate in self.plates:
+            check_webs(plate, self.sizes)
+        self._join()
+
+    def _main_name(self, body: str) -> str:
+        return BASE if body == GROUND else body
+
+    def _join(self) -> None:
+        """The pins of all joints and guides."""
+        with_hole: dict[tuple[str, str], set[str]] = {}
+        for plate in self.plates:
+            for own in plate.openings:
+                with_hole.setdefault((plate.body, own.name), set()).add(plate.name)
         joined: dict[str, set[str]] = {}
         for point in self.linkage.points:
             bodies = {self.bodies[link].name for link in self.linkage.bodies_at(point)}
-            joined[point] = {plate_of[body] for body in bodies}
+            held = {name: with_hole.get((name, self._hole(name, point)), set()) for name in bodies}
+            joined[point] = set().union(*held.values())
+            if sum(map(bool, held.values())) < 2:
+                joined[point] = set()
         for way in self.ways:
+            slotted = with_hole[way.on, way.name]
             if way.reach == 0.0:
-                joined[way.point].add(plate_of[way.on])
+                own = with_hole[way.runner, self._hole(way.runner, way.point)]
+                joined[way.point] |= slotted | own
                 continue
-            own = frozenset({plate_of[way.on], plate_of[way.runner]})
             for k, place in enumerate(way.places, start=1):
-                self.pins.append(
-                    Pin(name=f"{way.name} {k}", body=way.runner, place=place, plates=own)
-                )
-        for point, plates in joined.items():
-            if len(plates) > 1:
+                name = f"{way.name} {k}"
+                plates = frozenset(slotted | with_hole[way.runner, name])
+                self.pins.append(Pin(name=name, body=way.runner, place=place, plates=plates))
+        for point, found in joined.items():
+            if found:
                 body = self.bodies[next(self.linkage.bodies_at(point))]
-                pin = Pin(
-                    name=point, body=body.name, place=body.places[point], plates=frozenset(plates)
-                )
-                self.pins.append(pin)
+                place = body.places[point]
+                own = frozenset(found)
+                self.pins.append(Pin(name=point, body=body.name, place=place, plates=own))
 
-    def _main_plate(self, name: str, body: RigidBody) -> Plate:
+    def _hole(self, body: str, point: str) -> str:
+        """The name of the hole of a point: points that coincide share one."""
+        holes, place = self.holes[body], self.bodies[body].places[point]
+        return next((p for p, z in holes.items() if same_place(z, place)), point)
+
+    def _main_plate(self, name: str) -> Plate:
         """The plate around the holes and slots of a body."""
         sizes, core, openings = self.sizes, [], []
-        for point, place in self.holes[name].items():
+        for point, place in (self.holes[name] | self.more.get(name, {})).items():
             core.append(place)
             openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
         for way in self.ways:
@@ -116,20 +187,17 @@ class Construction:
                 ends = self.slot_ends(way)
                 core += ends
                 openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
-        own = BASE if name == GROUND else name
         if not core:
             raise InputError(f'nothing is joined to "{name}": it has no plate')
         hull = convex_outline(core)
-        plate = Plate(
-            name=own,
+        return Plate(
+            name=self._main_name(name),
             body=name,
             outline=rounded(hull, sizes.width / 2.0),
             openings=tuple(openings),
             core=np.array(hull if hull[0] != hull[-1] else hull[:1]),
             radius=sizes.width / 2.0,
         )
-        check_webs(plate, sizes)
-        return plate
 
     def slot_ends(self, way: Guideway) -> tuple[complex, complex]:
         """The centres of a pin at both ends of a slot, in the frame of its body."""
@@ -190,7 +258,7 @@ def _holes(
         here = {bodies[link].name for link in linkage.bodies_at(point)}
         free = body.name != GROUND and point not in lines
         # points that coincide share one hole
-        apart = all(abs(place - other) > 1e-9 * abs(place) for other in taken)
+        apart = not any(same_place(place, other) for other in taken)
         if (len(here) > 1 or point in held or free) and apart:
             taken.append(place)
             yield point, place

@@ -38,7 +38,8 @@ class Opening:
 class Plate:
     """A plate of a body, in the body's frame [mm].
 
-    ``core`` and ``radius``: the plate lies within this distance of the convex hull of the core.
+    ``core`` and ``radius``: the plate lies within this distance of the convex hull of the core, and
+    farther than ``inner`` from the middle of a ring.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Plate:
     openings: tuple[Opening, ...]
     core: ComplexArray
     radius: float
+    inner: float = 0.0
 
     @property
     def area(self) -> float:
