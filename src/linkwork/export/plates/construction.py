@@ -24,11 +24,19 @@ from linkwork.export.plates.rigid_bodies import (
     rigid_bodies,
     same_place,
 )
-from linkwork.export.plates.wheel_plates import wheel_plate
+from linkwork.export.plates.wheel_plates import (
+    Blank,
+    WheelPlate,
+    cam_blank,
+    gear_blank,
+    ring_plate,
+    wheel_plate,
+)
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
-from linkwork.mechanism.figures import Disc
+from linkwork.mechanism.figures import Contour, Disc
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.skeleton import Skeleton
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
@@ -44,7 +52,8 @@ class Construction:
     """Plates and pins of a linkage.
 
     ``ways``: its guides; ``travel``: the least and the largest displacement of each [mm].
-    ``holes`` of points and ``more`` of fasteners, by body; ``meshes``: plates of gears in mesh.
+    ``holes`` of points and ``more`` of fasteners, by body; ``meshes``: plates in contact, which
+    share a layer; ``contacts``: cams with their rollers, at the points ``rollers``.
     """
 
     linkage: Linkage
@@ -56,7 +65,9 @@ class Construction:
     holes: dict[str, dict[str, complex]] = field(default_factory=dict)
     more: dict[str, dict[str, complex]] = field(default_factory=dict)
     meshes: list[frozenset[str]] = field(default_factory=list)
-    gearing: list[str] = field(default_factory=list)
+    contacts: list[tuple[str, str]] = field(default_factory=list)
+    rollers: set[str] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
     plates: list[Plate] = field(default_factory=list)
     pins: list[Pin] = field(default_factory=list)
 
@@ -91,47 +102,84 @@ class Construction:
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
         turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
-        gears = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
-        made._make(*gears, turns)
+        wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        made._gears(wheels, meshes, turns)
+        made._cams(model.skeleton, turns)
+        made._main_plates()
+        for plate in made.plates:
+            check_webs(plate, sizes)
+        made._join()
         return made
 
-    def _make(
+    def _gears(
         self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
     ) -> None:
-        toothed, whole = [], set()
+        names = []
         for wheel in wheels:
             body = self.bodies[wheel.disc.link]
             own = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
-            slides = any(body.name in (way.on, way.runner) for way in self.ways)
-            guided = slides or body.name == GROUND
-            plate = wheel_plate(own, body, self.holes[body.name], self.sizes, guided=guided)
-            toothed.append(plate.plate)
-            self.more.setdefault(body.name, {}).update(plate.fastened)
-            self.pins += [
-                Pin(name=name, body=body.name, place=place, plates=frozenset(own), fixed=True)
-                for name, place in plate.fastened.items()
-                for own in [{plate.plate.name, self._main_name(body.name)}]
-            ]
-            if plate.whole:
-                whole.add(body.name)
-        for name, _ in _distinct(self.bodies):
-            if name not in whole:
-                self.plates.append(self._main_plate(name))
-        if not any(plate.name == BASE for plate in self.plates):
-            raise InputError("nothing is joined to the ground: there is no base plate")
-        self.plates += toothed
-        names = [plate.name for plate in toothed]
-        self.meshes = [frozenset(names[k] for k in mesh.wheels) for mesh in meshes]
+            if wheel.disc.ring:
+                names.append(self._add(ring_plate(own, body, self.sizes)))
+            else:
+                names.append(self._add(self._wheel(gear_blank(own, body), body)))
         for mesh in meshes:
             one, other = (wheels[k] for k in mesh.wheels)
-            self.gearing.append(
+            self.meshes.append(frozenset(names[k] for k in mesh.wheels))
+            self.notes.append(
                 f"{mesh.name}: {one.teeth} and {other.teeth} teeth, module {one.module:.6g} mm, "
                 f"pressure angle {math.degrees(one.pressure):g} deg, backlash "
                 f"{one.backlash:.3g} mm"
             )
-        for plate in self.plates:
-            check_webs(plate, self.sizes)
-        self._join()
+
+    def _cams(self, skeleton: Skeleton, turns: Mapping[str, float]) -> None:
+        """Cams with rollers; these turn freely on their pins."""
+        rollers = {disc.name: disc for disc in skeleton.of(Disc) if disc.kind == "roller"}
+        for contour in skeleton.of(Contour):
+            roller, body = rollers[contour.name], self.bodies[contour.link]
+            turn = cmath.exp(1j * (turns[contour.link] - turns[body.name]))
+            points = self.millimetres * turn * np.array(contour.points)
+            cam = self._add(self._wheel(cam_blank(body.places[contour.center], points), body))
+            carrier, radius = self.bodies[roller.link], self.millimetres * roller.radius
+            center, name = carrier.places[roller.center], f"{roller.name} roller"
+            if radius < self.sizes.hole / 2.0 + self.sizes.web:
+                raise InputError(
+                    f'the roller of "{roller.name}" is too small for its hole of '
+                    f"{self.sizes.hole:g} mm: choose smaller pins"
+                )
+            hole = Opening(name=roller.center, outline=circle(center, self.sizes.hole / 2.0))
+            plate = Plate(
+                name=name,
+                body=carrier.name,
+                outline=circle(center, radius),
+                openings=(hole,),
+                core=np.array([center]),
+                radius=radius,
+            )
+            self.plates.append(plate)
+            self.meshes.append(frozenset((cam, name)))
+            self.contacts.append((cam, name))
+            self.rollers.add(roller.center)
+
+    def _wheel(self, blank: Blank, body: RigidBody) -> WheelPlate:
+        slides = any(body.name in (way.on, way.runner) for way in self.ways)
+        guided = slides or body.name == GROUND
+        return wheel_plate(blank, body, self.holes[body.name], self.sizes, guided=guided)
+
+    def _add(self, wheel: WheelPlate) -> str:
+        """Add a wheel's plate with its fasteners; returns its name."""
+        body, name = wheel.plate.body, wheel.plate.name
+        self.plates.append(wheel.plate)
+        self.more.setdefault(body, {}).update(wheel.fastened)
+        for own, place in wheel.fastened.items():
+            plates = frozenset((name, self._main_name(body)))
+            self.pins.append(Pin(name=own, body=body, place=place, plates=plates, fixed=True))
+        return name
+
+    def _main_plates(self) -> None:
+        """The other plates of all bodies, the base plate first."""
+        whole = {plate.name for plate in self.plates}
+        main = [self._main_plate(own) for own, _ in _distinct(self.bodies) if own not in whole]
+        self.plates = main + self.plates
 
     def _main_name(self, body: str) -> str:
         return BASE if body == GROUND else body
@@ -147,13 +195,13 @@ class Construction:
             bodies = {self.bodies[link].name for link in self.linkage.bodies_at(point)}
             held = {name: with_hole.get((name, self._hole(name, point)), set()) for name in bodies}
             joined[point] = set().union(*held.values())
-            if sum(map(bool, held.values())) < 2:
+            if sum(map(bool, held.values())) < 2 and point not in self.rollers:
                 joined[point] = set()
         for way in self.ways:
             slotted = with_hole[way.on, way.name]
             if way.reach == 0.0:
-                own = with_hole[way.runner, self._hole(way.runner, way.point)]
-                joined[way.point] |= slotted | own
+                held_by = with_hole[way.runner, self._hole(way.runner, way.point)]
+                joined[way.point] |= slotted | held_by
                 continue
             for k, place in enumerate(way.places, start=1):
                 name = f"{way.name} {k}"
@@ -163,8 +211,8 @@ class Construction:
             if found:
                 body = self.bodies[next(self.linkage.bodies_at(point))]
                 place = body.places[point]
-                own = frozenset(found)
-                self.pins.append(Pin(name=point, body=body.name, place=place, plates=own))
+                through = frozenset(found)
+                self.pins.append(Pin(name=point, body=body.name, place=place, plates=through))
 
     def _hole(self, body: str, point: str) -> str:
         """The name of the hole of a point: points that coincide share one."""

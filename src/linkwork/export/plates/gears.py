@@ -24,7 +24,7 @@ __all__ = ["GearMesh", "Wheel", "gear_meshes", "involute_outline", "touches"]
 
 _FEWEST = 18  # teeth of gears given by radii: no undercut at 20 degrees
 _LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii
-_SAME = 1e-9  # of a ratio
+_WHOLE = 1e-9  # of a ratio
 _FLANK = 16  # points along a flank
 _IN_GAP = 1e-6  # of a pitch
 _STEPS = 4096  # positions within one pitch, at most
@@ -179,7 +179,7 @@ def _whole(discs: Sequence[Disc]) -> list[int]:
     """The least whole numbers in the ratio of the radii."""
     ratios = [disc.radius / discs[0].radius for disc in discs]
     found = [Fraction(ratio).limit_denominator(_LARGEST_RATIO) for ratio in ratios]
-    if any(abs(float(f) - r) > _SAME * r for f, r in zip(found, ratios, strict=True)):
+    if any(abs(float(f) - r) > _WHOLE * r for f, r in zip(found, ratios, strict=True)):
         raise InputError(
             f'the radii of gears "{discs[0].name}" have no ratio of whole numbers: give their teeth'
         )

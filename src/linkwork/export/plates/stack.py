@@ -76,6 +76,7 @@ def stack_of(
         poses={name: (complex(z[0]), complex(turn[0])) for name, (z, turn) in placed.items()},
         checked=len(boxes.v),
         proved=not proof.open,
+        contacts=tuple(made.contacts),
         open=_intervals(model, boxes.lead, proof),
         notes=tuple(notes),
     )
@@ -100,7 +101,7 @@ def _checked(model: Model, motion: Motion) -> Linkage:
 
 def _notes(linkage: Linkage, motion: Motion, made: Construction, longest: float) -> list[str]:
     """What the plates lack; refuse redundant links that are too far from fitting."""
-    notes = list(made.gearing)
+    notes = list(made.notes)
     nothing = KinematicPairs()
     left = [part.label for part in linkage.parts if part.pairs(linkage) == nothing]
     if left:
