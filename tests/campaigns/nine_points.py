@@ -49,5 +49,5 @@ def nine_point_campaign(part: int) -> tuple[Counter[str], list[str]]:
     counts[f"tasks of {int(spent) + 1} processor seconds at most"] += 1
     if lost:
         counts[f"task {part} lost {lost}"] += 1
-    false = [f"task {part}: complete without {lost}"] if lost and found.completeness.complete else []
-    return counts, false
+    wrong = lost and found.completeness.complete
+    return counts, [f"task {part}: complete without {lost}"] if wrong else []
