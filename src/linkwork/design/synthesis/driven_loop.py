@@ -126,13 +126,12 @@ class DrivenLoops:
         """A lower bound of min(μ, π - μ) between places (D,), (D,) [rad]."""
         c0, c1 = self.cosine
         q = self.extremes(first, last)
-        largest = np.abs(c0[:, None] + c1[:, None] * q).max(axis=1) + np.abs(c1) * self.q_error
-        if self.offset.any():
-            nearest = np.maximum(q.min(axis=1) - self.q_error, 0.0)
-            with np.errstate(all="ignore"):
-                largest = np.maximum(
-                    largest, np.nan_to_num(self.offset / np.sqrt(nearest), nan=1.0)
-                )
+        # a link of no length has no transmission angle
+        with np.errstate(all="ignore"):
+            largest = np.abs(c0[:, None] + c1[:, None] * q).max(axis=1) + np.abs(c1) * self.q_error
+            if self.offset.any():
+                nearest = np.maximum(q.min(axis=1) - self.q_error, 0.0)
+                largest = np.maximum(largest, self.offset / np.sqrt(nearest))
         return np.asarray(np.arccos(np.clip(largest, 0.0, 1.0)))
 
     def q(self, place: Array) -> Array:
