@@ -24,7 +24,7 @@ def _warm_up() -> None:
 
 def _task(part: int) -> Task:
     z = normal_numbers(np.random.default_rng([51, part]), 9)
-    return Task.path(np.column_stack([z.real, z.imag]))
+    return Task.path(np.column_stack([z.real, z.imag]).tolist())
 
 
 def nine_point_campaign(part: int) -> tuple[Counter[str], list[str]]:

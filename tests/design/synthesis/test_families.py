@@ -98,7 +98,7 @@ def test_a_body_that_slides_through_a_pivot_is_found_from_five_and_more_poses() 
     away = block - crank
     line = away / (np.sqrt(np.abs(away) ** 2 - offset**2) + 1j * offset)
     points, angles = crank + (30 + 60j) * line, np.degrees(np.angle(line))
-    poses = np.column_stack([points.real, points.imag, angles])
+    poses = np.column_stack([points.real, points.imag, angles]).tolist()
     found = lw.Task.motion(poses[:5], mechanism="inverted-slider-crank").solve()
     kinds = [dyad.kind for dyad in found.dyads]
     assert kinds.count("RP") == 1
@@ -108,9 +108,7 @@ def test_a_body_that_slides_through_a_pivot_is_found_from_five_and_more_poses() 
     # the block swings back within the positions
     assert [d.drive.value for d in planted] == ["A0"]
     assert _misses(found, [tuple(pose) for pose in poses[:5]]) < 1e-6
-    tables = [
-        {"point": [x, y], "angle": angle, "tolerance": 0.01} for x, y, angle in poses.tolist()
-    ]
+    tables = [{"point": [x, y], "angle": angle, "tolerance": 0.01} for x, y, angle in poses]
     text = "format = 1\ntask = 'motion'\nmechanism = 'inverted-slider-crank'\n" + "".join(
         "[[positions]]\n" + "".join(f"{key} = {value}\n" for key, value in table.items())
         for table in tables
