@@ -6,10 +6,9 @@ import re
 from pathlib import Path
 from typing import Any
 
+import linkwork as lw
 import openpyxl
 import pytest
-
-import linkwork as lw
 from linkwork.export import workbook_of
 from linkwork.export.formulas.traced_equations import traced
 from linkwork.export.workbook.dimension_units import dimension_kinds

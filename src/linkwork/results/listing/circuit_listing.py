@@ -13,7 +13,7 @@ from linkwork.results.listing.position_listing import listed_links, redundant_li
 __all__ = ["branch_columns", "circuit_fields"]
 
 
-def branch_columns(found: Circuits, circuit: Circuit) -> list[Column]:
+def branch_columns(found: Circuits, circuit: Circuit, digits: int = 10) -> list[Column]:
     """The range of every branch of a circuit."""
     unit = f" [{found.input_unit}]" if found.input_unit else ""
     branches = circuit.branches
@@ -23,11 +23,13 @@ def branch_columns(found: Circuits, circuit: Circuit) -> list[Column]:
         ),
         Column(
             header=f"from {found.input}{unit}",
-            cells=[short(branch.input_range[0]) for branch in branches],
+            cells=[short(branch.input_range[0], digits) for branch in branches],
             align="point",
         ),
         Column(
-            header="to", cells=[short(branch.input_range[1]) for branch in branches], align="point"
+            header="to",
+            cells=[short(branch.input_range[1], digits) for branch in branches],
+            align="point",
         ),
         Column(
             header="at the guess's input",

@@ -14,7 +14,9 @@ from linkwork.results.quantity import Kind
 __all__ = ["completeness_fields", "configuration_columns", "path_sentence"]
 
 
-def configuration_columns(found: Configurations, kinds: Mapping[str, Kind]) -> list[Column]:
+def configuration_columns(
+    found: Configurations, kinds: Mapping[str, Kind], decimals: int = 6
+) -> list[Column]:
     """A row for every configuration; ``kinds`` of the unknowns in order."""
     columns = [Column(header="name", cells=found.names)]
     for name, kind in kinds.items():
@@ -23,7 +25,7 @@ def configuration_columns(found: Configurations, kinds: Mapping[str, Kind]) -> l
         unit = found.positions[0].units.of(kind)
         rows = [Row(name=name, kind=kind, value=position.unknowns[name]) for position in found]
         header = f"{name} [{unit}]" if unit else name
-        columns.append(Column(header=header, cells=value_cells(rows), align="point"))
+        columns.append(Column(header=header, cells=value_cells(rows, decimals), align="point"))
     certified = [_certified(p.certificate) for p in found]
     columns.append(Column(header="certified", cells=certified))
     return columns

@@ -154,7 +154,7 @@ _EQUAL = 1e-9  # relative difference of values that are equal but for rounding
 _STILL = 1e-10  # relative range below which a value counts as constant, without located extremes
 
 
-def range_columns(motion: Motion, columns: Sequence[str] = ()) -> list[Column]:
+def range_columns(motion: Motion, columns: Sequence[str] = (), decimals: int = 6) -> list[Column]:
     """Smallest and largest value of every unknown, output and traced point, and where."""
     traced = (f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy")
     names = columns or [*motion.unknowns, *motion.riding, *motion.outputs, *traced]
@@ -169,7 +169,7 @@ def range_columns(motion: Motion, columns: Sequence[str] = ()) -> list[Column]:
         for rows in (low, high)
         for s, row in zip(found, rows, strict=True)
     ]
-    cells = value_cells(numbers)  # both columns together, for the same number of decimals
+    cells = value_cells(numbers, decimals)  # both columns together, for the same number of decimals
 
     def places(rows: list[int]) -> Column:
         moving = [

@@ -44,9 +44,9 @@ def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
     return f"{value:.{digits - 1}e}"
 
 
-def short(value: float) -> str:
-    """A number with at most ten significant digits, without trailing zeros."""
-    return f"{value:.10g}" if math.isfinite(value) else _NOTHING
+def short(value: float, digits: int = 10) -> str:
+    """A number with at most the given significant digits, without trailing zeros."""
+    return f"{value:.{digits}g}" if math.isfinite(value) else _NOTHING
 
 
 def _exponent(value: float) -> int:

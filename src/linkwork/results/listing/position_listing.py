@@ -37,8 +37,8 @@ class Row:
     value: float
 
 
-def value_cells(rows: Sequence[Row]) -> list[str]:
-    """Values as text: angles with six decimals, lengths and forces six digits, numbers ten."""
+def value_cells(rows: Sequence[Row], decimals: int = 6) -> list[str]:
+    """Values as text: angles with the given decimals, lengths six digits, numbers ten."""
     sizes = iter(lengths(row.value for row in rows if row.kind is Kind.LENGTH))
     texts = []
     for row in rows:
@@ -46,7 +46,7 @@ def value_cells(rows: Sequence[Row]) -> list[str]:
             case Kind.LENGTH:
                 texts.append(next(sizes))
             case Kind.ANGLE:
-                texts.append(fixed(row.value))
+                texts.append(fixed(row.value, decimals))
             case Kind.NUMBER:
                 texts.append(significant(row.value, _NUMBER_DIGITS))
             case _:
