@@ -174,8 +174,10 @@ class _Gathering:
         if not drawn:
             self._without(("drawing", "paths"), _NO_POINTS)
         if not self.mechanism.loop_equations.loops:
-            self._without(("vectors",), "the mechanism is not written in loops")
-        if not position.steps:
+            self._without(("vectors",), "the mechanism has no loop equations")
+        if not self.mechanism.loop_equations.unknowns:
+            self._without(("newton",), "the mechanism has no unknowns")
+        elif not position.steps:
             self._without(("newton",), "a chosen configuration has no iterations from the guess")
         if swept is None:
             self._without(("plots", "paths", "circuits"), _NO_INPUT)

@@ -41,6 +41,7 @@ _COMMANDS = (
     "code",
     "robot",
     "report",
+    "plates",
     "study",
     "compile",
     "examples",

@@ -19,6 +19,8 @@ __all__ = [
 _WIDTH = 92  # characters of a table in the type of the page
 # after a digit, so that words such as "here" stay
 _DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
+# of a number, not in a word or a range
+_MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
 _DIGITS = 7  # of numbers in sentences
 _POWER = re.compile(r"(?<=\d)e([-+]\d+)\b")
 _GAP = 3  # characters between columns
@@ -166,15 +168,15 @@ def shown_name(name: str) -> str:
 
 def _with_units(column: Column) -> Column:
     """A column with its units in the header if they are equal, otherwise after its cells."""
-    column = replace(column, header=_sentence(column.header))
-    units = set(map(_sentence, column.units))
+    column = replace(column, header=_powers(column.header))
+    units = set(map(_powers, column.units))
     if not any(units):
         return replace(column, units=())
     if len(units) == 1:
         return replace(column, header=f"{column.header} [{units.pop()}]", units=())
     cells = _at_point(column.cells) if column.align == "point" else column.cells
     joined = [
-        f"{cell} {_sentence(unit)}".rstrip() for cell, unit in zip(cells, column.units, strict=True)
+        f"{cell} {_powers(unit)}".rstrip() for cell, unit in zip(cells, column.units, strict=True)
     ]
     return Column(header=column.header, cells=joined)
 
@@ -197,9 +199,13 @@ def _at_point(cells: Sequence[str]) -> list[str]:
 
 
 def _sentence(text: str) -> str:
-    """A text with powers of ten, ``1.5·10⁻⁷`` for 1.5e-07, and numbers of at most seven digits."""
+    """A text with powers of ten, true minus signs, and numbers of at most seven digits."""
+    return _MINUS.sub("\u2212", _DECIMAL.sub(_rounded, _powers(text)))
+
+
+def _powers(text: str) -> str:
+    """``1.5·10⁻⁷`` for 1.5e-07, and s² for s^2."""
     shown = _POWER.sub(lambda m: f"·10{str(int(m[1])).translate(_SUPERSCRIPTS)}", text)
-    shown = _DECIMAL.sub(_rounded, shown)
     return shown.replace("^2", "²")
 
 
@@ -210,7 +216,7 @@ def _rounded(match: re.Match[str]) -> str:
 
 def _number(cell: str) -> str:
     """``−1.5·10⁻⁷`` for -1.5e-07, a dash for a missing number; words stay."""
-    cell = _sentence(cell)
+    cell = _powers(cell)
     if cell == "-":
         return "–"
     return f"\u2212{cell[1:]}" if cell[:1] == "-" and cell[1:2].isdigit() else cell

@@ -30,7 +30,7 @@ _MATH = "http://schemas.openxmlformats.org/officeDocument/2006/math"
 _DATE = (1980, 1, 1, 0, 0, 0)  # the first that archives can have
 _SMALL, _CODE = 8.5, 8  # font sizes [pt]
 _LABEL, _TEXT = 40, 126  # widths of the columns of facts [mm]
-_LETTER, _SPACE = 1.8, 5.0  # width of a letter and of the margins of a cell [mm]
+_LETTER, _SPACE = 1.9, 5.0  # width of a letter and of the margins of a cell [mm]
 _WIDTH = 166.0  # of a table [mm]
 _FONT, _MONOSPACED = "Arial", "DejaVu Sans Mono"
 

@@ -10,18 +10,20 @@ __all__ = ["mathml_terms", "office_terms", "typst_terms"]
 
 _BREAKS = ("+", "\u2212", "=")
 _SILENT = ("\u2061", "\u2062")  # application of a function, times
-_TIMES, _SPACE = "<mo>\u2062</mo>", '<mspace width="0.17em"/>'
+_SPACE = '<mspace width="0.17em"/>'
 
 
 def mathml_terms(mathml: str) -> list[str]:
     """The terms of a ``<math>`` element, each as an element that begins with its sign."""
-    found = []
+    found: list[str] = []
     for parts in _terms(mathml):
         lead = parts[0]
         if lead.tag == "mo" and len(found):
             lead.set("form", "infix")
         inside = "".join(Tree.tostring(part, encoding="unicode") for part in parts)
-        found.append(f"<math>{inside}</math>".replace(_TIMES, _SPACE))
+        for silent in _SILENT:  # browsers leave no room for them
+            inside = inside.replace(f"<mo>{silent}</mo>", _SPACE)
+        found.append(f"<math>{inside}</math>")
     return found
 
 

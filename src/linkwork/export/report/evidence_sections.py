@@ -35,6 +35,9 @@ def _measure(found: Findings) -> str:
 def _positions(found: Findings) -> Iterator[str]:
     motion = found.motion
     if motion is None:
+        if not found.position.status.ok:
+            yield f"No position was found: {found.position.message}."
+            return
         told = certificate_text(found.position.certificate, _measure(found))
         yield f"The position has this certificate: {told}."
         return
@@ -52,7 +55,7 @@ def _positions(found: Findings) -> Iterator[str]:
             "the start to it stays on one branch."
         )
     else:
-        yield f"{whole} are proved."
+        yield "None of them is proved by itself."
     for reason in Certification:
         count = sum(
             c is reason for c, here in zip(motion.certification, motion.found, strict=True) if here

@@ -23,9 +23,11 @@ from linkwork.export.report.document import (
     printed,
 )
 from linkwork.export.report.equation_terms import mathml_terms
+from linkwork.results.listing.column import Column
 
 __all__ = ["html_bytes"]
 
+_ONE_LINE = 30  # characters of a cell
 _LONGEST = 620.0  # of a drawing [CSS pixels]
 _STYLE = """
 @page{size:A4;margin:20mm 18mm}
@@ -49,6 +51,7 @@ figcaption,.caption{font-size:.88em;color:#333;margin:.9em 0 .3em}
 table{border-collapse:collapse;font-size:.88em;margin:.3em 0 1em;font-variant-numeric:tabular-nums}
 th,td{padding:.12em .7em;text-align:left;vertical-align:top}
 th:first-child,td:first-child{padding-left:.2em}
+th.w,td.w{white-space:nowrap}
 th.n,td.n{text-align:right;white-space:nowrap}
 thead{border-top:1.5px solid #333;border-bottom:1px solid #777;display:table-header-group}
 tbody{border-bottom:1.5px solid #333}
@@ -121,7 +124,7 @@ def _block(block: Block) -> str:
 
 
 def _table(table: Table) -> str:
-    looks = ["" if column.align == "left" else ' class="n"' for column in table.columns]
+    looks = [_look(column) for column in table.columns]
 
     def row(cells: Sequence[str], tag: str) -> str:
         shown = zip(cells, looks, strict=True)
@@ -136,6 +139,13 @@ def _table(table: Table) -> str:
         f'<div class="scroll" tabindex="0" role="group" aria-labelledby="{name}"><table>'
         f"<thead>{head}</thead><tbody>{body}</tbody></table></div>"
     )
+
+
+def _look(column: Column) -> str:
+    """Numbers to the right, short words on one line, sentences broken."""
+    if column.align != "left":
+        return ' class="n"'
+    return "" if max(map(len, column.cells), default=0) > _ONE_LINE else ' class="w"'
 
 
 def _svg(figure: Figure) -> str:

@@ -124,13 +124,17 @@ def dimensions(found: Findings, template: Template) -> Iterator[Block]:
             else n.unit(description, kinds)
             for n in rows
         ]
-        cells = [short(n.of(description)) for n in rows]
+        written = [n.written(description) for n in rows]
+        formulas = [f"= {given}" if isinstance(given, str) else "" for given in written]
+        # given numbers as they are, values of formulas rounded
+        cells = [
+            short(n.of(description), 7 if formula else 10)
+            for n, formula in zip(rows, formulas, strict=True)
+        ]
         columns = [
             Column(header="name", cells=[shown_name(n.name) for n in rows]),
             Column(header="value", cells=cells, align="point", units=units),
         ]
-        written = [n.written(description) for n in rows]
-        formulas = [f"= {given}" if isinstance(given, str) else "" for given in written]
         if any(formulas):
             columns.append(Column(header="formula", cells=formulas))
         yield from tables(caption, columns)
@@ -178,6 +182,8 @@ def equations(found: Findings, template: Template) -> Iterator[Block]:
         if listed
     ]
     yield Facts(pairs=tuple(told))
+    if not own.labels:
+        yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
     mathml, latex = MathML(), Latex()
     if own.loops:
         yield Note(text="Loop closure equations in complex form")

@@ -85,8 +85,19 @@ def motion(found: Findings, template: Template) -> Iterator[Block]:
 
 def ranges_of(swept: Motion, names: Sequence[str]) -> list[Column]:
     """The smallest and the largest values of quantities."""
-    first, *others = range_columns(swept, names, _SHORT)
-    return [replace(first, cells=list(map(shown_name, first.cells))), *others]
+    first, low, low_at, high, high_at, units = range_columns(swept, names, _SHORT)
+    sizes: dict[str, float] = {}
+    for column in (low, high):
+        for cell, unit in zip(column.cells, units.cells, strict=True):
+            sizes[unit] = max(sizes.get(unit, 0.0), abs(float(cell)))
+
+    def clean(column: Column) -> Column:
+        pairs = zip(column.cells, units.cells, strict=True)
+        cells = ["0" if abs(float(c)) <= _NOISE * sizes[unit] else c for c, unit in pairs]
+        return replace(column, cells=cells)
+
+    names_shown = replace(first, cells=list(map(shown_name, first.cells)))
+    return [names_shown, clean(low), low_at, clean(high), high_at, units]
 
 
 def _position(found: Findings) -> Iterator[Block]:
@@ -218,6 +229,8 @@ def plots(found: Findings, template: Template) -> Iterator[Block]:
 def figures_of(chart: Chart, caption: str) -> Iterator[Figure]:
     """A chart without its headings, in figures that fit a page."""
     plain = replace(chart, title="", caption="")
+    if not chart.panels:
+        return
     if chart.panels[0].shape is not Shape.GRAPH or len(chart.panels) <= _PANELS:
         yield Figure(caption=caption, picture=plain)
         return

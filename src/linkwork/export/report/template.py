@@ -99,7 +99,7 @@ class Template:
         InputError
             If one of them is not text.
         """
-        given = {name: text for name, text in head.items() if text is not None}
+        given: dict[str, Any] = {name: text for name, text in head.items() if text is not None}
         for name, text in given.items():
             if not isinstance(text, str):
                 raise InputError(f"the {name} of a report must be text, got {as_told(text)}")
@@ -140,8 +140,12 @@ def _read(text: str, name: str) -> Template:
     problems = [*structure.problems, *_problems(structure.content)]
     if problems:
         raise located_error(problems, lines, name)
-    content: dict[str, Any] = {k: v for k, v in structure.content.items() if k != "format"}
-    return Template(**{k: tuple(v) if isinstance(v, list) else v for k, v in content.items()})
+    content: dict[str, Any] = {
+        key: tuple(entry) if isinstance(entry, list) else entry
+        for key, entry in structure.content.items()
+        if key != "format"
+    }
+    return Template(**content)
 
 
 def _problems(content: Mapping[str, Any]) -> list[Problem]:

@@ -25,6 +25,7 @@ __all__ = [
 ]
 
 _SYSTEM_DIGITS = 6
+_NOISE = 1e-15  # of the largest derivative: rounding of cosines, printed as 0
 _NUMBER_DIGITS = 10  # for a number without a unit
 
 
@@ -110,13 +111,15 @@ def changes_text(step: NewtonStep, kinds: Mapping[str, Kind], units: Units) -> s
 def system_columns(trail: NewtonTrail, step: NewtonStep) -> list[Column]:
     """F and J of one iterate as columns."""
 
-    def column(header: str, numbers: Sequence[float]) -> Column:
-        cells = [significant(number, _SYSTEM_DIGITS) for number in numbers]
+    largest = max((abs(slope) for row in step.jacobian for slope in row), default=0.0)
+
+    def column(header: str, numbers: Sequence[float], noise: float = 0.0) -> Column:
+        cells = [significant(number, _SYSTEM_DIGITS, noise) for number in numbers]
         return Column(header=header, cells=cells, align="point")
 
     slopes = zip(step.unknowns, zip(*step.jacobian, strict=True), strict=True)
     return [
         Column(header=f"k = {step.k}", cells=trail.rows),
         column("F", step.values),
-        *(column(f"∂F/∂{name}", slope) for name, slope in slopes),
+        *(column(f"∂F/∂{name}", slope, _NOISE * largest) for name, slope in slopes),
     ]
