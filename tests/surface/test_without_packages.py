@@ -44,7 +44,7 @@ for name in ("four-bar", "jansen-leg", "rapier-drive"):
         repr(mechanism.scene()),
         mechanism.check().start_message,
     ]
-desk = BrowserDesk(lw.loads, example_text, told.append, list)
+desk = BrowserDesk(lw.loads, example_text, told.append, list, solve_task)
 desk.begin("#example=jansen-leg")
 said["events"] = told
 said["unclassified"] = lw.example("four-bar").check().unclassified
