@@ -62,6 +62,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_MOTION + "[wanted]\norder = 'none'\n", 19, "wanted.order", 'must be "as given" or "any"'),
         (_MOTION.replace("point = [0, 0]", "point = [0]"), 4, "positions[1].point",
          "needs two coordinates, got 1"),
+        (_MOTION.replace("[40, -40]", "[40, -1e40]"), 7, "positions[2].point[2]",
+         "-1e+40 is beyond ±1e12: choose a larger unit"),
         (_FUNCTION + "of = 'log10(x)'\n", None, "function.x", "is missing: a formula needs"),
         (_FUNCTION + "of = 'ln(x)'\nx = [-1, 1]\ninput = [0, 60]\noutput = [0, 60]\n", 4,
          "function.of", "ln(-1) is not a real number"),
@@ -123,6 +125,23 @@ def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
     rolled = [(0, 0, 0), (1, 0, 90), (1, 1, 180), (0, 1, 270)]
     with pytest.raises(lw.MechanismError, match=r"a rotation about \[0.5, 0.5\]"):
         lw.Task.motion(rolled).solve()
+
+
+def test_designs_with_a_link_of_no_length_are_refused_without_warnings(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    task = lw.Task.loads("""format = 1
+task = "mixed"
+mechanism = "four-bar"
+given = { fixed_pivots = [[0, 0], [400, 0]] }
+positions = [
+  { point = [0, 0] }, { point = [0.1, -40] }, { point = [100, -80] },
+  { point = [170, -110], angle = 45 },
+]
+""")
+    first = task.solve().designs[0]
+    assert repr(first) == "<SynthesizedDesign 1: four-bar driven at A0, not proved>"
+    assert not recwarn.list
 
 
 def test_a_kind_without_a_solver_says_so() -> None:

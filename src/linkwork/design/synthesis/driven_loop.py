@@ -114,8 +114,9 @@ class DrivenLoops:
             inside = (ahead >= -margin) & (ahead <= end - begin + margin)
             places.append(np.where(inside, pole, begin))
         c0, c1 = self.cosine
-        cosine = c0[:, None] + c1[:, None] * self.q(np.stack(places, axis=1))
-        largest = np.abs(cosine).max(axis=1) + np.abs(c1) * self.q_error
+        with np.errstate(invalid="ignore"):  # a link of no length has no transmission angle
+            cosine = c0[:, None] + c1[:, None] * self.q(np.stack(places, axis=1))
+            largest = np.abs(cosine).max(axis=1) + np.abs(c1) * self.q_error
         return np.asarray(np.arccos(np.clip(largest, 0.0, 1.0)))
 
     def q(self, place: Array) -> Array:
