@@ -27,6 +27,7 @@ class Missing:
 sys.meta_path.insert(0, Missing())
 import linkwork as lw
 from linkwork.api import example_text
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live.browser_desk import BrowserDesk
 
 said, told = {}, []

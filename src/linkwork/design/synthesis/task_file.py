@@ -49,6 +49,7 @@ def is_task(text: str) -> bool:
     """
     return _KIND.search(_FIRST_TABLE.split(text, maxsplit=1)[0]) is not None
 
+
 _LARGEST = 1e12
 
 
