@@ -920,6 +920,7 @@ export interface DyadShown {
 
 export interface CognateShown {
   points: Record<string, readonly [number, number]>;
+  drive: string;
   index: number;
   sound: boolean;
   reason: string;

@@ -19,6 +19,8 @@ export interface CanvasHooks {
 
 /** Points that stand for a drawn curve. */
 const SAMPLES = 40;
+/** More positions have their pictures paler. */
+const MANY = 5;
 /** The share of the canvas around what is seen whole. */
 const AIR = 0.16;
 /** Room for the tools [px]. */
@@ -403,7 +405,7 @@ export class TaskCanvas {
     this.middle.replaceChildren();
     const { design, row } = this;
     if (!design) return;
-    this.middle.setAttribute("class", design.design.sound ? "" : "lw-t-refused");
+    this.middle.setAttribute("class", `${design.design.sound ? "" : "lw-t-refused"} ${design.at.length > MANY ? "lw-t-many" : ""}`);
     for (const piece of design.curve) this.path(this.middle, piece, "lw-t-curve");
     if (design.at.length <= 12) for (const one of design.at) drawGhost(this.middle, one, this.project);
     if (row) drawLinkage(this.middle, design, row, this.project, true);

@@ -21,7 +21,7 @@ const PLACED = ["motion", "path", "mixed"];
 export const TOOLS: readonly Offered[] = [
   { tool: "move", name: "Move", key: "v", does: "Drag what is there", icon: "M6 3l12 9-6 1-3 6z", of: [...PLACED, "function", "improve"] },
   { tool: "position", name: "Position", key: "p", does: "Add a position at the end", icon: "M12 5v14M5 12h14", of: PLACED },
-  { tool: "curve", name: "Curve", key: "c", does: "Draw the curve of a point with the pointer", icon: "M3 17c3-12 7-12 9-5s6 5 9-6", of: ["path", "motion"] },
+  { tool: "curve", name: "Curve", key: "c", does: "Draw the curve of a point with the pointer", icon: "M3 17c3-12 7-12 9-5s6 5 9-6", of: ["path"] },
   { tool: "pivot", name: "Pivot", key: "f", does: "Fix a pivot; of four poses on their centre-point curve", icon: "M12 5l7 11H5zM4 19h16", of: PLACED },
   { tool: "region", name: "Region", key: "r", does: "Draw a box that must contain all fixed pivots", icon: "M4 6h16v12H4z", of: PLACED },
   { tool: "obstacle", name: "Obstacle", key: "o", does: "Draw a circle that no link may meet", icon: "M12 4a8 8 0 1 0 .01 0M7 7l10 10", of: PLACED },

@@ -152,10 +152,11 @@ class TaskUnsolved:
 class CognateShown:
     """A four-bar with the same coupler curve: its points at the first position.
 
-    ``index``: its place in the list, with its verdict, or -1 if it is not there.
+    ``index``: its place in the list, with its verdict and driven link, or -1 if it is not there.
     """
 
     points: dict[str, Point]
+    drive: str
     index: int
     sound: bool
     reason: str

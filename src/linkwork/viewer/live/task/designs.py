@@ -276,19 +276,20 @@ def _joints(design: SynthesizedDesign) -> tuple[complex, ...]:
 
 
 def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> CognateShown:
-    """A cognate with the best verdict that the list has on it."""
-    best = index
-    if best is None:
-        wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
-        size = np.abs(wanted - wanted.mean()).max()
-        for k, other in enumerate(found.designs):
-            given, j = other.group.given, other.index
-            ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
-            names = (ends, [ends[1], ends[0], ends[3], ends[2]])
-            if any(np.abs(np.array(one) - wanted).max() < _COGNATE * size for one in names):
-                best = k
-                break
-    if best is None:
-        return CognateShown(points=points, index=-1, sound=False, reason="not among the designs")
-    shown = _shown(found.designs[best], best)
-    return CognateShown(points=points, index=best, sound=shown.sound, reason=shown.reason)
+    """A cognate with the best verdict that the list has on it, in the names of its points."""
+    wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
+    size = np.abs(wanted - wanted.mean()).max()
+    for k in range(len(found.designs)) if index is None else (index,):
+        other = found.designs[k]
+        given, j = other.group.given, other.index
+        ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
+        for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
+            if np.abs(np.array(ends)[order] - wanted).max() < _COGNATE * size:
+                shown = _shown(other, k)
+                drive = {"A0": "B0", "B0": "A0"}[shown.drive] if exchanged else shown.drive
+                return CognateShown(
+                    points=points, drive=drive, index=k, sound=shown.sound, reason=shown.reason
+                )
+    return CognateShown(
+        points=points, drive="A0", index=-1, sound=False, reason="not among the designs"
+    )
