@@ -21,6 +21,12 @@ export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | 
   if (slides) line(group, fixed[1]!, fixed[2]!, "lw-t-rail");
   plate(group, [a, b, p]);
   if (slides) block(group, b, fixed[1]!, fixed[2]!, design.design.drive === "slider");
+  else if (design.design.mechanism === "inverted-slider-crank") {
+    // a line of the coupler, through B, slides in a block that turns about B0
+    const beyond = ([u, v]: Place, [x, y]: Place): Place => [x + (x - u) * (26 / (Math.hypot(x - u, y - v) || 1)), y + (y - v) * (26 / (Math.hypot(x - u, y - v) || 1))];
+    line(group, b, beyond(b, fixed[1]!), "lw-t-rod");
+    block(group, fixed[1]!, b, fixed[1]!, drivesB);
+  }
   else line(group, fixed[1]!, b, drivesB ? "lw-t-bar lw-t-driven" : "lw-t-bar lw-t-rocker");
   line(group, fixed[0]!, a, drivesB || design.design.drive === "slider" ? "lw-t-bar lw-t-rocker" : "lw-t-bar lw-t-driven");
   for (const place of slides ? fixed.slice(0, 1) : fixed) ground(group, place);

@@ -9,7 +9,13 @@ import type { Thing } from "./handles";
 type Ask = (request: LiveRequest) => void;
 
 const KINDS: Readonly<Record<string, string>> = { motion: "Poses of a body", path: "Points of a path", mixed: "Points and poses", function: "A function" };
-const MECHANISMS: Readonly<Record<string, string>> = { "four-bar, slider-crank": "four-bars and slider-cranks", "four-bar": "four-bars", "slider-crank": "slider-cranks" };
+const MECHANISMS: Readonly<Record<string, string>> = {
+  "": "all kinds of mechanisms",
+  "four-bar": "four-bars",
+  "slider-crank": "slider-cranks",
+  "inverted-slider-crank": "inverted slider-cranks",
+  given: "as in the text",
+};
 
 /** Entries that are one number or text: key, label, unit. */
 const WISHES = [
@@ -31,7 +37,7 @@ const FUNCTION = [
 export class TaskForm {
   readonly element = html("div", { class: "lw-t-form" });
   private readonly kind = this.choice("Task", KINDS, (value) => this.set("task", value));
-  private readonly mechanism = this.choice("Find", MECHANISMS, (value) => this.set("mechanism", value.includes(",") ? null : value));
+  private readonly mechanism = this.choice("Find", MECHANISMS, (value) => value !== "given" && this.set("mechanism", value || null));
   private readonly positions = html("table", { class: "lw-t-positions" }, this.element);
   private readonly functions = html("div", { class: "lw-t-fields" }, this.element);
   private readonly order = this.choice("Order of positions", { "as given": "as given", any: "any" }, (value) => this.set("wanted.order", value));
@@ -58,7 +64,10 @@ export class TaskForm {
   show(task: TaskState): void {
     const { entries } = task;
     this.kind.value = task.task;
-    this.mechanism.value = String(entries.mechanism ?? "four-bar, slider-crank");
+    const kinds = String(entries.mechanism ?? "");
+    const several = !(kinds in MECHANISMS);
+    this.mechanism.value = several ? "given" : kinds;
+    (this.mechanism.querySelector("[value=given]") as HTMLOptionElement).hidden = !several;
     this.order.value = String(entries["wanted.order"] ?? "as given");
     const ranged = "wanted.input.from" in entries;
     this.range.value = ranged ? "given" : String(entries["wanted.input"] ?? "");
