@@ -684,6 +684,7 @@ export interface DesignFound {
   design: DesignShown;
   fixed: readonly (readonly [number, number])[];
   guided: string;
+  line: number | null;
   at: readonly (readonly (number)[])[];
   rows: readonly (readonly (number)[])[];
   marks: readonly (number)[];

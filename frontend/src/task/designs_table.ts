@@ -109,7 +109,7 @@ export class DesignsTable {
     row.addEventListener("click", () => this.choose(design.index));
     for (const column of this.columns) {
       if (column === "mechanism") {
-        const cell = html("td", {}, row, `${design.mechanism}, ${design.drive}`);
+        const cell = html("td", {}, row, `${inWords(design)}, ${design.drive}`);
         if (design.reason) html("span", { class: "lw-t-reason" }, cell, design.reason);
       } else html(column === "number" ? "th" : "td", column === "number" ? { scope: "row" } : {}, row, this.number(design, column, task));
     }
@@ -150,5 +150,9 @@ export function inOneLine(design: DesignShown, task: TaskState): string {
   const driven = design.drive === "slider" ? "driven at the slider" : `driven at ${design.drive}`;
   const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(Number(design.transmission.toPrecision(3)), task.angle_unit)}`;
   const size = design.size === null ? "" : `, longest link ${`${trimmed(shortNumber(design.size, 4))} ${task.length_unit}`}`;
-  return `${design.mechanism} ${driven}${angle}${size}`;
+  return `${inWords(design)} ${driven}${angle}${size}`;
+}
+
+function inWords({ mechanism }: DesignShown): string {
+  return mechanism.replace("inverted-", "inverted ");
 }

@@ -13,7 +13,7 @@ export function jointsOf(row: readonly number[]): [Place, Place, Place] {
 }
 
 /** Draw a design at a row of its points into a group. */
-export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | "design" | "guided">, row: readonly number[], project: Project, named = false): void {
+export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | "design" | "guided" | "line">, row: readonly number[], project: Project, named = false): void {
   const [a, b, p] = jointsOf(row).map(project) as [Place, Place, Place];
   const fixed = design.fixed.map((place) => project(place));
   const slides = fixed.length === 3;
@@ -21,11 +21,14 @@ export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | 
   if (slides) line(group, fixed[1]!, fixed[2]!, "lw-t-rail");
   plate(group, [a, b, p]);
   if (slides) block(group, b, fixed[1]!, fixed[2]!, design.design.drive === "slider");
-  else if (design.design.mechanism === "inverted-slider-crank") {
+  else if (design.line !== null) {
     // a line of the coupler, through B, slides in a block that turns about B0
-    const beyond = ([u, v]: Place, [x, y]: Place): Place => [x + (x - u) * (26 / (Math.hypot(x - u, y - v) || 1)), y + (y - v) * (26 / (Math.hypot(x - u, y - v) || 1))];
-    line(group, b, beyond(b, fixed[1]!), "lw-t-rod");
-    block(group, fixed[1]!, b, fixed[1]!, drivesB);
+    const along = Math.atan2(a[1] - b[1], b[0] - a[0]) + design.line;
+    const [dx, dy] = [26 * Math.cos(along), -26 * Math.sin(along)];
+    const [x, y] = fixed[1]!;
+    const sense = (x - b[0]) * dx + (y - b[1]) * dy < 0 ? -1 : 1;
+    line(group, [b[0] - sense * dx, b[1] - sense * dy], [x + sense * dx, y + sense * dy], "lw-t-rod");
+    block(group, [x, y], [x - dx, y - dy], [x + dx, y + dy], drivesB);
   }
   else line(group, fixed[1]!, b, drivesB ? "lw-t-bar lw-t-driven" : "lw-t-bar lw-t-rocker");
   line(group, fixed[0]!, a, drivesB || design.design.drive === "slider" ? "lw-t-bar lw-t-rocker" : "lw-t-bar lw-t-driven");

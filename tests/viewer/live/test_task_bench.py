@@ -83,10 +83,13 @@ def test_a_dragged_point_changes_its_numbers_and_is_one_step_of_the_history(tmp_
     assert bench.text == before
 
 
-def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path) -> None:
-    bench = opened(tmp_path, "five-poses")
-    found = solved(bench.opened()).chosen
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
+def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanism: str) -> None:
+    bench = opened(tmp_path, "four-poses")
+    events = bench.handle(do.SetTaskEntry(key="mechanism", value=mechanism))
+    found = solved(events).chosen
     assert found is not None
+    assert found.design.mechanism == mechanism
     rows, marks, at = np.array(found.rows), np.array(found.marks), np.array(found.at)
     assert (np.diff(marks) > 0).all() or (np.diff(marks) < 0).all()
     # a motion in equal steps of the input: between two rows it is nearly straight
@@ -95,6 +98,11 @@ def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path) -> None:
     passed = (1 - share) * rows[below] + share * rows[below + 1]
     assert np.abs(passed - at).max() < 1e-3 * np.ptp(rows)
     assert np.abs(at[:, 4:] - positions(bench)).max() < 1e-9 * np.ptp(rows)
+    if found.line is not None:  # the line of the coupler passes B0 in every row
+        a, b = rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3]
+        along = (b - a) / abs(b - a) * np.exp(1j * found.line)
+        off = (complex(*found.fixed[1]) - b) * along.conj()
+        assert np.abs(off.imag).max() < 1e-9 * np.ptp(rows)
 
 
 def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:

@@ -115,6 +115,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
         design=_shown(design, index),
         fixed=tuple(_fixed(own, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
+        line=_line(own),
         at=_rows(*at),
         rows=rows,
         marks=marks,
@@ -124,13 +125,20 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
 
 def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[Point]:
     yield _point(own.fixed_a[0])
-    if own.kind is LoopKind.FOUR_BAR:
+    if own.kind is not LoopKind.SLIDER_CRANK:
         yield _point(own.fixed_b[0])
         return
     along = ((at[1] - own.fixed_b[0]) * own.direction[0].conj()).real
     reach = 0.2 * max(float(np.ptp(along)), float(abs(at[1][0] - at[0][0])))
     for end in (along.min() - reach, along.max() + reach):
         yield _point(own.fixed_b[0] + end * own.direction[0])
+
+
+def _line(own: Candidates) -> float | None:
+    """The direction of the line of an inverted slider-crank's coupler from that of AB [rad]."""
+    if own.kind is not LoopKind.INVERTED:
+        return None
+    return float(np.angle(own.lines[0, 0] / (own.moving_b[0, 0] - own.moving_a[0, 0])))
 
 
 def _rows(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:
