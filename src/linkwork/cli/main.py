@@ -40,6 +40,8 @@ _COMMANDS = (
     "synthesize",
     "code",
     "robot",
+    "report",
+    "plates",
     "study",
     "compile",
     "examples",

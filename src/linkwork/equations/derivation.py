@@ -16,11 +16,11 @@ _HEAD = r"""\documentclass[11pt,a4paper]{article}
 \usepackage[utf8]{inputenc}
 \usepackage[margin=25mm]{geometry}
 \usepackage{amsmath}
-\newcommand{\row}[1]{\par\smallskip\noindent\hangindent=2em\hangafter=1\(\displaystyle #1\)\par}
+\newcommand{\row}[1]{{\raggedright\smallskip\hangindent=2em\hangafter=1\(\displaystyle #1\)\par}}
 \date{}
 \author{}"""
 _LARGEST = 4  # columns of a matrix that is set as a matrix
-_LONGEST = 120  # characters of such a matrix's longest row
+_LONGEST = 100  # characters of such a matrix's longest row
 _LATEX = Latex()
 
 

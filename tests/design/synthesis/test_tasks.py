@@ -157,5 +157,19 @@ def test_a_mechanism_of_any_kind_is_judged_by_its_circuits() -> None:
     assert lw.Task.path(there).defects_of(bar, (0, 90, 180), point="B") == ()
     (defect,) = lw.Task.path([*there[:2], crossed]).defects_of(bar, (0, 90, 180), point="B")
     assert (defect.kind.name, defect.between) == ("CIRCUIT", (2, 3))
+    # a point off the path is judged by the nearest branch
+    near = [(x + 1e-3, y) for x, y in there]
+    assert lw.Task.path(near).defects_of(bar, (0, 90, 180), point="B") == ()
     with pytest.raises(lw.InputError, match="3 positions need as many inputs, got 2"):
         lw.Task.path(there).defects_of(bar, (0, 90), point="B")
+
+
+def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    legs = lw.example("klann-leg")
+    point = legs.description.trace[0]
+    inputs = (10.4, 41.2, 222.2)
+    places = [legs.solve(at=angle).points[point] for angle in inputs]
+    monkeypatch.setattr(lw.Mechanism, "circuits", lambda *_, **__: pytest.fail("not needed"))
+    assert lw.Task.path(places).defects_of(legs, inputs, point=point) == ()
