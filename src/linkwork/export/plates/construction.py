@@ -16,7 +16,7 @@ from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
-from linkwork.export.plates.plate import Opening, Pin, Plate
+from linkwork.export.plates.plate import BASE, Opening, Pin, Plate
 from linkwork.export.plates.rigid_bodies import (
     Guideway,
     RigidBody,
@@ -40,11 +40,9 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
-__all__ = ["BASE", "Construction"]
+__all__ = ["Construction"]
 
 _GEAR = 0.8  # of a gear's radius: bars this wide leave room for a pin and a fastener
-#: The plate of the ground.
-BASE = "base"
 
 
 @dataclass
@@ -221,26 +219,33 @@ class Construction:
 
     def _main_plate(self, name: str) -> Plate:
         """The plate around the holes and slots of a body."""
+        return self._plate(self._main_name(name), name, self.holes[name], slotted=True)
+
+    def ground_plate(self, name: str, holes: Mapping[str, complex]) -> Plate:
+        """A plate of the ground with some of its holes; slots are in the base plate."""
+        return self._plate(name, GROUND, holes, slotted=name == BASE)
+
+    def _plate(self, name: str, body: str, holes: Mapping[str, complex], *, slotted: bool) -> Plate:
         sizes, core, openings = self.sizes, [], []
-        for point, place in (self.holes[name] | self.more.get(name, {})).items():
+        for point, place in (dict(holes) | (self.more.get(body, {}) if slotted else {})).items():
             core.append(place)
             openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
-        for way in self.ways:
-            if way.runner == name and way.reach:
+        for way in self.ways if slotted else ():
+            if way.runner == body and way.reach:
                 for k, place in enumerate(way.places, start=1):
                     core.append(place)
                     hole = circle(place, sizes.hole / 2.0)
                     openings.append(Opening(name=f"{way.name} {k}", outline=hole))
-            if way.on == name:
+            if way.on == body:
                 ends = self.slot_ends(way)
                 core += ends
                 openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
         if not core:
-            raise InputError(f'nothing is joined to "{name}": it has no plate')
+            raise InputError(f'nothing is joined to "{body}": it has no plate')
         hull = convex_outline(core)
         return Plate(
-            name=self._main_name(name),
-            body=name,
+            name=name,
+            body=body,
             outline=rounded(hull, sizes.width / 2.0),
             openings=tuple(openings),
             core=np.array(hull if hull[0] != hull[-1] else hull[:1]),
