@@ -273,7 +273,7 @@ def test_a_suffix_without_a_format_is_refused(tmp_path: Path) -> None:
         "geared-five-bar",
         *(
             pytest.param(name, marks=pytest.mark.extended)
-            for name in ("planetary-gear", "cardan-circles", "sun-and-planet")
+            for name in ("planetary-gear", "sun-and-planet", "rack-and-pinion", "rack-steering")
         ),
     ],
 )

@@ -17,6 +17,7 @@ from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.plate import BASE, Opening, Pin, Plate
+from linkwork.export.plates.racks import RackMesh, rack_meshes, rack_plate
 from linkwork.export.plates.rigid_bodies import (
     Guideway,
     RigidBody,
@@ -101,7 +102,10 @@ class Construction:
         turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
         wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
-        made._gears(wheels, meshes, turns)
+        racks = list(rack_meshes(linkage, wheels, sizes, mm))
+        single = [mesh.pinion for mesh in racks if mesh.pinion not in wheels]
+        names = made._gears([*wheels, *single], meshes, turns)
+        made._racks(racks, dict(zip([*wheels, *single], names, strict=True)), poses, now)
         made._cams(model.skeleton, turns)
         made._main_plates()
         for plate in made.plates:
@@ -111,7 +115,8 @@ class Construction:
 
     def _gears(
         self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
-    ) -> None:
+    ) -> list[str]:
+        """Add the gears; returns the names of their plates."""
         names = []
         for wheel in wheels:
             body = self.bodies[wheel.disc.link]
@@ -123,11 +128,27 @@ class Construction:
         for mesh in meshes:
             one, other = (wheels[k] for k in mesh.wheels)
             self.meshes.append(frozenset(names[k] for k in mesh.wheels))
-            self.notes.append(
-                f"{mesh.name}: {one.teeth} and {other.teeth} teeth, module {one.module:.6g} mm, "
-                f"pressure angle {math.degrees(one.pressure):g} deg, backlash "
-                f"{one.backlash:.3g} mm"
-            )
+            self.notes.append(f"{mesh.name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
+        return names
+
+    def _racks(
+        self,
+        racks: Sequence[RackMesh],
+        names: Mapping[Wheel, str],
+        poses: Mapping[str, tuple[complex, complex]],
+        now: Mapping[str, float],
+    ) -> None:
+        for mesh in racks:
+            way = next(way for way in self.ways if way.name == mesh.guide)
+            pinion = mesh.pinion
+            turn = poses[pinion.disc.link][1] * poses[way.on][1].conjugate()
+            center = self.bodies[way.on].places[pinion.disc.center]
+            plate = rack_plate(
+                mesh, way, center, turn * cmath.exp(1j * pinion.phase), self.travel[way.name],
+                now[way.name], self.sizes,
+            )  # fmt: skip
+            self.meshes.append(frozenset((names[pinion], self._add(plate))))
+            self.notes.append(f"{mesh.name}: pinion of {pinion.teeth} teeth, {_gearing(pinion)}")
 
     def _cams(self, skeleton: Skeleton, turns: Mapping[str, float]) -> None:
         """Cams with rollers; these turn freely on their pins."""
@@ -257,6 +278,13 @@ class Construction:
         low, high = self.travel[way.name]
         more = way.reach + self.sizes.play
         return way.origin + (low - more) * way.along, way.origin + (high + more) * way.along
+
+
+def _gearing(wheel: Wheel) -> str:
+    return (
+        f"module {wheel.module:.6g} mm, pressure angle {math.degrees(wheel.pressure):g} deg, "
+        f"backlash {wheel.backlash:.3g} mm"
+    )
 
 
 def check_webs(plate: Plate, sizes: Sizes) -> None:
