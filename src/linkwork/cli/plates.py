@@ -28,9 +28,10 @@ from linkwork.cli.terminal import (
     sentence,
     title_lines,
 )
-from linkwork.cli.text_table import Column, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.export import PlateOptions, PlateStack, check_plate_file, plates_of, stack_of
 from linkwork.mechanism.dimensions import Number
+from linkwork.results.listing.column import Column
 
 __all__ = ["plates"]
 
