@@ -41,6 +41,7 @@ _COMMANDS = (
     "atlas",
     "code",
     "robot",
+    "plates",
     "study",
     "compile",
     "examples",
