@@ -15,6 +15,7 @@ from linkwork.design.atlas import path_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.internal import internal
 from linkwork.foundation.paths import as_path
 
 __all__ = ["NearPath", "PathAtlas"]
@@ -22,6 +23,7 @@ __all__ = ["NearPath", "PathAtlas"]
 _FEWEST = 5  # points of a curve
 
 
+@internal("near", "curve")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NearPath:
     """A mechanism whose path resembles a curve.
@@ -41,9 +43,9 @@ class NearPath:
     Examples
     --------
     >>> import linkwork as lw
-    >>> path = lw.example("hoeken").sweep(step=5).trace("C")
+    >>> path = lw.example("hoeken").sweep(step=5).trace("P")
     >>> near = lw.PathAtlas.shipped().nearest(path, 3)[0]
-    >>> near.distance < 0.1, near.mechanism.sweep().certified.all()
+    >>> near.distance < 0.1, bool(near.mechanism.sweep().certified.all())
     (True, True)
     """
 

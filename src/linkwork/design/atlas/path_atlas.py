@@ -14,7 +14,7 @@ from linkwork.batch.study.chunk_manifest import read_entries
 from linkwork.batch.study.store import attributes_of
 from linkwork.batch.study.zarr_files import check_packages, open_arrays
 from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError
 
 __all__ = ["SHIPPED", "AtlasFamily", "Nearest", "PathAtlas", "atlas_of_stores", "read_atlas"]
@@ -48,8 +48,8 @@ class AtlasFamily:
     mechanism: str
     point: str
     names: tuple[str, ...]
-    numbers: Array
-    shapes: Array
+    numbers: AnyArray
+    shapes: AnyArray
 
     def __len__(self) -> int:
         return len(self.numbers)

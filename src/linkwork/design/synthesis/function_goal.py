@@ -216,8 +216,7 @@ def _in_unit(node: Node, angle: AngleUnit) -> Node:
         case Negative():
             return replace(node, operand=_in_unit(node.operand, angle))
         case Binary():
-            sides = (_in_unit(side, angle) for side in (node.left, node.right))
-            return Binary(node.operator, *sides)
+            return Binary(node.operator, _in_unit(node.left, angle), _in_unit(node.right, angle))
         case Call():
             own = tuple(_in_unit(argument, angle) for argument in node.arguments)
             unit = Binary("/", Number(angle.turn / 2), Name("pi"))
