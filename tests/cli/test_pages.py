@@ -272,6 +272,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "atlas",
         "code",
         "robot",
+        "report",
         "plates",
         "study",
         "compile",

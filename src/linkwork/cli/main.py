@@ -41,6 +41,7 @@ _COMMANDS = (
     "atlas",
     "code",
     "robot",
+    "report",
     "plates",
     "study",
     "compile",
