@@ -9,10 +9,12 @@ import click
 from linkwork.api.path_atlas import NearPath, PathAtlas
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines, wrapped
-from linkwork.cli.text_table import Column, significant, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.design.synthesis.curve_file import read_curve
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import significant
 from linkwork.textfile.writer import save
 
 __all__ = ["atlas"]
