@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.batch.family import (
         Family as Family,
@@ -54,6 +55,8 @@ if TYPE_CHECKING:
     from linkwork.equations.writing import (
         EquationSheet as EquationSheet,
     )
+    from linkwork.export.plates.options import PlateOptions as PlateOptions
+    from linkwork.export.plates.plate import PlateStack as PlateStack
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd

@@ -93,12 +93,12 @@ def test_a_dwell_and_a_time_ratio_are_met() -> None:
 def test_a_bound_holds_against_a_goal_that_pulls_across_it() -> None:
     crank = lw.example("slider-crank")
     pull = {"of": "stroke(d)", "target": 120.0}
-    bound = {"of": "max(d)", "most": 110.0}
+    bound = {"of": "max(d)", "most": 150.0}
     best = crank.improve([pull, bound], vary=["O2 A"], starts=1)[0]
     motion = lw.api.Mechanism(best.description).sweep()
-    assert motion.value("max(d)") <= 110.0
+    assert motion.value("max(d)") <= 150.0
     free = crank.improve(pull, vary=["O2 A"], starts=1)[0]
-    assert lw.api.Mechanism(free.description).sweep().value("max(d)") > 110.0
+    assert lw.api.Mechanism(free.description).sweep().value("max(d)") > 150.0
 
 
 def test_the_largest_miss_is_smaller_than_that_of_least_squares() -> None:

@@ -11,6 +11,22 @@ if TYPE_CHECKING:
         code_of as code_of,
         language_of as language_of,
     )
+    from linkwork.export.plates.options import PlateOptions as PlateOptions
+    from linkwork.export.plates.plate import PlateStack as PlateStack
+    from linkwork.export.plates.plate_file import (
+        check_plate_file as check_plate_file,
+        plates_of as plates_of,
+    )
+    from linkwork.export.plates.stack import stack_of as stack_of
+    from linkwork.export.report.findings import Findings as Findings
+    from linkwork.export.report.report import (
+        check_report_file as check_report_file,
+        report_of as report_of,
+    )
+    from linkwork.export.report.template import (
+        Template as Template,
+        template_of as template_of,
+    )
     from linkwork.export.robot.robot_file import (
         check_robot_file as check_robot_file,
         robot_of as robot_of,

@@ -18,6 +18,8 @@ _POSSIBLE = [
     (LoopKind.FOUR_BAR, Drive.B0),
     (LoopKind.SLIDER_CRANK, Drive.A0),
     (LoopKind.SLIDER_CRANK, Drive.SLIDER),
+    (LoopKind.INVERTED, Drive.A0),
+    (LoopKind.INVERTED, Drive.B0),
 ]
 
 
@@ -39,6 +41,24 @@ def test_a_side_that_is_exchanged_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(campaign, "verdict_by_circuits", lambda *given: DefectKind.CIRCUIT)
     _, false = campaign.defect_campaign(0, 12)
     assert false
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1e6])
+@pytest.mark.parametrize(("kind", "drive"), _POSSIBLE)
+def test_doubts_are_those_of_the_same_mechanism_in_other_units(
+    kind: LoopKind, drive: Drive, factor: float
+) -> None:
+    given = random_designs(kind, 40, 8)
+    here, there = (judge(g, drive, Wishes()) for g in (given, given.moved(0.0, factor)))
+    for name in ("side", "half"):
+        shares = [
+            v.loops.sign_error[:, None] / np.abs(getattr(v.loops, name)) for v in (here, there)
+        ]
+        # a few roundings more: the designs were multiplied
+        assert (shares[1] < 3.0 * shares[0]).all()
+        assert (shares[1] > shares[0] / 3.0).all()
+    assert all(np.array_equal(here.found[kind], there.found[kind]) for kind in DefectKind)
+    assert there.transmission == pytest.approx(here.transmission, abs=1e-6, nan_ok=True)
 
 
 @pytest.mark.parametrize(("kind", "drive"), _POSSIBLE)
@@ -65,11 +85,17 @@ def test_transmission_is_that_of_close_positions(kind: LoopKind, drive: Drive) -
     a, b, _ = pivots_at(some, drive, loops, first[:, None] + (last - first)[:, None] * share)
     if kind is LoopKind.SLIDER_CRANK and drive is Drive.A0:
         other = 1j * some.direction[:, None]
+    elif kind is LoopKind.INVERTED and drive is Drive.A0:
+        other = a - some.fixed_b[:, None]
     elif drive is Drive.A0:
         other = b - some.fixed_b[:, None]
     else:
         other = a - some.fixed_a[:, None]
-    cosine = np.abs(((b - a) * other.conj()).real) / (np.abs(b - a) * np.abs(other))
+    arm = b - a
+    if kind is LoopKind.INVERTED:
+        # the force of the block is across the line
+        arm = 1j * some.direction[:, None] * arm
+    cosine = np.abs((arm * other.conj()).real) / (np.abs(arm) * np.abs(other))
     least = np.arccos(np.clip(cosine.max(axis=1), 0.0, 1.0))
     bound = verdicts.transmission[sound]
     assert (bound <= least + 1e-7).all()
@@ -187,7 +213,7 @@ def test_obstacles_are_met_where_close_positions_meet_them(kind: LoopKind, drive
     a, b, p = pivots_at(some, drive, loops, places)
     fixed = np.broadcast_to(some.fixed_a[:, None], a.shape)
     bars = [(fixed, a), (a, b), (a, p), (b, p)]
-    if kind is LoopKind.FOUR_BAR:
+    if kind is not LoopKind.SLIDER_CRANK:
         bars.append((np.broadcast_to(some.fixed_b[:, None], a.shape), b))
     centre = np.asarray(0.9 + 1.1j)
     gap = np.min([distances_to_segments(centre, *bar) for bar in bars], axis=0).min(axis=1) - 0.25

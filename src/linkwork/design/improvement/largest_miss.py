@@ -1,6 +1,6 @@
 """The largest miss, minimised as the limit of sums of growing powers.
 
-Least squares of residuals f |f|^(k-1) minimise the sum of |f|^(2k), eq. (157). Each power begins at
+Least squares of residuals f |f|^(k-1) minimise the sum of |f|^(2k), eq. (158). Each power begins at
 the solution of the one before. The largest of N misses is then above the least possible by a factor
 N^(1/2k) at most.
 
@@ -42,7 +42,7 @@ def powered(found: Residuals, power: int, largest: Array, counted: BoolArray) ->
     unit = found.rows / np.where(size > 0.0, size, 1.0)[:, :, None]
 
     def bent(slope: Array) -> Array:
-        # eq. (157): |f|^(k-1) (I + (k - 1) u uᵀ) df
+        # eq. (158): |f|^(k-1) (I + (k - 1) u uᵀ) df
         along = np.einsum("dnm,dnm...->dn...", unit, slope)
         turned = np.einsum("dnm,dn...->dnm...", unit, along)
         whole = slope + (power - 1) * turned

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 
@@ -116,13 +116,16 @@ class _Words:
 
     def _pivots(self) -> tuple[str, None]:
         pivots = {"A0": self.given.fixed_a[self.k]}
-        if self.given.direction[self.k] == 0:
+        if self.given.kind is not LoopKind.SLIDER_CRANK:
             pivots["B0"] = self.given.fixed_b[self.k]
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
         return f"fixed pivots {places} are not all in their region", None
 
     def _lengths(self) -> tuple[str, None]:
-        shortest, longest = self.verdicts.shortest[self.k], self.verdicts.size[self.k]
+        verdicts, k = self.verdicts, self.k
+        shortest, longest, arm = verdicts.shortest[k], verdicts.size[k], verdicts.arm[k]
+        if arm > self.task.wanted.longest:
+            return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
         return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
 
     def _obstacle(self) -> tuple[str, None]:

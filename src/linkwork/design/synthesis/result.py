@@ -132,6 +132,11 @@ class SynthesizedDesign:
     delivered: bool
     score: float
 
+    def __repr__(self) -> str:
+        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        kind, drive = self.group.given.kind.value, self.drive.value
+        return f"<SynthesizedDesign {self.number}: {kind} driven at {drive}, {found}>"
+
     @property
     def drive(self) -> Drive:
         """The driven link."""
@@ -332,6 +337,11 @@ class Synthesis:
             ("delivered", f"{len(self.delivered)} of {self.sound} without defects"),
             ("completeness", self.message),
         ]
+        if not self.delivered and self.designs:
+            rows += [(kind.value, str(count)) for kind, count in self.defects.items()]
+            if self.costliest is not None:
+                wish, count = self.costliest
+                rows.append(("costliest wish", f"{wish}: without it {count} would be sound"))
         return str(Summary(f"Synthesis of {self.task.name}", tuple(rows)))
 
     @property

@@ -10,10 +10,13 @@ from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_keys import KINDS
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
@@ -25,7 +28,7 @@ _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
-MECHANISMS = ("four-bar", "slider-crank")
+MECHANISMS = ("four-bar", "slider-crank", "inverted-slider-crank")
 
 Point = tuple[float, float]
 _Item = TypeVar("_Item")
@@ -118,7 +121,7 @@ class Task:
         Unit of lengths.
     angle : AngleUnit
     mechanisms : tuple of str
-        The kinds of mechanisms wanted: four-bar, slider-crank.
+        The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too.
     positions : tuple of PrecisionPosition
         In order of travel.
     given : Given
@@ -172,6 +175,8 @@ class Task:
             if name not in MECHANISMS and self.kind != "improve":
                 known = " or ".join(f'"{known}"' for known in MECHANISMS)
                 yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
+            if name == MECHANISMS[2] and self.kind != "motion" and self.mechanisms != MECHANISMS:
+                yield ("mechanism", k), "is made from poses only: leave it out"
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:
             yield ("mechanism",), 'points are solved for the "four-bar" only'
@@ -297,6 +302,33 @@ class Task:
                 )
         if wanted.region and _area(wanted.region) == 0:
             yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
+        else:
+            yield from self._pivot_problems()
+
+    def _pivot_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Given fixed pivots that a wish excludes."""
+        pivots, wanted = self.given.fixed_pivots, self.wanted
+        region = np.array([complex(*corner) for corner in wanted.region])
+        inside = Wishes(region=region).within_region(
+            np.array([complex(*pivot) for pivot in pivots]), np.zeros(len(pivots))
+        )
+        for k, pivot in enumerate(pivots):
+            if not inside[k]:
+                yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
+            for j, (x, y, radius) in enumerate(wanted.obstacles):
+                if math.hypot(pivot[0] - x, pivot[1] - y) <= radius:
+                    yield (
+                        ("given", "fixed_pivots", k),
+                        f"is in circle {j + 1} of clear_of, so no design can be clear of it",
+                    )
+        if len(pivots) == 2 and self.kind != "function":
+            apart = math.dist(*pivots)
+            if not wanted.shortest <= apart <= wanted.longest:
+                yield (
+                    ("given", "fixed_pivots", 1),
+                    f"is {apart:g} from the other one, but lengths are wanted from "
+                    f"{wanted.shortest:g} to {wanted.longest:g}",
+                )
 
     @cached_property
     def is_approximate(self) -> bool:

@@ -142,7 +142,11 @@ _WANTED = Key(
                 Table(
                     (
                         Key("least", PlainNumber(), "The shortest link allowed"),
-                        Key("most", PlainNumber(), "The longest link or arm allowed"),
+                        Key(
+                            "most",
+                            PlainNumber(),
+                            "The longest link or coupler arm allowed",
+                        ),
                         Key("ratio", PlainNumber(), "The longest link over the shortest"),
                     )
                 ),
@@ -234,7 +238,7 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            'Kinds: "four-bar", "slider-crank"; of task = "improve" a file, or an example',
+            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; a file to improve',
         ),
         _POSITIONS,
         _GIVEN,

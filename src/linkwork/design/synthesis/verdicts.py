@@ -53,6 +53,8 @@ class Verdicts:
         The longest link or distance of fixed pivots [length].
     shortest : (D,)
         The shortest link [length].
+    arm : (D,)
+        The longest distance of the guided point from a moving pivot [length].
     found : Mapping[DefectKind, (D,) bool]
         Which designs have the defect. Others than circuit and branch are noted of designs on one
         branch only, obstacles of those with at most one defect.
@@ -63,6 +65,7 @@ class Verdicts:
     transmission: Array
     size: Array
     shortest: Array
+    arm: Array
     found: dict[DefectKind, BoolArray]
 
     @property
@@ -107,7 +110,10 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     size, shortest = lengths.max(axis=1), lengths.min(axis=1)
     found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
     found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
-    found[DefectKind.LENGTHS] = open_ & ~wishes.allows(shortest, size)
+    arm = np.maximum(
+        np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
+    )
+    found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
     # a design with one other defect tells what that wish costs, if nothing else is wrong
     nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
     met = np.zeros(len(given), dtype=bool)
@@ -122,12 +128,20 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         transmission=np.where(open_, transmission, np.nan),
         size=size,
         shortest=shortest,
+        arm=arm,
         found=found,
     )
 
 
 def _lengths(given: Candidates) -> Array:
-    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 or 4)."""
+    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
+
+    The coupler of an inverted slider-crank is as long as its farthest position needs.
+    """
+    if given.kind is LoopKind.INVERTED:
+        reach = np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)
+        ground = np.abs(given.fixed_b - given.fixed_a)
+        return np.stack([np.abs(given.moving_a[:, 0] - given.fixed_a), ground, reach], axis=1)
     lengths = [given.moving_a[:, 0] - given.fixed_a, given.moving_b[:, 0] - given.moving_a[:, 0]]
     if given.kind is LoopKind.FOUR_BAR:
         lengths += [given.moving_b[:, 0] - given.fixed_b, given.fixed_b - given.fixed_a]
@@ -137,7 +151,7 @@ def _lengths(given: Candidates) -> Array:
 def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
     """Whether all fixed pivots are in the region or, to their errors, on its border."""
     pivots = [given.fixed_a]
-    if given.kind is LoopKind.FOUR_BAR:
+    if given.kind is not LoopKind.SLIDER_CRANK:
         pivots.append(given.fixed_b)
     inside = [wishes.within_region(pivot, given.error) for pivot in pivots]
     return np.asarray(np.all(inside, axis=0))
