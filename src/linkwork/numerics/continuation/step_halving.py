@@ -38,7 +38,6 @@ _HALVINGS = 45  # of one step, at most
 _LANES = 1024  # steps halved together
 _HALFWAY = np.array([0.5])
 _SHORTER = 0.5 ** np.arange(1, 6)  # parts of a step that are tried before it is divided
-_SPARE = 1.1  # times as many parts as its ends need: between them it may bend more
 
 
 class Allowance:
@@ -123,8 +122,8 @@ def prove_backwards(
     inside = moved[:, :n] < reached.isolation_radius[rest]  # eq. (33)
     held = (reached.holds[rest] & inside.all(axis=1)).reshape(2, count, len(_SHORTER))
     widest = np.where(held, _SHORTER, 0.0).max(axis=2).min(axis=0)
-    parts = np.where(widest > 0.0, _SPARE * 0.5 / np.maximum(widest, 1e-9), 1.0)
-    return steps_connected(*ends), steps_disproved(*ends), np.ceil(parts).astype(np.int64)
+    parts = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 0.0)
+    return steps_connected(*ends), steps_disproved(*ends), parts.astype(np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -210,7 +209,7 @@ class Halving:
         Every second of the positions in between proves the way to both its neighbours. A step
         stays as it is where one of them is not found, or not proved.
         """
-        whole = parts < 2
+        whole = parts < 1
         if whole.all():
             return queue
         lanes = queue.take(np.flatnonzero(~whole))
