@@ -161,9 +161,7 @@ class Track:
 Watch = Callable[[Node, Node], bool]
 
 
-def node_at(
-    solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0
-) -> Node:
+def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0) -> Node:
     """The node of a converged position."""
     if solver.goes_singly(1):
         one = rates_of_row(solver.singles, v.tolist(), path.rate.tolist())

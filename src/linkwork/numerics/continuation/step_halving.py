@@ -112,9 +112,7 @@ def prove_backwards(
     few = whole[lanes] * shorter[:, None]
     points = SolvedRows.concatenate([steps.right, steps.left.take(lanes), steps.right.take(lanes)])
     at = np.concatenate([steps.owner + 1, steps.owner[lanes], steps.owner[lanes] + 1])
-    reached = reach(
-        solver, points.v, np.concatenate([far, few, few]), take_expansions(places, at)
-    )
+    reached = reach(solver, points.v, np.concatenate([far, few, few]), take_expansions(places, at))
     ends = steps.right.v, steps.left.v, reached.take(slice(None, count)), steps.near
     change = np.concatenate([h[lanes] * shorter, -h[lanes] * shorter])[:, None]
     rest = slice(count, None)

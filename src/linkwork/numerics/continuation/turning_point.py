@@ -90,10 +90,12 @@ def turning_points(leads: Parametrizations, curve: Curve) -> list[TurningPoint]:
         if led.provable and turns[k].located
     }
     # together: a proof takes about as long for one leg as for several
-    between = dict(zip(legs, legs_are_proved([*legs.values()]), strict=True))
+    proofs = dict(zip(legs, legs_are_proved([*legs.values()]), strict=True))
     return [
-        turn if between.get(k, not steps[k][0].provable) else _by_proved_steps(leads, *steps[k], turn)
-        for k, turn in enumerate(turns)
+        turn
+        if proofs.get(k, False) or not step[0].provable
+        else _by_proved_steps(leads, *step, turn)
+        for k, (step, turn) in enumerate(zip(steps, turns, strict=True))
     ]
 
 
