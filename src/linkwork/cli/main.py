@@ -40,6 +40,7 @@ _COMMANDS = (
     "synthesize",
     "code",
     "robot",
+    "plates",
     "study",
     "compile",
     "examples",
