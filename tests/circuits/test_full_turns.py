@@ -60,10 +60,9 @@ def assert_same(one: lw.Circuits, other: lw.Circuits) -> None:
             [abs(np.subtract(*limit.bracket)) for limit in (*a.dead_points, *a.change_points)],
             default=0.0,
         )
-        for here, there in zip((a, *a.branches), (b, *b.branches), strict=True):
-            np.testing.assert_allclose(
-                here.input_range, there.input_range, rtol=NEAR, atol=NEAR * 360.0 + slack
-            )
+        ranges = [[own.input_range, *(x.input_range for x in own.branches)] for own in (a, b)]
+        for here, there in zip(*ranges, strict=True):
+            np.testing.assert_allclose(here, there, rtol=NEAR, atol=NEAR * 360.0 + slack)
 
 
 @pytest.mark.parametrize(
