@@ -40,6 +40,7 @@ _COMMANDS = (
     "synthesize",
     "code",
     "robot",
+    "report",
     "plates",
     "study",
     "compile",
