@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.foreign import Imported as Imported, imported as imported
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.batch.family import (
         Family as Family,
@@ -54,6 +55,8 @@ if TYPE_CHECKING:
     from linkwork.equations.writing import (
         EquationSheet as EquationSheet,
     )
+    from linkwork.exchange.drawn import Exported as Exported
+    from linkwork.exchange.source import LeftOut as LeftOut
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd

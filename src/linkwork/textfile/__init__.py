@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         schema_text as schema_text,
     )
     from linkwork.textfile.text_edits import TextEdits as TextEdits
+    from linkwork.textfile.toml_text import bytes_of as bytes_of
     from linkwork.textfile.writer import (
         save as save,
         save_bytes as save_bytes,
