@@ -17,7 +17,7 @@ from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from tests.exchange.samples import GEOGEBRA, SAMPLES, dxf_text, packed
 
-_ROWS = {"start": 53.13010235415598, "stop": 413.13010235415598, "step": 45.0}
+_ROWS: dict[str, Any] = {"start": 53.13010235415598, "stop": 413.13010235415598, "step": 45.0}
 #: The four-bar of the samples, whose crank begins at (24, 32).
 _BAR: dict[str, Any] = {
     "points": {"O": (0, 0), "A": (24, 32), "B": (120, 64), "Q": (100, 0)},

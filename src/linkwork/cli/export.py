@@ -60,6 +60,6 @@ def export(
         print_json({"text": made.text, "left_out": notes, "written": [output] if output else []})
         return
     click.echo(made.text if output is None else f"Wrote {output}.\n", nl=False)
-    notes = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
-    if notes:
-        print_lines(notes, err=True)
+    lines = [line for own in made.left_out for line in wrapped(f"left out: {own}", "", "  ")]
+    if lines:
+        print_lines(lines, err=True)

@@ -18,8 +18,6 @@ from linkwork.foundation.names import GROUND, canonical, free_name, is_name
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.index import PARTS
-from linkwork.mechanism.part.slider import Slider
-from linkwork.mechanism.part.slot import Slot
 
 __all__ = ["Assembly"]
 
@@ -103,15 +101,17 @@ class Assembly:
 
     def add_slot(self, wanted: str, point: str, on: str, line: tuple[str, str]) -> str:
         """A pin in a slot of a link; returns the name of the displacement."""
-        name = self.new_name(wanted, "s")
-        self.parts["slots"].append(Slot(name=name, point=point, on=on, line=line))
-        return name
+        return self.add_part("slots", wanted, "s", point=point, on=on, line=line)
 
     def add_slider(self, wanted: str, link: str, point: str, on: str, line: tuple[str, str]) -> str:
         """A link that slides without turning; returns the name of the displacement."""
-        name = self.new_name(wanted, "s")
-        slider = Slider(name=name, link=link, points=(point,), on=on, line=line)
-        self.parts["sliders"].append(slider)
+        return self.add_part("sliders", wanted, "s", link=link, points=(point,), on=on, line=line)
+
+    def add_part(self, table: str, wanted: str, kind: str, **fields: Any) -> str:
+        """A part of a table of the file, with a name like the wanted one; returns the name."""
+        name = self.new_name(wanted, kind)
+        part: Callable[..., Any] = PARTS[table]
+        self.parts[table].append(part(name=name, **fields))
         return name
 
     def finish(self) -> Linkage:
@@ -131,7 +131,9 @@ class Assembly:
         if not self.links:
             self.source.refuse("has no moving link")
         links = {GROUND: [p for p in self.points if p in self.fixed], **self.links}
-        parts = {table: tuple(_renamed(e, into) for e in es) for table, es in self.parts.items()}
+        parts: dict[str, Any] = {
+            table: tuple(_renamed(e, into) for e in es) for table, es in self.parts.items()
+        }
         try:
             return Linkage(
                 name=self.name or "mechanism",
@@ -168,8 +170,8 @@ class Assembly:
         self.trace = [same.get(point, point) for point in self.trace]
         for table in (self.lengths, self.angles):
             for key in list(table):
-                own = " ".join(same.get(point, point) for point in key.split())
-                table[own] = table.pop(key)
+                spelled = " ".join(same.get(point, point) for point in key.split())
+                table[spelled] = table.pop(key)
         if same:
             for table_name, parts in self.parts.items():
                 self.parts[table_name] = [_renamed(part, same) for part in parts]
@@ -234,7 +236,7 @@ class Assembly:
 
 def _renamed(part: Any, names: Mapping[str, str]) -> Any:
     """A part with other names of points or links."""
-    changes = {}
+    changes: dict[str, Any] = {}
     for key, own in vars(part).items():
         if isinstance(own, tuple):
             changes[key] = tuple(names.get(n, n) if isinstance(n, str) else n for n in own)

@@ -16,7 +16,7 @@ from linkwork.foundation.names import GROUND
 __all__ = ["Body", "BodyJoint", "Planar", "Pose", "quaternion", "turn_about"]
 
 _PARALLEL = 1e-6  # of unit vectors
-_SAME = 1e-9  # of the size of the mechanism
+_NEAR = 1e-9  # of the size of the mechanism
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class Pose:
 
     def place(self, local: Iterable[float]) -> Array:
         """A place of this frame in the world, (3,)."""
-        return self.at + self.turn @ np.array(list(local))
+        place: Array = self.at + self.turn @ np.array(list(local))
+        return place
 
     def frame(self, local: Iterable[float], turn: Array) -> Pose:
         """A frame inside this one."""
@@ -165,7 +166,7 @@ class Planar:
     def pin(self, name: str, place: Array, *bodies: str) -> str:
         """A point of bodies: one that a body has there, or a new one, called like a site there."""
         at, links = self.at(place), [self.link(body) for body in bodies]
-        near = _SAME * self.size
+        near = _NEAR * self.size
         known = (p for link in links for p in sorted(self.assembly.carries(link)))
         point = next((p for p in known if abs(self.assembly.points[p] - at) <= near), None)
         if point is None:

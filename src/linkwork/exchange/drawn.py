@@ -12,12 +12,9 @@ from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.slider import Slider
-from linkwork.mechanism.part.slot import Slot
+from linkwork.mechanism.part.pairs import KinematicPairs
 
 __all__ = ["Drawn", "Exported"]
-
-_WITHOUT_EFFECT = ("springs", "loads")  # parts that constrain nothing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +55,9 @@ class Drawn:
         self.linkage, self.places = linkage, places
         self._notes: dict[str, dict[str, None]] = {}
         for key, part in linkage.keyed_parts:
-            if key[0] in _WITHOUT_EFFECT:
+            if part.pairs(linkage) == KinematicPairs():  # it constrains nothing
                 self.leave_out(part.label, part.title.lower())
-            elif not isinstance(part, Slot | Slider):
+            elif key[0] not in ("slots", "sliders"):
                 raise InputError(
                     f'"{part.label}" ({part.title.lower()}) has no equivalent in this format: it '
                     "has pins, slots and sliders only"
@@ -88,19 +85,21 @@ class Drawn:
             if point not in slotted:
                 own = self._carriers(point)
                 yield JointRow(place=point, kind="R", at=at, links=own, name=point)
-        for part in (*self.linkage.slots, *self.linkage.sliders):
-            a, b = (self.places[end] for end in part.line)
-            point = part.point_on_line
-            slides = isinstance(part, Slider)
-            moving = (part.link,) if isinstance(part, Slider) else self._carriers(point)
-            yield JointRow(
-                place=part.label,
-                kind="P" if slides else "RP",
-                at=self.places[point],
-                links=(part.on, *moving),
-                angle=cmath.phase(b - a),
-                name=point,
-            )
+        for slot in self.linkage.slots:
+            moving = self._carriers(slot.point)
+            yield self._slide("RP", slot.name, slot.point, (slot.on, *moving), slot.line)
+        for slider in self.linkage.sliders:
+            links = (slider.on, slider.link)
+            yield self._slide("P", slider.name, slider.points[0], links, slider.line)
+
+    def _slide(
+        self, kind: str, name: str, point: str, links: tuple[str, ...], line: tuple[str, str]
+    ) -> JointRow:
+        a, b = (self.places[end] for end in line)
+        angle = cmath.phase(b - a)
+        return JointRow(
+            place=name, kind=kind, at=self.places[point], links=links, angle=angle, name=point
+        )
 
     def _carriers(self, point: str) -> tuple[str, ...]:
         return tuple(name for name, points in self.linkage.links.items() if point in points)

@@ -22,7 +22,7 @@ _GROUND_LAYERS = ("ground", "frame", "fixed", "base")
 _INPUT_LAYERS = ("input", "driver", "crank", "motor")
 _TRACE_LAYERS = ("trace", "path")
 _UNITS = {"1": "in", "2": "ft", "4": "mm", "5": "cm", "6": "m", "13": "µm", "14": "dm"}
-_SAME = 1e-6  # of a circle's radius or a line's length: drawn at the same place
+_TOLERANCE = 1e-6  # of a circle's radius or a line's length: drawn at the same place
 _MOST = 20_000  # circles, lines and polylines
 
 
@@ -149,7 +149,7 @@ def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
             continue
         at = _place(source, entity, entity.one(10, ""), entity.one(20, ""))
         radius = source.number(entity.one(40, ""), "the radius", entity.line)
-        same = next((p for p in pins if abs(p.at - at) <= _SAME * max(radius, p.radius)), None)
+        same = next((p for p in pins if abs(p.at - at) <= _TOLERANCE * max(radius, p.radius)), None)
         if same is None:
             if len(pins) == 400:
                 source.refuse("has more than 400 circles")
@@ -193,7 +193,7 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
     found: dict[complex, str] = {}
     for k, corner in enumerate(path):
         nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
-        if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _SAME):
+        if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
             found[corner] = nearest.name
         if k + 1 < len(path) or closed:
             end = path[(k + 1) % len(path)]
@@ -215,4 +215,4 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
 def _is_on(pin: _Pin, a: complex, b: complex) -> bool:
     """Whether a pin is inside a straight piece, away from its ends."""
     local = (pin.at - a) / (b - a)
-    return abs(local.imag) <= _SAME and 1e-3 < local.real < 1.0 - 1e-3
+    return abs(local.imag) <= _TOLERANCE and 1e-3 < local.real < 1.0 - 1e-3

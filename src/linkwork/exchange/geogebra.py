@@ -11,6 +11,7 @@ import io
 import re
 import zipfile
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -159,15 +160,11 @@ class _Construction:
         name, outputs = own.get("name"), self._outputs(own)
         given = own.one("input")
         inputs = [] if given is None else [v for _, v in sorted(given.attributes.items())]
-        rule = (
-            getattr(self, f"_do_{name.lower()}", None)
-            if name.isascii() and name.isalpha()
-            else None
-        )
+        rule = _RULES.get(name)
         if rule is None or (not outputs and name != "Locus"):
             self.source.leave_out(self._place(own), f"command {name[:40]}")
             return
-        why = rule(own, inputs, outputs, elements)
+        why = rule(self, inputs, outputs, elements)
         if why:
             self.source.leave_out(self._place(own), f"command {name}: {why}")
 
@@ -186,7 +183,7 @@ class _Construction:
                 return False
         return True
 
-    def _do_circle(self, own: Element, given: list[str], out: list[str], _: Any) -> str:
+    def _add_circle(self, given: list[str], out: list[str], _: Any) -> str:
         if len(given) != 2 or given[0] not in self.points:
             return "only a centre with a radius or a point is read"
         center = self.points[given[0]]
@@ -199,16 +196,14 @@ class _Construction:
         self.shapes[out[0]] = _Circle(center)
         return ""
 
-    def _do_segment(self, own: Element, given: list[str], out: list[str], _: Any) -> str:
+    def _add_segment(self, given: list[str], out: list[str], _: Any) -> str:
         known = [self.points[name] for name in given if name in self.points]
         if len(known) != 2 or len(given) != 2:
             return "only two points are read"
         self.shapes[out[0]] = _Line(tuple(known))
         return ""
 
-    _do_line = _do_ray = _do_segment
-
-    def _do_polygon(self, own: Element, given: list[str], out: list[str], _: Any) -> str:
+    def _add_polygon(self, given: list[str], out: list[str], _: Any) -> str:
         known = [self.points[name] for name in given if name in self.points]
         if len(known) != len(given):
             return "only points are read"
@@ -216,7 +211,9 @@ class _Construction:
             self.shapes[name] = _Line((a, b))
         return "" if self._common(*known) else "its points are on no common link: it is only drawn"
 
-    def _do_point(self, own: Element, given: list[str], out: list[str], elements: Any) -> str:
+    def _add_driven_point(
+        self, given: list[str], out: list[str], elements: dict[str, Element]
+    ) -> str:
         """A point that a person drags on a circle or a line."""
         shape = self._shape(given[0]) if len(given) == 1 else None
         element = elements.get(out[0])
@@ -234,7 +231,7 @@ class _Construction:
             return ""
         return "the input: a driven slide, whose range the file does not state"
 
-    def _do_intersect(self, own: Element, given: list[str], out: list[str], elements: Any) -> str:
+    def _add_intersect(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
         shapes = [self._shape(name) for name in given[:2]]
         if len(shapes) < 2 or any(shape is None for shape in shapes):
             return "only circles with constant radii and lines are read"
@@ -251,7 +248,7 @@ class _Construction:
                 self._keep(shape, point)
         return ""
 
-    def _do_rotate(self, own: Element, given: list[str], out: list[str], elements: Any) -> str:
+    def _add_rotate(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
         element = elements.get(out[0])
         if (
             len(given) != 3
@@ -274,7 +271,7 @@ class _Construction:
             self.assembly.put_on(on, point)
         return ""
 
-    def _do_midpoint(self, own: Element, given: list[str], out: list[str], elements: Any) -> str:
+    def _add_midpoint(self, given: list[str], out: list[str], elements: dict[str, Element]) -> str:
         shape = self.shapes.get(given[0]) if len(given) == 1 else None
         ends = (
             list(shape.points)
@@ -287,7 +284,7 @@ class _Construction:
         self.assembly.put_on(on, self._add_point(out[0], elements[out[0]]))
         return ""
 
-    def _do_locus(self, own: Element, given: list[str], out: list[str], _: Any) -> str:
+    def _add_locus(self, given: list[str], out: list[str], _: Any) -> str:
         if given and given[0] in self.points:
             self.assembly.trace.append(self.points[given[0]])
             return ""
@@ -313,3 +310,18 @@ class _Construction:
 
     def _drive(self, link: str, on: str) -> None:
         self.assembly.inputs.append(Input(link=link, relative_to=None if on == GROUND else on))
+
+
+_Rule = Callable[[_Construction, list[str], list[str], dict[str, Element]], str]
+_RULES: dict[str, _Rule] = {
+    "Circle": _Construction._add_circle,
+    "Segment": _Construction._add_segment,
+    "Line": _Construction._add_segment,
+    "Ray": _Construction._add_segment,
+    "Polygon": _Construction._add_polygon,
+    "Point": _Construction._add_driven_point,
+    "Intersect": _Construction._add_intersect,
+    "Rotate": _Construction._add_rotate,
+    "Midpoint": _Construction._add_midpoint,
+    "Locus": _Construction._add_locus,
+}

@@ -14,10 +14,7 @@ from linkwork.exchange.source import Source
 from linkwork.exchange.xml_tree import Element, xml_tree
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
-from linkwork.mechanism.part.belt import Belt
-from linkwork.mechanism.part.cylinder import Cylinder
-from linkwork.mechanism.part.gear import Gear
-from linkwork.mechanism.part.weld import Weld
+from linkwork.mechanism.part.index import PARTS
 
 __all__ = ["SUFFIXES", "TITLE", "matches", "read"]
 
@@ -106,8 +103,8 @@ class _Document:
             self.source.leave_out(place, "actuator with more than two connectors")
 
     def _add_actuator(self, own: Element, points: list[str]) -> None:
-        name = self.assembly.new_name(own.get("name") or f"actuator{own.get('id')}", "actuator")
-        self.assembly.parts["cylinders"].append(Cylinder(name=name, between=(points[0], points[1])))
+        wanted = own.get("name") or f"actuator{own.get('id')}"
+        name = self.assembly.add_part("cylinders", wanted, "actuator", between=tuple(points))
         a, b = (self.assembly.points[point] for point in points)
         throw = self.source.number(own.get("throw", "0"), "throw", own.line)
         if throw > 0:
@@ -129,7 +126,9 @@ class _Document:
         elif own.get("id") in self.links:
             link = self.links[own.get("id")]
             if self.assembly.carries(link) & self.assembly.carries(other):
-                self.assembly.parts["welds"].append(Weld(links=(other, link)))
+                self.assembly.parts["welds"].append(
+                    PARTS["welds"].of_table({"links": [other, link]})
+                )
             else:
                 self.source.leave_out(
                     f"line {own.line}", "fastened link without a common connector"
@@ -188,10 +187,9 @@ class _Document:
     def _join(
         self, own: Element, wheels: list[str], centers: list[str], arm: str, sizes: list[float]
     ) -> None:
-        name = self.assembly.new_name("mesh" if own.get("type") == "gears" else "chain", "mesh")
-        pair = {"name": name, "wheels": tuple(wheels), "centers": tuple(centers), "arm": arm}
+        pair = {"wheels": tuple(wheels), "centers": tuple(centers), "arm": arm}
         if own.get("type") != "gears":
-            self.assembly.parts["belts"].append(Belt(**pair, radii=(sizes[0], sizes[1])))
+            self.assembly.add_part("belts", "chain", "belt", **pair, radii=tuple(sizes))
             if own.get("sizeassize") != "true":
                 self.source.leave_out(
                     f"line {own.line}", "radii of the chain's wheels: the ratio is right"
@@ -199,4 +197,4 @@ class _Document:
             return
         a, b = (self.assembly.points[center] for center in centers)
         radii = tuple(abs(b - a) * size / sum(sizes) for size in sizes)
-        self.assembly.parts["gears"].append(Gear(**pair, radii=radii))
+        self.assembly.add_part("gears", "mesh", "gear", **pair, radii=radii)

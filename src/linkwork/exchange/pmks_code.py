@@ -137,10 +137,10 @@ def _assembled(
     known = {joint.id: joint for joint in joints}
     carried: dict[str, list[_Link]] = {}
     for link in links:
-        for joint in link.joints:
-            if joint not in known:
-                source.refuse(f'link "{link.name[:40]}" has an unknown joint "{joint[:40]}"')
-            carried.setdefault(joint, []).append(link)
+        for own_id in link.joints:
+            if own_id not in known:
+                source.refuse(f'link "{link.name[:40]}" has an unknown joint "{own_id[:40]}"')
+            carried.setdefault(own_id, []).append(link)
     # a block joins a slide to the pin at the same place
     blocks = {link.id for link in links if any(known[j].flags & _SLIDES for j in link.joints)}
     blocks = {link.id for link in links if link.id in blocks and len(link.joints) == 2}
@@ -153,8 +153,8 @@ def _assembled(
             continue
         fixed = bool(joint.flags & _FIXED) and not joint.flags & _SLIDES
         points[joint.id] = assembly.add_point(joint.name, joint.at, fixed)
-        for link in own:
-            assembly.put_on(link, points[joint.id])
+        for name in own:
+            assembly.put_on(name, points[joint.id])
         if joint.flags & _DRIVEN and not joint.flags & _SLIDES:
             pinned = [GROUND, *own] if fixed else own
             driven.append((f"joint {joint.name[:40]}", pinned))

@@ -217,7 +217,7 @@ class _Mechanism(_Reading):
             name, at = self.named(entry, "id", "joints", k), entry.get("position")
             if not isinstance(at, list) or len(at) != 2:
                 self.refuse("joints", k, "needs position, a list of two numbers")
-            self.add_point(name, k, *at, fixed=entry.get("type") == "ground")
+            self.add_point(name, k, at[0], at[1], entry.get("type") == "ground")
         for k, entry in enumerate(self.links):
             self._add_link(entry, k)
         for k, entry in enumerate(self.joints):
@@ -240,8 +240,9 @@ class _Mechanism(_Reading):
             self.assembly.fixed.update(points)
             return
         motor = entry.get("motor_joint")
-        if motor in own:
-            points.sort(key=lambda point: point != self.points[motor])
+        if motor in own:  # the angle of a link counts from its first point
+            first = self.points[str(motor)]
+            points.sort(key=lambda point: point != first)
         link = self.assembly.add_link(name, points)
         if kind in ("driver", "arc_driver"):
             self._drive(entry, k, link, own)

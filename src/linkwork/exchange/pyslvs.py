@@ -62,7 +62,7 @@ class _Parser:
     def mechanism(self) -> list[JointRow]:
         self.take("M")
         self.take("[")
-        rows = []
+        rows: list[JointRow] = []
         while self.word != "]":
             rows.append(self.joint(len(rows) + 1))
             if self.word != "]":

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import numpy as np
 
@@ -162,7 +163,7 @@ class _Tree:
             self.source.leave_out(f"line {body.line}", "the input of a link with one point")
             return
         if joint.kind == "slide":
-            drives = {"slider": planar.points[joint.name]}
+            drives: dict[str, Any] = {"slider": planar.points[joint.name]}
             start, stop = low, high
         else:
             drives = {"link": link} if on == GROUND else {"link": link, "relative_to": on}
