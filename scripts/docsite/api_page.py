@@ -36,6 +36,7 @@ _PARTS = (
     ("Families", ("linkwork.batch",)),
     ("Synthesis and improvement", ("linkwork.design", "linkwork.api.synthesis")),
     ("Pictures and films", ("linkwork.drawing", "linkwork.viewer")),
+    ("Plates", ("linkwork.export.plates",)),
     ("Results", ("linkwork.results", "linkwork.equations", "linkwork.numerics")),
     ("Statuses", ("linkwork.foundation",)),
     ("Errors", ("linkwork.foundation.errors",)),
@@ -68,7 +69,7 @@ def public_members(kind: type) -> Iterator[tuple[str, object]]:
 def is_built_by_users(kind: type) -> bool:
     """Whether users call the class; others are results, and the page shows no constructor."""
     made = ("linkwork.mechanism", "linkwork.drawing.scene_options", "linkwork.viewer")
-    own = ("linkwork.results.force", "linkwork.numerics")
+    own = ("linkwork.results.force", "linkwork.numerics", "linkwork.export.plates.options")
     return kind.__module__.startswith(made + own)
 
 

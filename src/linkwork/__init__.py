@@ -57,6 +57,8 @@ if TYPE_CHECKING:
     )
     from linkwork.exchange.drawn import Exported as Exported
     from linkwork.exchange.source import LeftOut as LeftOut
+    from linkwork.export.plates.options import PlateOptions as PlateOptions
+    from linkwork.export.plates.plate import PlateStack as PlateStack
     from linkwork.foundation.angles import AngleUnit as AngleUnit
     from linkwork.foundation.certification import Certification as Certification
     from linkwork.foundation.circuit_end import CircuitEnd as CircuitEnd

@@ -181,6 +181,7 @@ def test_an_empty_plan_has_no_chunks() -> None:
         (lambda: from_table({"a": [1.0], "b": [1.0, 2.0]}), "equal lengths, got a: 1, b: 2"),
         (lambda: from_table({}), "this plan varies no numbers: give a dimension and its values"),
         (lambda: from_table(5), "a table is a DataFrame"),
+        (lambda: from_table({1: [1.0]}, ["a"]), r'no column "a" \(columns: 1\)'),
         (lambda: from_table({"a": ["x"]}), '"a" needs a row of numbers, got'),
         (lambda: from_table("no such file.csv"), "cannot be read: No such file"),
     ],

@@ -1,4 +1,4 @@
-"""Verdicts on four-bars and slider-cranks, compared with the circuits of the mechanisms."""
+"""Verdicts on four-bars and slider-cranks, also inverted, compared with circuits."""
 
 from __future__ import annotations
 
@@ -42,17 +42,26 @@ def _random_design(kind: LoopKind, rng: np.random.Generator) -> Candidates:
             if (across <= 1e-6).any():
                 continue
             coupler = base * (along + 1j * side * np.sqrt(across)) / np.abs(base) ** 2
+        elif kind is LoopKind.INVERTED:
+            base, offset = g - crank, rng.uniform(-0.7, 0.7) * rng.integers(0, 2)
+            across = np.abs(base) ** 2 - offset**2
+            if (across <= 1e-6).any():
+                continue
+            arm = complex(c, offset)
+            coupler = base / (side * np.sqrt(across) + 1j * offset) * arm
+            direction = abs(arm) / arm
         else:
             across = c**2 - (g - 1.0 - crank.imag) ** 2
             if (across <= 1e-6).any():
                 continue
             coupler = side * np.sqrt(across) + 1j * (g - 1.0 - crank.imag)
         sliding = kind is LoopKind.SLIDER_CRANK
+        direction = direction if kind is LoopKind.INVERTED else complex(sliding)
         return Candidates(
             kind=kind,
             fixed_a=np.array([0j]),
             fixed_b=np.array([1j * (g - 1.0) if sliding else g + 0j]),
-            direction=np.array([1.0 + 0j if sliding else 0j]),
+            direction=np.array([direction]),
             moving_a=crank[None],
             moving_b=(crank + coupler)[None],
             guided=(crank + 0.7 * coupler * np.exp(0.4j))[None],
@@ -86,7 +95,7 @@ def defect_campaign(part: int, count: int) -> tuple[Counter[str], list[str]]:
     counts: Counter[str] = Counter()
     false: list[str] = []
     for kind in LoopKind:
-        given = random_designs(kind, count // 2, part)
+        given = random_designs(kind, count // len(LoopKind), part)
         for which, drive in enumerate(given.drives):
             verdicts = judge(given, drive, Wishes())
             for k in range(which, len(given), 2):

@@ -30,6 +30,7 @@ from tests.campaigns.lanes import judge_lane_steps, judge_lanes
 from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
+from tests.campaigns.nine_points import nine_point_campaign
 from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
@@ -41,7 +42,13 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
-_OWN_PART = {"gradients": 1, "parallel-trains": 1, "poses": 1000, "precision-points": 4}
+_OWN_PART = {
+    "gradients": 1,
+    "nine-points": 1,
+    "parallel-trains": 1,
+    "poses": 1000,
+    "precision-points": 4,
+}
 #: Mechanisms in random order, so that a smaller campaign is a sample of all of them.
 _GRADIENTS = np.random.default_rng(20).permutation(EVERY)
 
@@ -147,6 +154,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "imports": (_imports, 80_000),
     "forces": (_forces, 2_000),
     "precision-points": (_precision_points, 200),
+    "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
     "gradients": (_gradients, EVERY),

@@ -314,7 +314,8 @@ def test_a_motion_ends_at_a_change_point_unless_it_goes_straight() -> None:
     [
         ({"masses": {}}, {}, "nothing in .* has mass"),
         ({}, {"until": -1}, "until must be a positive time"),
-        ({}, {"step": 0}, "step must be a positive part of until"),
+        ({}, {"step": 0}, "step must be a part of until, 1 s, that makes 1 to"),
+        ({}, {"step": 2}, "step must be a part of until, 1 s, that makes 1 to"),
         ({}, {"start_speed": "3 mm/s"}, "start speed: must be a number and a unit"),
         ({}, {"change_points": "turn"}, "goes straight on or stops"),
         ({"stops": [lw.Stop(of="bar", stop=100)]}, {}, "bar begins at 180, beyond its stop at 100"),

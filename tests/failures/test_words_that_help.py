@@ -188,10 +188,17 @@ def test_a_wrong_type_is_named_with_the_right_one(call: Callable[[], object], to
     assert str(caught.value) == told
 
 
+@pytest.mark.parametrize(
+    "table",
+    [
+        'F = "x^3 - 1e308*x - 5 = 0"\n[guess]\nx = 1\n',
+        'F = "x/x = 1"\nG = "y = x + 1"\n[guess]\nx = 1e-300\ny = 3\n',
+    ],
+)
 def test_numbers_near_the_largest_float_warn_nobody(
-    tmp_path: Path, recwarn: pytest.WarningsRecorder
+    table: str, tmp_path: Path, recwarn: pytest.WarningsRecorder
 ) -> None:
-    text = 'format = 1\n[equations]\nF = "x^3 - 1e308*x - 5 = 0"\n[guess]\nx = 1\n'
+    text = f"format = 1\n[equations]\n{table}"
     (tmp_path / "large.toml").write_text(text, encoding="utf-8")
     mechanism = lw.load(tmp_path / "large.toml")
     mechanism.solve()

@@ -1,8 +1,8 @@
-"""The mechanism as a file of other programs: workbooks, programs, robots."""
+"""The mechanism as a file of other programs: workbooks, programs, robots, plates."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from linkwork.api.designed import DesignedMechanism
 from linkwork.exchange.drawn import Exported
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.value_types import check_flags, given_or
 from linkwork.mechanism.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -175,3 +176,57 @@ class ExportedMechanism(DesignedMechanism):
             motion = self.sweep(configuration=configuration)
         text = export.robot_of(self.model, start, motion, as_path(path))
         textfile.save_text(text, path)
+
+    def to_plates(
+        self,
+        path: str | Path,
+        motion: Motion | None = None,
+        *,
+        options: export.PlateOptions | None = None,
+        layout: bool = False,
+        progress: Callable[[float], None] | None = None,
+    ) -> export.PlateStack:
+        """Write the links as plates to cut or print, in layers in which nothing collides.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its suffix selects the format: ``.dxf``, ``.svg``, ``.stl``, ``.3mf`` or
+            ``.step``.
+        motion : Motion, optional
+            The sweep in which nothing may collide; by default :meth:`sweep`.
+        options : PlateOptions, optional
+            Widths, pins, clearance, kerf and thickness.
+        layout : bool
+            Put the plates side by side on a sheet; otherwise they are assembled.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Returns
+        -------
+        PlateStack
+            The layers, the bill of materials, and what is proved of collisions.
+
+        Raises
+        ------
+        InputError
+            If a part cannot be made of plates, there is no order of layers, or the file cannot be
+            written.
+        MissingPackageError
+            If the package that writes the format is not installed.
+
+        Examples
+        --------
+        >>> import linkwork as lw, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     stack = lw.example("slider-crank").to_plates(f"{folder}/plates.dxf", layout=True)
+        >>> stack.layers, stack.proved
+        (3, True)
+        """
+        file, chosen = as_path(path), given_or(export.PlateOptions(), "options", options)
+        check_flags(progress, layout=layout)
+        export.check_plate_file(file)
+        cycle = self.sweep() if motion is None else motion
+        stack = export.stack_of(self.model, cycle, chosen, progress)
+        textfile.save_bytes(export.plates_of(stack, file, layout=layout), path)
+        return stack

@@ -43,6 +43,7 @@ _COMMANDS = (
     "robot",
     "import",
     "export",
+    "plates",
     "study",
     "compile",
     "examples",

@@ -37,7 +37,7 @@ def synthesize(
     fresh: bool,
     as_json: bool,
 ) -> None:
-    """Find mechanisms for a task: poses, or a function.
+    """Find mechanisms for a task: poses, points, a curve or a function.
 
     Every solution is listed; designs that change branch or circuit, pass the
     positions out of order or miss a wish are refused with their reason. The

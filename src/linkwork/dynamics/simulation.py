@@ -127,9 +127,12 @@ def _times(until: float, step: float | None) -> Array:
     if step is None:
         return np.linspace(0.0, until, _ROWS + 1)[1:]
     step = finite_number("step", step)
-    if step <= 0.0 or until / step > _MOST_ROWS:
-        raise InputError(f"step must be a positive part of until, got {as_told(step)}")
-    count = int(np.floor(until / step + 1e-9))
+    count = int(np.floor(min(until / step, _MOST_ROWS + 1) + 1e-9)) if step > 0.0 else 0
+    if not 1 <= count <= _MOST_ROWS:
+        raise InputError(
+            f"step must be a part of until, {until:g} s, that makes 1 to {_MOST_ROWS} rows, "
+            f"got {as_told(step)}"
+        )
     times = step * np.arange(1.0, count + 1)
     return times if abs(times[-1] - until) < 1e-9 * step else np.append(times, until)
 

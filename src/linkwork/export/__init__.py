@@ -11,6 +11,13 @@ if TYPE_CHECKING:
         code_of as code_of,
         language_of as language_of,
     )
+    from linkwork.export.plates.options import PlateOptions as PlateOptions
+    from linkwork.export.plates.plate import PlateStack as PlateStack
+    from linkwork.export.plates.plate_file import (
+        check_plate_file as check_plate_file,
+        plates_of as plates_of,
+    )
+    from linkwork.export.plates.stack import stack_of as stack_of
     from linkwork.export.robot.robot_file import (
         check_robot_file as check_robot_file,
         robot_of as robot_of,

@@ -268,7 +268,7 @@ def key_text(key: Sequence[str | int]) -> str:
 
 def choices(kind: str, names: Iterable[str], wanted: object = "") -> str:
     """The existing names for the end of a message: ``(joints: A, C, D)``, nearest names first."""
-    known = list(names)
+    known = list(map(str, names))  # a table of a user may name its columns by numbers
     if not known:
         return f"(there are no {kind})"
     # the nearest names first: lists are cut after eight

@@ -267,9 +267,10 @@ def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
 def _condition(system: System, jacobian: Array, inverse: Array) -> Array:
     """‖J‖·‖J⁻¹‖ in the system's own weights, (B,)."""
     w, s = system.variable_scale[: jacobian.shape[2]], system.equation_scale
-    forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
-    backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
-    product: Array = forward * backward  # eq. (14)
+    with np.errstate(over="ignore", invalid="ignore"):
+        forward = np.abs(jacobian * w / s[:, None]).sum(axis=2).max(axis=1, initial=0.0)
+        backward = np.abs(inverse * s / w[:, None]).sum(axis=2).max(axis=1, initial=0.0)
+        product: Array = forward * backward  # eq. (14)
     return np.where(np.isfinite(product), product, np.inf)
 
 

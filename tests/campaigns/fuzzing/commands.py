@@ -13,7 +13,7 @@ from linkwork.cli.main import linkwork as program
 from tests.campaigns.fuzzing.loads import LOADED
 from tests.campaigns.fuzzing.odd import NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.pages import BENCH, BENCH_NAMES, BENCH_TEXTS
-from tests.campaigns.fuzzing.texts import changed_bytes, library_text, plan_text
+from tests.campaigns.fuzzing.texts import changed_bytes, library_text, plan_text, task_text
 from tests.campaigns.fuzzing.witness import SHOWS_PROGRESS, Witness
 
 __all__ = ["command"]
@@ -21,16 +21,20 @@ __all__ = ["command"]
 _COMMANDS = (
     "check", "equations", "solve", "solve", "quantities", "sweep", "sweep", "configurations",
     "circuits", "draw", "plot", "animate", "study", "examples", "schema", "nothing", "forces",
-    "forces", "new", "link", "web",
+    "forces", "new", "link", "web", "robot", "code", "simulate", "sensitivity", "tolerance",
+    "design", "synthesize",
 )  # fmt: skip
+_WRITERS = ("draw", "animate", "plot", "study", "robot", "code", "synthesize")
 _SOURCES = (
     "four-bar", "four-bar", "slider-crank", "newton-another-root", "rapier-drive", "crank-shaper",
     "scotch-yoke", "belt-drive", "crank-press", "balanced-lamp", "nowhere.toml", "", ".", "-",
-    "changed.toml", "bench.toml", "loaded.toml", "loaded.toml", "plan.toml",
+    "changed.toml", "bench.toml", "loaded.toml", "loaded.toml", "plan.toml", "pendulum",
+    "task.toml",
 )  # fmt: skip
 _OUTPUTS = (
     "x.png", "x.svg", "x.pdf", "x.csv", "x.html", "x.gif", "x", ".", "/nowhere/x.png", "", "-",
-    "x.zarr", "x.toml", "x.exe",
+    "x.zarr", "x.toml", "x.exe", "x.xlsx", "x.mjcf", "x.urdf", "x.sdf", "x.py", "x.m", "x.c",
+    "x.js", "x.st", "x.tikz",
 )  # fmt: skip
 
 
@@ -40,10 +44,13 @@ def command(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
     (folder / "loaded.toml").write_text(LOADED, encoding="utf-8")
     (folder / "changed.toml").write_bytes(changed_bytes(rng, library_text(rng)))
     (folder / "plan.toml").write_bytes(plan_text(rng).encode("utf-8", "replace"))
+    (folder / "task.toml").write_bytes(task_text(rng).encode("utf-8", "replace"))
     name = pick(rng, _COMMANDS)
     arguments = [name]
     if name == "study":
         arguments += ["plan.toml", "--quiet"] if rng.random() < 0.8 else [pick(rng, _SOURCES)]
+    elif name == "synthesize":
+        arguments.append("task.toml" if rng.random() < 0.9 else pick(rng, _SOURCES))
     elif name in ("new", "web"):
         arguments.append(pick(rng, _OUTPUTS))
     elif name not in ("schema",) and rng.random() < 0.97:
@@ -52,7 +59,7 @@ def command(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
     options = [] if found is None else found.params
     for _ in range(int(rng.integers(5)) if options else 0):
         arguments += _option(rng, pick(rng, options))
-    if name in ("draw", "animate", "plot", "study") and rng.random() < 0.7:
+    if name in _WRITERS and rng.random() < 0.7:
         arguments += ["-o", pick(rng, _OUTPUTS)]
     if rng.random() < 0.1:
         arguments.insert(

@@ -11,7 +11,14 @@ import numpy as np
 from linkwork.textfile.library import example_text, examples
 from tests.campaigns.fuzzing.odd import FORMULAS, NAMES, NUMBERS, pick
 
-__all__ = ["changed_bytes", "changed_text", "equation_text", "library_text", "plan_text"]
+__all__ = [
+    "changed_bytes",
+    "changed_text",
+    "equation_text",
+    "library_text",
+    "plan_text",
+    "task_text",
+]
 
 _TOKEN = re.compile(r'"[^"\n]*"|[-+]?[\d.]+(?:e[-+]?\d+)?|[^\W\d]\w*|\[\[?|\]\]?|\n|\S')
 _NUMBER = re.compile(r"[-+]?[\d.]+(?:e[-+]?\d+)?")
@@ -56,6 +63,22 @@ transmission = "mu >= 25"
 """
 
 
+#: The ends of tasks of every kind.
+_TASKS = (
+    'task = "motion"\n[wanted]\ntransmission = { least = 30 }\n'
+    "lengths = { most = 1400, ratio = 20 }\nclear_of = [[140, 40, 30]]\n"
+    "[rank]\nby = { transmission = 2, size = 1 }\ndeliver = 5\n",
+    'task = "mixed"\nmechanism = "four-bar"\n[given]\nfixed_pivots = [[0, 0], [400, 0]]\n',
+    'task = "path"\nmechanism = ["four-bar", "slider-crank"]\n[wanted]\norder = "any"\n'
+    "fixed_pivots = { inside = [[0, 0], [400, 0], [400, 300]] }\n[improve]\nstarts = 10\n",
+    'task = "function"\nmechanism = "slider-crank"\n[function]\nof = "log10(x)"\nx = [1, 2]\n'
+    'input = [45, 105]\noutput = [0, 90]\nfit = "minimax"\n',
+    'task = "function"\nmechanism = "four-bar"\n[function]\n'
+    "pairs = [[0, 0], [20, 10], [35, 20], [50, 45]]\n",
+)  # fmt: skip
+_POSITIONS = ([0, 0, 0], [40, -40, 10], [100, -80, 25], [170, -110, 45], [260, -140, 75])
+
+
 def library_text(rng: np.random.Generator) -> str:
     """The text of a mechanism of the library."""
     return example_text(pick(rng, list(examples())))
@@ -81,6 +104,19 @@ def plan_text(rng: np.random.Generator) -> str:
     if rng.random() < 0.3:
         text = text.replace("latin-hypercube", pick(rng, ["grid", "random", "table"]))
     return changed_text(rng, text)
+
+
+def task_text(rng: np.random.Generator) -> str:
+    """A small task of synthesis, often changed."""
+    text = f"format = 1\n{pick(rng, _TASKS)}"
+    if '"function"' not in text:
+        for x, y, angle in _POSITIONS[: int(rng.integers(6))]:
+            text += f"[[positions]]\npoint = [{x}, {y}]\n"
+            if '"motion"' in text or rng.random() < 0.3:
+                text += f"angle = {angle}\n"
+            if rng.random() < 0.1:
+                text += f"{pick(rng, ['input', 'tolerance'])} = {pick(rng, NUMBERS)}\n"
+    return changed_text(rng, text) if rng.random() < 0.8 else text
 
 
 def changed_text(rng: np.random.Generator, text: str) -> str:

@@ -22,6 +22,7 @@ from tests.campaigns.fuzzing.texts import (
     equation_text,
     library_text,
     plan_text,
+    task_text,
 )
 from tests.campaigns.fuzzing.witness import SHOWS_PROGRESS, Witness
 
@@ -124,6 +125,21 @@ def _plan(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
         )
 
 
+def _task(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
+    """A task of synthesis and its designs."""
+    text = task_text(rng)
+    task = witness.call("Task.loads", lambda: lw.Task.loads(text))
+    if task is None:
+        return
+    witness.counts["tasks that load"] += 1
+    witness.call("repr of a task", lambda: repr(task))
+    found = witness.call("Task.solve", task.solve, SHOWS_PROGRESS)
+    if found is not None:
+        witness.call("repr of a synthesis", lambda: repr(found))
+        witness.call("table of designs", lambda: len(found.table()))
+        witness.call("save", lambda: found.save(folder / "designs", refused=True))
+
+
 def _call(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
     with contextlib.chdir(folder):
         python_call(rng, witness)
@@ -135,7 +151,8 @@ KINDS: dict[str, tuple[Trial, float]] = {
     "files": (_file, 0.3),
     "loads": (_loads, 0.15),
     "equations": (_equations, 0.15),
-    "plans": (_plan, 0.1),
+    "plans": (_plan, 0.05),
+    "tasks": (_task, 0.05),
     "messages": (messages, 0.15),
     "commands": (command, 0.05),
     "Python calls": (_call, 0.1),

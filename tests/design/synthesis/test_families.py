@@ -80,7 +80,7 @@ def _misses(found: lw.Synthesis, poses: list[tuple[float, float, float]]) -> flo
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
-@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
 def test_delivered_designs_pass_the_poses(count: int, mechanism: str) -> None:
     task = lw.Task.motion(
         _POSES[:count], mechanism=mechanism, rank={"deliver": 3}, wanted={"lengths": {"most": 2000}}
@@ -89,6 +89,33 @@ def test_delivered_designs_pass_the_poses(count: int, mechanism: str) -> None:
     assert len(found.delivered) == 3
     assert {design.group.given.kind.value for design in found.delivered} == {mechanism}
     assert _misses(found, list(_POSES[:count])) < 1e-6
+
+
+def test_a_body_that_slides_through_a_pivot_is_found_from_five_and_more_poses() -> None:
+    """The coupler of an inverted slider-crank, whose pivots are planted."""
+    block, offset = 150.0 - 40.0j, 25.0
+    crank = 50.0 * np.exp(1j * np.radians([10, 40, 75, 110, 160, 200]))
+    away = block - crank
+    line = away / (np.sqrt(np.abs(away) ** 2 - offset**2) + 1j * offset)
+    points, angles = crank + (30 + 60j) * line, np.degrees(np.angle(line))
+    poses = np.column_stack([points.real, points.imag, angles]).tolist()
+    found = lw.Task.motion(poses[:5], mechanism="inverted-slider-crank").solve()
+    kinds = [dyad.kind for dyad in found.dyads]
+    assert kinds.count("RP") == 1
+    pivot = found.dyads[kinds.index("RP")].fixed
+    assert pivot == pytest.approx((block.real, block.imag), abs=1e-6)
+    planted = [d for d in found.delivered if abs(d.design.points["A0"]) < 1e-6]
+    # the block swings back within the positions
+    assert [d.drive.value for d in planted] == ["A0"]
+    assert _misses(found, [tuple(pose) for pose in poses[:5]]) < 1e-6
+    tables = [{"point": [x, y], "angle": angle, "tolerance": 0.01} for x, y, angle in poses]
+    text = "format = 1\ntask = 'motion'\nmechanism = 'inverted-slider-crank'\n" + "".join(
+        "[[positions]]\n" + "".join(f"{key} = {value}\n" for key, value in table.items())
+        for table in tables
+    )
+    again = lw.Task.loads(text).solve()
+    assert {abs(d.design.points["A0"]) < 1e-6 for d in again.delivered} == {True}
+    assert all(d.error < 1e-6 for d in again.delivered)
 
 
 def test_two_given_fixed_pivots_and_three_poses_make_one_four_bar() -> None:

@@ -18,6 +18,8 @@ _POSSIBLE = [
     (LoopKind.FOUR_BAR, Drive.B0),
     (LoopKind.SLIDER_CRANK, Drive.A0),
     (LoopKind.SLIDER_CRANK, Drive.SLIDER),
+    (LoopKind.INVERTED, Drive.A0),
+    (LoopKind.INVERTED, Drive.B0),
 ]
 
 
@@ -65,11 +67,17 @@ def test_transmission_is_that_of_close_positions(kind: LoopKind, drive: Drive) -
     a, b, _ = pivots_at(some, drive, loops, first[:, None] + (last - first)[:, None] * share)
     if kind is LoopKind.SLIDER_CRANK and drive is Drive.A0:
         other = 1j * some.direction[:, None]
+    elif kind is LoopKind.INVERTED and drive is Drive.A0:
+        other = a - some.fixed_b[:, None]
     elif drive is Drive.A0:
         other = b - some.fixed_b[:, None]
     else:
         other = a - some.fixed_a[:, None]
-    cosine = np.abs(((b - a) * other.conj()).real) / (np.abs(b - a) * np.abs(other))
+    arm = b - a
+    if kind is LoopKind.INVERTED:
+        # the force of the block is across the line
+        arm = 1j * some.direction[:, None] * arm
+    cosine = np.abs((arm * other.conj()).real) / (np.abs(arm) * np.abs(other))
     least = np.arccos(np.clip(cosine.max(axis=1), 0.0, 1.0))
     bound = verdicts.transmission[sound]
     assert (bound <= least + 1e-7).all()
@@ -187,7 +195,7 @@ def test_obstacles_are_met_where_close_positions_meet_them(kind: LoopKind, drive
     a, b, p = pivots_at(some, drive, loops, places)
     fixed = np.broadcast_to(some.fixed_a[:, None], a.shape)
     bars = [(fixed, a), (a, b), (a, p), (b, p)]
-    if kind is LoopKind.FOUR_BAR:
+    if kind is not LoopKind.SLIDER_CRANK:
         bars.append((np.broadcast_to(some.fixed_b[:, None], a.shape), b))
     centre = np.asarray(0.9 + 1.1j)
     gap = np.min([distances_to_segments(centre, *bar) for bar in bars], axis=0).min(axis=1) - 0.25

@@ -11,11 +11,15 @@ from linkwork.design.synthesis.defect_messages import Defect
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.results.circuits import Circuit, Circuits
+from linkwork.results.motion import Motion
 
-__all__ = ["branches_of_positions", "defects_by_circuits"]
+__all__ = ["branches_of_positions", "defects_by_circuits", "is_passed"]
 
 # more than a segment of a circuit: rows at its ends are rounded
 _BEYOND = 1e-6
+# of a point's way: cubics between rows miss a position of the branch by less, and other branches
+# are farther away, unless the input is nearer than the square of this to a dead point
+_MISSED = 1e-6
 
 #: Places of some points, which together tell the branches of a mechanism apart [length].
 Places = Mapping[str, complex]
@@ -45,6 +49,33 @@ def defects_by_circuits(
             message = f"branch changes between positions {number} and {number + 1}"
             return (Defect(kind=DefectKind.BRANCH, between=between, message=message),)
     return ()
+
+
+def is_passed(motion: Motion, inputs: Sequence[float], places: Sequence[Places]) -> bool:
+    """Whether a motion on one branch, found in all rows, passes positions as exactly as can be told
+    from its rows. Then the mechanism has no defect, whatever its other circuits.
+
+    ``motion``: rows from the least input to the greatest; ``inputs``, ``places``: as for
+    :func:`defects_by_circuits`.
+    """
+    if len(motion) < 2 or not motion.found.all() or len(set(motion.branch)) > 1:
+        return False
+    name, along = next(iter(motion.inputs.items()))
+    row = np.clip(np.searchsorted(along, inputs) - 1, 0, len(along) - 2)
+    step = along[row + 1] - along[row]
+    t = (np.asarray(inputs) - along[row]) / step
+    step = step * {"deg": np.pi / 180.0}.get(motion.input_units[name], 1.0)
+    for point in places[0]:
+        x, y = motion.series(f"{point}.x"), motion.series(f"{point}.y")
+        z, slope = x.value + 1j * y.value, x.first + 1j * y.first
+        # Hermite's cubic between rows
+        change = z[row + 1] - z[row]
+        begin, end = slope[row] * step - change, change - slope[row + 1] * step
+        there = z[row] + t * (change + (1.0 - t) * (begin * (1.0 - t) + end * t))
+        missed = np.abs(there - [place[point] for place in places]).max()
+        if not missed <= _MISSED * np.abs(np.diff(z)).sum():
+            return False
+    return True
 
 
 def branches_of_positions(

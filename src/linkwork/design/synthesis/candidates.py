@@ -20,10 +20,11 @@ class LoopKind(Enum):
 
     FOUR_BAR = "four-bar"
     SLIDER_CRANK = "slider-crank"
+    INVERTED = "inverted-slider-crank"
 
 
 class Drive(Enum):
-    """The driven link: the crank at A0, the crank at B0, or the slider."""
+    """The driven link: the crank at A0, the crank or swivelling block at B0, or the slider."""
 
     A0 = "A0"
     B0 = "B0"
@@ -44,7 +45,8 @@ class Candidates:
     fixed_b : (D,) complex
         The fixed pivot B0, or a point of the line on which B slides [length].
     direction : (D,) complex
-        The unit vector of that line; 0 for a four-bar.
+        The unit vector of that line; 0 for a four-bar. An inverted slider-crank has a line of the
+        coupler, through B, which slides through B0: its unit vector, seen along B - A.
     moving_a, moving_b : (D, N) complex
         The moving pivots at the positions [length].
     guided : (D, N) complex
@@ -72,8 +74,14 @@ class Candidates:
     @property
     def drives(self) -> tuple[Drive, ...]:
         """The links that can be driven."""
-        other = Drive.B0 if self.kind is LoopKind.FOUR_BAR else Drive.SLIDER
+        other = Drive.SLIDER if self.kind is LoopKind.SLIDER_CRANK else Drive.B0
         return Drive.A0, other
+
+    @property
+    def lines(self) -> ComplexArray:
+        """The unit vectors (D, N) of the lines of couplers of inverted slider-cranks."""
+        along = self.moving_b - self.moving_a
+        return np.asarray(self.direction[:, None] * along / np.abs(along))
 
     def take(self, index: IndexArray | slice) -> Candidates:
         """Some of the designs, in the order of ``index``."""
@@ -98,7 +106,7 @@ class Candidates:
         rounding = 8.0 * UNIT_ROUNDOFF * (abs(shift) + size * np.abs(self.moving_b).max(axis=1))
         return replace(
             self,
-            direction=self.direction * (factor / size),
+            direction=self.direction * (1.0 if self.kind is LoopKind.INVERTED else factor / size),
             error=self.error * size + rounding,
             **changes,
         )

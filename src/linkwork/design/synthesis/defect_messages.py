@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 
@@ -116,7 +116,7 @@ class _Words:
 
     def _pivots(self) -> tuple[str, None]:
         pivots = {"A0": self.given.fixed_a[self.k]}
-        if self.given.direction[self.k] == 0:
+        if self.given.kind is not LoopKind.SLIDER_CRANK:
             pivots["B0"] = self.given.fixed_b[self.k]
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
         return f"fixed pivots {places} are not all in their region", None

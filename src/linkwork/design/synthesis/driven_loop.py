@@ -9,6 +9,10 @@ With the input φ (an angle) or s (a slider's displacement) the loop closes wher
 | four-bar driven at A0 | \\|A - B0\\|² | (b - c)², (b + c)² | (B - A) × (B - B0) |
 | slider-crank driven at A0 | distance of A from the line | -c, c | (B - A) · line |
 | slider-crank driven at B | \\|B - A0\\|² | (a - c)², (a + c)² | (A - B) × (A - A0) |
+| inverted slider-crank driven at A0 | \\|A - B0\\|² | h², ∞ | (B0 - A) · line |
+| inverted slider-crank driven at B0 | (A - A0) across the line | -a, a | (A - A0) · line |
+
+h is the distance of A from the line of the coupler, which slides through B0.
 
 A loop changes its side only at a limit, which is a dead point. Each limit that is reached cuts the
 circle of inputs around one of its poles φ0, φ0 + π: two limits leave two circuits, one limit one
@@ -63,6 +67,8 @@ class DrivenLoops:
         A bound of the errors of q and of its limits.
     cosine : tuple of (D,)
         c0, c1: the cosine of the transmission angle is c0 + c1 q.
+    offset : (D,)
+        h: for an inverted slider-crank driven at A0 the cosine is h/√q; else 0.
     """
 
     turns: bool
@@ -81,6 +87,7 @@ class DrivenLoops:
     sign_error: Array
     q_error: Array
     cosine: tuple[Array, Array]
+    offset: Array
 
     @property
     def is_free(self) -> BoolArray:
@@ -103,8 +110,8 @@ class DrivenLoops:
         c0, c1 = self.cosine
         return replace(self, cosine=(c0[index], c1[index]), **arrays)
 
-    def least_transmission(self, first: Array, last: Array) -> Array:
-        """A lower bound of min(μ, π - μ) between places (D,), (D,) [rad]."""
+    def extremes(self, first: Array, last: Array) -> Array:
+        """q where it may be least or largest between places (D,), (D,): (D, K)."""
         begin, end = np.minimum(first, last), np.maximum(first, last)
         places = [begin, end]
         for pole in (0.0, np.pi) if self.turns else (0.0,):
@@ -113,9 +120,18 @@ class DrivenLoops:
             margin = 4.0 * self.input_error
             inside = (ahead >= -margin) & (ahead <= end - begin + margin)
             places.append(np.where(inside, pole, begin))
+        return self.q(np.stack(places, axis=1))
+
+    def least_transmission(self, first: Array, last: Array) -> Array:
+        """A lower bound of min(μ, π - μ) between places (D,), (D,) [rad]."""
         c0, c1 = self.cosine
-        cosine = c0[:, None] + c1[:, None] * self.q(np.stack(places, axis=1))
-        largest = np.abs(cosine).max(axis=1) + np.abs(c1) * self.q_error
+        q = self.extremes(first, last)
+        # a link of no length has no transmission angle
+        with np.errstate(all="ignore"):
+            largest = np.abs(c0[:, None] + c1[:, None] * q).max(axis=1) + np.abs(c1) * self.q_error
+            if self.offset.any():
+                nearest = np.maximum(q.min(axis=1) - self.q_error, 0.0)
+                largest = np.maximum(largest, self.offset / np.sqrt(nearest))
         return np.asarray(np.arccos(np.clip(largest, 0.0, 1.0)))
 
     def q(self, place: Array) -> Array:
@@ -140,6 +156,8 @@ def driven_loops(given: Candidates, drive: Drive) -> DrivenLoops:
     """The loops of designs with one driven link."""
     if given.kind is LoopKind.FOUR_BAR:
         return _four_bars(given if drive is Drive.A0 else given.driven_at_b())
+    if given.kind is LoopKind.INVERTED:
+        return _inverted(given) if drive is Drive.A0 else _driven_blocks(given)
     return _slider_cranks(given) if drive is Drive.A0 else _driven_sliders(given)
 
 
@@ -172,6 +190,7 @@ def _four_bars(given: Candidates) -> DrivenLoops:
         sign_error=_PRODUCT * size * doubt,
         q_error=4.0 * _PRODUCT * size * doubt,
         cosine=cosine,
+        offset=np.zeros_like(a),
     )
 
 
@@ -200,9 +219,10 @@ def _slider_cranks(given: Candidates) -> DrivenLoops:
         limit_error=4.0 * doubt,
         side=dot(rod, given.direction[:, None]),
         half=cross(normal[:, None], crank),
-        sign_error=_PRODUCT * size * doubt,
+        sign_error=_PRODUCT * doubt,
         q_error=4.0 * doubt,
         cosine=cosine,
+        offset=np.zeros_like(a),
     )
 
 
@@ -237,6 +257,71 @@ def _driven_sliders(given: Candidates) -> DrivenLoops:
         sign_error=_PRODUCT * size * doubt,
         q_error=4.0 * _PRODUCT * size * doubt,
         cosine=cosine,
+        offset=np.zeros_like(a),
+    )
+
+
+def _inverted(given: Candidates) -> DrivenLoops:
+    crank = given.moving_a - given.fixed_a[:, None]
+    ground = given.fixed_b - given.fixed_a
+    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
+    a, g = np.abs(crank[:, 0]), np.abs(ground)
+    h = np.abs(cross(lines[:, 0], to_block[:, 0]))
+    size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
+    doubt = 2.0 * _doubt(given, size)
+    return DrivenLoops(
+        turns=True,
+        input=_phase(crank),
+        input_error=_angle_error(a, doubt),
+        origin=_phase(ground) + np.pi,
+        q0=a**2 + g**2,
+        q1=2.0 * a * g,
+        low=h**2,
+        high=np.full_like(h, np.inf),
+        # a block on an endless line limits one side only
+        upper=np.full_like(h, -np.inf),
+        lower=h - np.abs(a - g),
+        limit_error=4.0 * doubt,
+        side=size[:, None] * dot(lines, to_block),
+        half=cross(crank, ground[:, None]),
+        sign_error=_PRODUCT * size * doubt,
+        q_error=4.0 * _PRODUCT * size * doubt,
+        cosine=(np.zeros_like(h), np.zeros_like(h)),
+        # rounding alone makes an offset of zero positive
+        offset=h + doubt,
+    )
+
+
+def _driven_blocks(given: Candidates) -> DrivenLoops:
+    crank = given.moving_a - given.fixed_a[:, None]
+    ground = given.fixed_a - given.fixed_b
+    to_block, lines = given.fixed_b[:, None] - given.moving_a, given.lines
+    a, g = np.abs(crank[:, 0]), np.abs(ground)
+    # A is h to the right of the line, A0 is g cos(φ - φ0) to the right of its parallel through B0
+    h = cross(lines[:, 0], to_block[:, 0])
+    size = np.maximum(np.maximum(a, g), np.abs(to_block).max(axis=1))
+    doubt = 2.0 * _doubt(given, size)
+    toward = _phase(ground) + 0.5 * np.pi
+    with np.errstate(all="ignore"):
+        cosine = np.zeros_like(a), 1.0 / a
+    return DrivenLoops(
+        turns=True,
+        input=_phase(lines),
+        input_error=_angle_error(size, doubt),
+        origin=toward,
+        q0=-h,
+        q1=g,
+        low=-a,
+        high=a,
+        upper=g - h - a,
+        lower=g + h - a,
+        limit_error=4.0 * doubt,
+        side=dot(crank, lines),
+        half=cross(1j * ground[:, None], lines),
+        sign_error=_PRODUCT * doubt,
+        q_error=4.0 * doubt,
+        cosine=cosine,
+        offset=np.zeros_like(a),
     )
 
 

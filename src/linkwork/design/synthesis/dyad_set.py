@@ -8,12 +8,15 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
+from linkwork.design.synthesis.driven_loop import dot
 from linkwork.design.synthesis.dyads import KINDS, Dyads, Refusal
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
 __all__ = ["DyadSet", "PoseSet", "pair_dyads"]
 
 
+#: The mechanisms of a crank and a dyad of each of the KINDS.
+_KINDS = (LoopKind.FOUR_BAR, LoopKind.SLIDER_CRANK, LoopKind.INVERTED)
 #: Relative: pivots nearer to each other are one pivot.
 _ONE_PIVOT = 1e-9
 
@@ -138,6 +141,11 @@ class DyadSet:
             refusal=np.full(count, Refusal.NONE.code, dtype=np.int8),
         )
 
+    def inverted(self) -> DyadSet:
+        """RP dyads from the PR dyads of the inverted poses."""
+        kind = np.full(len(self), KINDS.index("RP"), dtype=np.int8)
+        return replace(self, kind=kind, moving=self.fixed, fixed=self.moving)
+
     def dyads(self) -> Iterator[tuple[str, complex, complex, complex, float, Refusal]]:
         """Kind, moving, fixed, normal, error and refusal of each."""
         for k in range(len(self)):
@@ -154,12 +162,11 @@ class DyadSet:
 def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candidates]:
     """All four-bars and slider-cranks that pairs of dyads of one task make.
 
-    Pairs with another line are no mechanism of these kinds, and pairs with a common pivot do not
-    move: both are left out. ``leading``: one of
-    the first so many dyads is in every pair, as its crank.
+    A crank with an RP dyad is an inverted slider-crank. Pairs without a crank are left out, and
+    pairs with a common pivot, which do not move. ``leading``: one of the first so many dyads is in
+    every pair, as its crank.
     """
     cranks = dyads.take(dyads.kind == 0)
-    sliders = dyads.take(dyads.kind == 1)
     found = []
     first, second = _pairs(cranks.task, cranks.task)
     later = (first < second) & (first < (leading or len(cranks)))
@@ -168,13 +175,15 @@ def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candida
     later &= _differ(cranks.moving, first, second) & _differ(cranks.fixed, first, second)
     if later.any():
         found.append(_made(cranks.take(first[later]), cranks.take(second[later]), poses))
-    first, second = _pairs(cranks.task, sliders.task)
-    led = first < (leading or len(cranks))
-    led &= np.abs(cranks.moving[first] - sliders.moving[second]) > _ONE_PIVOT * np.abs(
-        cranks.moving[first]
-    )
-    if led.any():
-        found.append(_made(cranks.take(first[led]), sliders.take(second[led]), poses))
+    # a block at the crank's own fixed pivot, or a slider at its moving pivot, does not move
+    for kind, pivots in ((1, "moving"), (2, "fixed")):
+        guided = dyads.take(dyads.kind == kind)
+        first, second = _pairs(cranks.task, guided.task)
+        own, other = getattr(cranks, pivots)[first], getattr(guided, pivots)[second]
+        led = first < (leading or len(cranks))
+        led &= np.abs(own - other) > _ONE_PIVOT * np.abs(own)
+        if led.any():
+            found.append(_made(cranks.take(first[led]), guided.take(second[led]), poses))
     return found
 
 
@@ -194,15 +203,24 @@ def _pairs(tasks: IndexArray, others: IndexArray) -> tuple[IndexArray, IndexArra
 
 def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
     d, e = poses.points[crank.task], poses.turns[crank.task]
-    sliding = bool(len(other) and other.kind[0] == 1)
+    kind = _KINDS[int(other.kind[0])]
+    # the normal is on the left of the direction
+    moving, direction = other.moving, -1j * other.normal
+    if kind is LoopKind.INVERTED:
+        # of the body's line: as far from the foot of A as the block comes, and to the same side
+        pin = (other.fixed[:, None] - d) / e - crank.moving[:, None]
+        reach = dot(direction[:, None], pin)
+        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
+        direction = direction * np.sign(reach)
+        away = dot(other.normal, moving - crank.moving) * other.normal + np.abs(reach) * direction
+        moving, direction = crank.moving + away, direction * np.abs(away) / away
     return Candidates(
-        kind=LoopKind.SLIDER_CRANK if sliding else LoopKind.FOUR_BAR,
+        kind=kind,
         fixed_a=crank.fixed,
         fixed_b=other.fixed,
-        # the normal is on the left of the direction
-        direction=-1j * other.normal,
+        direction=direction,
         moving_a=d + crank.moving[:, None] * e,
-        moving_b=d + other.moving[:, None] * e,
+        moving_b=d + moving[:, None] * e,
         guided=d,
         error=np.maximum(crank.error, other.error),
         miss=np.zeros(len(crank)),

@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import dot
+from linkwork.design.synthesis.driven_loop import cross, dot
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
@@ -22,6 +22,7 @@ __all__ = ["Design", "linkage_of"]
 
 _STEP = math.pi / 180.0  # of an angle [rad]
 _STEPS = 100  # of a displacement
+_ON_LINE = 1e-9  # of a coupler's length: a pivot on its line
 _SAME_TURN = 1e-12  # relative: the rounding of a few angles
 _GUIDE = "slide"
 
@@ -36,7 +37,8 @@ class Design:
     drive : Drive
     points : Mapping[str, complex]
         A0, B0, A, B, P of a four-bar; A0, S, T, A, B, P of a slider-crank, with S, T on the line of
-        the slider, S where its displacement is zero [length].
+        the slider, S where its displacement is zero; A0, B0, A, B, P of an inverted one, with B on
+        the coupler's line, and C, the foot of A, if A is not on it [length].
     inputs : tuple of float
         The input at the positions, unwrapped [rad or length].
     start, stop : float
@@ -79,7 +81,7 @@ class Design:
         backward = []
         if zero is not None:
             sides = (Drive.A0, "A", "A0", zero[0]), (Drive.B0, "B", "B0", zero[1])
-            pinned = sides[:1] if given.kind is LoopKind.SLIDER_CRANK else sides
+            pinned = sides if given.kind is LoopKind.FOUR_BAR else sides[:1]
             for side, moving, fixed, angle in pinned:
                 if ((points[moving] - points[fixed]) * np.exp(-1j * angle)).real < 0:
                     backward.append(side)
@@ -88,6 +90,12 @@ class Design:
             along = dot(direction, given.moving_b[k] - line)
             reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
             points |= {"S": line, "T": line + reach * direction}
+        if given.kind is LoopKind.INVERTED:
+            # the foot of A on the line of the coupler, if A is not on it
+            line = given.lines[k, 0]
+            away = cross(line, points["B"] - points["A"])
+            if abs(away) > _ON_LINE * abs(points["B"] - points["A"]):
+                points["C"] = points["A"] + 1j * away * line
         if drive is not Drive.SLIDER:
             # measured as the file measures it, and in the first turn to begin with
             shift = np.pi if drive in backward else 0.0
@@ -116,6 +124,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         crank, rocker = rocker, crank
     guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
     coupler = ("A", "B") if guided != "P" else ("A", "B", "P")
+    foot = ("C",) if "C" in z else ()
     bars = [crank, *combinations(coupler, 2)]
     links: dict[str, tuple[str, ...]] = {
         GROUND: ("A0", "B0"),
@@ -126,6 +135,17 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     sliders: tuple[Slider, ...] = ()
     if design.kind is LoopKind.FOUR_BAR:
         bars.append(rocker)
+    elif design.kind is LoopKind.INVERTED:
+        del links["rocker"]
+        links |= {
+            "crank": _bar(design, Drive.A0),
+            "coupler": (*coupler, *foot),
+            "block": ("B0",),
+        }
+        bars = [_bar(design, Drive.A0), *combinations(coupler, 2)]
+        bars += [(end, "C") for end in "AB" if foot]
+        line = ("C" if foot else "A", "B")
+        sliders = (Slider(name=_GUIDE, link="block", points=("B0",), on="coupler", line=line),)
     else:
         del links["rocker"]
         links |= {GROUND: ("A0", "S", "T"), "block": ("B",)}
@@ -164,4 +184,7 @@ def _input(design: Design, angle: AngleUnit) -> Input:
     if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):
         stop = start + math.copysign(angle.turn, span)
     # so many equal steps that the last row is the last position
-    return Input(link="crank", start=start, stop=stop, step=(stop - start) / count)
+    swivels = design.kind is LoopKind.INVERTED and design.drive is Drive.B0
+    return Input(
+        link="block" if swivels else "crank", start=start, stop=stop, step=(stop - start) / count
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import DrivenLoops, dot
+from linkwork.design.synthesis.driven_loop import DrivenLoops, cross, dot
 from linkwork.foundation.arrays import Array, ComplexArray
 
 __all__ = ["pivots_at"]
@@ -28,6 +28,8 @@ def pivots_at(
     A, B, P : (D, K) complex
         NaN where the loop cannot be closed.
     """
+    if given.kind is LoopKind.INVERTED:
+        return _inverted_at(given, drive, loops, place)
     other = given.driven_at_b() if drive is Drive.B0 else given
     side = np.sign(loops.side[:, :1])
     first, second = other.moving_a[:, :1], other.moving_b[:, :1]
@@ -51,6 +53,30 @@ def pivots_at(
     body = (other.guided[:, :1] - first) / (second - first)
     p = a + body * (b - a)
     return (b, a, p) if drive is Drive.B0 else (a, b, p)
+
+
+def _inverted_at(
+    given: Candidates, drive: Drive, loops: DrivenLoops, place: Array
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """The same of inverted slider-cranks."""
+    side = np.sign(loops.side[:, :1])
+    first, block = given.moving_a[:, :1], given.fixed_b[:, None]
+    line, fixed = given.lines[:, :1], given.fixed_a[:, None]
+    phase = np.exp(1j * (place + loops.origin[:, None]))
+    with np.errstate(invalid="ignore"):
+        if drive is Drive.A0:
+            a = fixed + np.abs(first - fixed) * phase
+            # B0 - A = (s + ih) times the line
+            base, h = block - a, cross(line, block - first)
+            along = base / (side * np.sqrt(base.real**2 + base.imag**2 - h**2) + 1j * h)
+        else:
+            along = phase
+            across = loops.q(place)
+            reach = side * np.sqrt(np.abs(first - fixed) ** 2 - across**2)
+            a = fixed + (reach + 1j * across) * along
+    b = a + (given.moving_b[:, :1] - first) / line * along
+    p = a + (given.guided[:, :1] - first) / line * along
+    return a, b, p
 
 
 def _closed(base: ComplexArray, one: Array, other: Array, side: Array) -> ComplexArray:

@@ -17,6 +17,7 @@ from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet, pair_dyads
 from linkwork.design.synthesis.dyads import FIVE, Refusal, solve_five_poses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.pose_families import (
+    inverted,
     on_lines,
     spread_pivots,
     through_fixed,
@@ -159,7 +160,11 @@ def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> 
     if count == 4:
         return _through_four(task, fixed, moving, points, angles)
     spread = spread_pivots(points, wishes, _PIVOTS[count])
-    free = [through_fixed(spread, points, turns), _guided(points, turns, spread)]
+    free = [
+        through_fixed(spread, points, turns),
+        _guided(points, turns, (spread - points[0]) * turns[0].conj()),
+        _guided(*inverted(points, turns), spread).inverted(),
+    ]
     if task.positions[0].input is not None:
         inputs = np.array([position.input or 0.0 for position in task.positions])
         pivots = fixed[:1] if fixed.size else spread
@@ -183,11 +188,11 @@ def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> 
     )
 
 
-def _guided(points: ComplexArray, turns: ComplexArray, spread: ComplexArray) -> DyadSet:
-    """PR dyads: for three poses one for each direction, for two poses one for each pivot."""
+def _guided(points: ComplexArray, turns: ComplexArray, pivots: ComplexArray) -> DyadSet:
+    """PR dyads: for three poses one for each direction, for two one for each moving pivot (K,)."""
     if len(points) == 2:
-        return through_line((spread - points[0]) * turns[0].conj(), points, turns)
-    directions = np.linspace(0.0, np.pi, len(spread), endpoint=False)
+        return through_line(pivots, points, turns)
+    directions = np.linspace(0.0, np.pi, len(pivots), endpoint=False)
     return on_lines(np.exp(1j * directions), points, turns)
 
 

@@ -69,7 +69,8 @@ def _gaps(
     """The smallest distances of links from circles, at one place of each design, (D,)."""
     a, b, p = (z[:, 0] for z in pivots_at(given, drive, loops, place[:, None]))
     ends: list[tuple[ComplexArray, ComplexArray]] = [(given.fixed_a, a), (a, b), (a, p), (b, p)]
-    if given.kind is LoopKind.FOUR_BAR:
+    if given.kind is not LoopKind.SLIDER_CRANK:
+        # a rocker, or the coupler from B to the block
         ends.append((given.fixed_b, b))
     gaps = [
         distances_to_segments(np.asarray(x + 1j * y), start, end) - radius
@@ -91,5 +92,22 @@ def _fastest(
         # the coupler turns fastest where the driving force is farthest from the line of the rocker
         lever = 1.0 if drive is Drive.SLIDER else pivot
         turning = lever / (np.abs(b - a) * sine)
+        if given.kind is LoopKind.INVERTED:
+            pivot, turning = _fastest_inverted(given, drive, loops, first, last)
+            a, b = given.moving_a[:, 0], given.moving_b[:, 0]
         fastest = pivot + np.maximum(np.abs(b - a), np.abs(p - a)) * turning
     return np.where(np.isfinite(fastest), fastest, np.inf)
+
+
+def _fastest_inverted(
+    given: Candidates, drive: Drive, loops: DrivenLoops, first: Array, last: Array
+) -> tuple[Array, Array]:
+    """Bounds of the speed of A, and of the turning of the coupler, of inverted slider-cranks."""
+    crank = np.abs(given.moving_a[:, 0] - given.fixed_a)
+    sine = np.sin(loops.least_transmission(first, last))
+    if drive is Drive.A0:
+        # A moves across the line by at most its speed, at least q sin μ from the block
+        nearest = np.sqrt(np.maximum(loops.extremes(first, last).min(axis=1) - loops.q_error, 0.0))
+        return crank, crank / (nearest * sine)
+    ground = np.abs(given.fixed_b - given.fixed_a)
+    return (crank + ground) / sine, np.ones_like(crank)

@@ -11,6 +11,7 @@ from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 __all__ = [
+    "inverted",
     "on_lines",
     "spread_pivots",
     "through_fixed",
@@ -133,3 +134,8 @@ def through_line(moving: ComplexArray, points: ComplexArray, turns: ComplexArray
         normals = 1j * along / np.abs(along)
     error = _LOSS * (np.abs(moving) + np.abs(points).max())
     return DyadSet.made(1, moving, images[:, 0], np.where(along != 0, error, np.inf), normals)
+
+
+def inverted(points: ComplexArray, turns: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """The ground's poses as the body sees them: there an RP dyad is a PR dyad."""
+    return np.asarray(-points * turns.conj()), turns.conj()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
+from linkwork.design.synthesis.driven_loop import cross
 from linkwork.design.synthesis.dyads import FIVE
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
@@ -101,6 +102,11 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
             ways = [base * (along + 1j * s * across) / square for s in (1.0, -1.0)]
         else:
             u = given.direction[:, None]
+            if given.kind is LoopKind.INVERTED:
+                # A keeps its distance from the line through the block
+                u = given.lines[:, :1] * turns
+                h = cross(u[:, :1], given.fixed_b[:, None] - given.moving_a[:, :1])
+                centre = given.fixed_b[:, None] - 1j * h * u
             away = (centre - given.fixed_a[:, None]) * np.conj(u)
             reach = np.sqrt(crank**2 - away.imag**2)
             ways = [(s * reach + 1j * away.imag) * u for s in (1.0, -1.0)]

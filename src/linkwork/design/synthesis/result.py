@@ -132,6 +132,11 @@ class SynthesizedDesign:
     delivered: bool
     score: float
 
+    def __repr__(self) -> str:
+        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        kind, drive = self.group.given.kind.value, self.drive.value
+        return f"<SynthesizedDesign {self.number}: {kind} driven at {drive}, {found}>"
+
     @property
     def drive(self) -> Drive:
         """The driven link."""

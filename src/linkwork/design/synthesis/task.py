@@ -25,7 +25,7 @@ _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
-MECHANISMS = ("four-bar", "slider-crank")
+MECHANISMS = ("four-bar", "slider-crank", "inverted-slider-crank")
 
 Point = tuple[float, float]
 _Item = TypeVar("_Item")
@@ -118,7 +118,7 @@ class Task:
         Unit of lengths.
     angle : AngleUnit
     mechanisms : tuple of str
-        The kinds of mechanisms wanted: four-bar, slider-crank.
+        The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too.
     positions : tuple of PrecisionPosition
         In order of travel.
     given : Given
@@ -172,6 +172,8 @@ class Task:
             if name not in MECHANISMS and self.kind != "improve":
                 known = " or ".join(f'"{known}"' for known in MECHANISMS)
                 yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
+            if name == MECHANISMS[2] and self.kind != "motion" and self.mechanisms != MECHANISMS:
+                yield ("mechanism", k), "is made from poses only: leave it out"
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:
             yield ("mechanism",), 'points are solved for the "four-bar" only'

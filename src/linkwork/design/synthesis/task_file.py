@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.plain_numbers import as_told
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
 from linkwork.textfile.lines import Lines
@@ -34,6 +35,8 @@ from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.textfile.writer import write_tables
 
 __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
+
+_LARGEST = 1e12
 
 
 def read_task(path: Path | str) -> Task:
@@ -104,6 +107,7 @@ def _plain(given: Any) -> Any:
 
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
+    _check_numbers(content)
     curve = read_curve(content["curve"], folder) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
     return Task(
@@ -145,6 +149,31 @@ def _check_tables(content: Mapping[str, Any]) -> None:
     ]
     if problems:
         raise MechanismError(problems, "the task")
+
+
+def _check_numbers(content: Mapping[str, Any]) -> None:
+    """Refuse numbers whose powers are beyond floating point."""
+    problems = [
+        Problem(key=key, message=f"{as_told(number)} is beyond ±1e12: choose a larger unit")
+        for key, number in _numbers(content)
+        if abs(number) > _LARGEST
+    ]
+    if problems:
+        raise MechanismError(problems, "the task")
+
+
+def _numbers(
+    entry: Any, key: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], float]]:
+    match entry:
+        case Mapping():
+            for name, below in entry.items():
+                yield from _numbers(below, (*key, name))
+        case list():
+            for k, below in enumerate(entry):
+                yield from _numbers(below, (*key, k))
+        case int() | float():
+            yield key, entry
 
 
 def _points(listed: list[list[float]]) -> tuple[Any, ...]:

@@ -228,7 +228,7 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            'The kinds of mechanisms: "four-bar", "slider-crank"',
+            'The kinds of mechanisms: "four-bar", "slider-crank", "inverted-slider-crank"',
         ),
         _POSITIONS,
         _GIVEN,

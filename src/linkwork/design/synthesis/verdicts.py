@@ -127,7 +127,14 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
 
 
 def _lengths(given: Candidates) -> Array:
-    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 or 4)."""
+    """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
+
+    The coupler of an inverted slider-crank is as long as its farthest position needs.
+    """
+    if given.kind is LoopKind.INVERTED:
+        reach = np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)
+        ground = np.abs(given.fixed_b - given.fixed_a)
+        return np.stack([np.abs(given.moving_a[:, 0] - given.fixed_a), ground, reach], axis=1)
     lengths = [given.moving_a[:, 0] - given.fixed_a, given.moving_b[:, 0] - given.moving_a[:, 0]]
     if given.kind is LoopKind.FOUR_BAR:
         lengths += [given.moving_b[:, 0] - given.fixed_b, given.fixed_b - given.fixed_a]
@@ -137,7 +144,7 @@ def _lengths(given: Candidates) -> Array:
 def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
     """Whether all fixed pivots are in the region or, to their errors, on its border."""
     pivots = [given.fixed_a]
-    if given.kind is LoopKind.FOUR_BAR:
+    if given.kind is not LoopKind.SLIDER_CRANK:
         pivots.append(given.fixed_b)
     inside = [wishes.within_region(pivot, given.error) for pivot in pivots]
     return np.asarray(np.all(inside, axis=0))

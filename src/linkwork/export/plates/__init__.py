@@ -1,0 +1,1 @@
+"""Plates to cut or print: outlines, layers, bill of materials, and files of them."""

@@ -1,0 +1,191 @@
+"""Which plates and pins collide, and the proof that those of one layer do not."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from linkwork.export.plates.layer_order import Conflict
+from linkwork.export.plates.motion_boxes import BodyPoses, Boxes, divided
+from linkwork.export.plates.packages import shapely
+from linkwork.export.plates.plate import Pin, Plate
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.motion.model import Model
+
+__all__ = ["Collisions", "Proved", "prove_clear"]
+
+_HALVINGS = 24  # of a box, at most
+_MOST_BOXES = 60_000  # that a proof may take in all
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proved:
+    """``open``: intervals of the leading input [internal unit] without a proof; ``hit``: parts
+    that touch in a position between the rows.
+    """
+
+    open: tuple[tuple[float, float], ...]
+    hit: frozenset[Conflict]
+
+
+class Collisions:
+    """Distances of the parts of a stack in positions.
+
+    Parameters
+    ----------
+    plates : sequence of Plate
+    pins : sequence of Pin
+    spacer : float
+        Outer radius of spacers on pins [mm].
+    """
+
+    def __init__(self, plates: Sequence[Plate], pins: Sequence[Pin], spacer: float) -> None:
+        self.plates, self.pins, self.spacer = plates, pins, spacer
+
+    def pairs(self) -> Iterator[Conflict]:
+        """All pairs of parts that may collide: plates, pins and plates without their hole, pins."""
+        count = len(self.plates)
+        yield from itertools.combinations(range(1, count), 2)
+        for p, pin in enumerate(self.pins):
+            others = (k for k in range(1, count) if self.plates[k].name not in pin.plates)
+            yield from ((-1 - p, k) for k in others)
+        yield from ((-1 - p, -1 - q) for p, q in itertools.combinations(range(len(self.pins)), 2))
+
+    def name(self, part: int) -> str:
+        """The name of a part in messages."""
+        return self.plates[part].name if part >= 0 else f"pin {self.pins[-1 - part].name}"
+
+    @cached_property
+    def _shapes(self) -> dict[int, tuple[str, ComplexArray, float]]:
+        """Body, core and radius of every part."""
+        own = {k: (x.body, x.core, x.radius) for k, x in enumerate(self.plates)}
+        for p, pin in enumerate(self.pins):
+            own[-1 - p] = (pin.body, np.array([pin.place]), self.spacer)
+        return own
+
+    @cached_property
+    def _reach(self) -> dict[int, float]:
+        """How far parts extend from the origin of their body [mm]."""
+        return {k: float(np.abs(z).max()) + r for k, (_, z, r) in self._shapes.items()}
+
+    def distances(
+        self, pairs: Iterable[Conflict], poses: Mapping[str, tuple[ComplexArray, ComplexArray]]
+    ) -> Iterator[tuple[Conflict, Array]]:
+        """The distance of each pair in all positions [mm], (B,); negative where they overlap."""
+        made: dict[int, Any] = {}
+        for a, b in pairs:
+            for part in (a, b):
+                if part not in made:
+                    body, core, _ = self._shapes[part]
+                    origin, turn = poses[body]
+                    made[part] = _geometries(origin[:, None] + turn[:, None] * core)
+            radii = self._shapes[a][2] + self._shapes[b][2]
+            yield (a, b), shapely().distance(made[a], made[b]) - radii
+
+    def conflicts(
+        self,
+        poses: Mapping[str, tuple[ComplexArray, ComplexArray]],
+        gap: float,
+        progress: Callable[[float], None] | None = None,
+    ) -> frozenset[Conflict]:
+        """Pairs nearer than the gap in one of the positions."""
+        found, every = set(), list(self.pairs())
+        for k, (pair, distance) in enumerate(self.distances(every, poses), start=1):
+            if distance.min() < gap:
+                found.add(pair)
+            if progress is not None:
+                progress(k / len(every))
+        return frozenset(found)
+
+    def meeting(self, layers: Sequence[int]) -> list[Conflict]:
+        """The pairs that share a layer."""
+        spans = [
+            sorted(layers[k] for k, plate in enumerate(self.plates) if plate.name in pin.plates)
+            for pin in self.pins
+        ]
+
+        def meet(a: int, b: int) -> bool:
+            if a >= 0:
+                return layers[a] == layers[b]
+            low, high = spans[-1 - a][0], spans[-1 - a][-1]
+            if b >= 0:
+                return low < layers[b] < high
+            return max(low, spans[-1 - b][0]) + 1 < min(high, spans[-1 - b][-1])
+
+        return [(a, b) for a, b in self.pairs() if meet(a, b)]
+
+    def moves(self, spread: Mapping[str, tuple[Array, Array]], part: int) -> Array:
+        """How far any point of a part moves at most in boxes [mm], (B,)."""
+        moved, turned = spread[self._shapes[part][0]]
+        return moved + self._reach[part] * turned
+
+
+def _geometries(z: ComplexArray) -> Any:
+    """Points, lines or polygons with corners (B, n)."""
+    coordinates = np.stack([z.real, z.imag], axis=-1)
+    if z.shape[1] == 1:
+        return shapely().points(coordinates[:, 0])
+    make = shapely().linestrings if z.shape[1] == 2 else shapely().polygons
+    return make(coordinates)
+
+
+def prove_clear(
+    model: Model,
+    poses: BodyPoses,
+    collisions: Collisions,
+    layers: Sequence[int],
+    boxes: Boxes,
+    slots: Callable[[Boxes], BoolArray],
+    progress: Callable[[float], None] | None = None,
+) -> Proved:
+    """Prove that parts that share a layer touch in no position of the boxes.
+
+    Parameters
+    ----------
+    model : Model
+    layers : sequence of int
+        By plate.
+    boxes : Boxes
+        Of all positions.
+    slots : callable
+        Whether the pins of slots stay inside them in boxes, (B,).
+
+    Notes
+    -----
+    Parts stay apart in a box if their distance in its middle exceeds what both can move. A box
+    in which they may not is divided, and those are that come of it.
+    """
+    pairs, lead = collisions.meeting(layers), boxes.lead
+    column = (model.untimed or model).compiled.solver.unknowns + lead
+    open_: list[tuple[float, float]] = []
+    hit: set[Conflict] = set()
+    taken = 0
+    for level in range(_HALVINGS):
+        clear = boxes.holds & slots(boxes)
+        spread = poses.spread(boxes)
+        moves = {part: collisions.moves(spread, part) for pair in pairs for part in pair}
+        for pair, distance in collisions.distances(pairs, poses.of(boxes.v)):
+            if (distance[boxes.known] <= 0.0).any():
+                hit.add(pair)
+            clear &= distance > moves[pair[0]] + moves[pair[1]]
+        taken += len(boxes.v)
+        rest = boxes.take(np.flatnonzero(~clear))
+        last = level == _HALVINGS - 1 or taken + 2 * len(rest.v) > _MOST_BOXES
+        wide = np.isfinite(rest.half).all(axis=1) & (rest.half > 0.0).any(axis=1)
+        useful = rest.known & wide & (not last and not hit)
+        left = rest.take(np.flatnonzero(~useful))
+        own, half = left.v[:, column], left.half[:, lead]
+        open_ += zip((own - half).tolist(), (own + half).tolist(), strict=True)
+        boxes = rest.take(np.flatnonzero(useful))
+        if not len(boxes.v):
+            break
+        boxes = divided(model, boxes)
+        if progress is not None:
+            progress(1.0 - 0.5 ** math.log2(2 + level))
+    return Proved(open=tuple(open_), hit=frozenset(hit))

@@ -1,0 +1,67 @@
+"""A stack of plates as a file, in the format of its suffix."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwork.export.plates.dxf import dxf_of
+from linkwork.export.plates.placing import assembled, in_rows
+from linkwork.export.plates.plate import PlateStack
+from linkwork.export.plates.solids import mesh_of, stl_of, three_mf_of
+from linkwork.export.plates.step import step_of
+from linkwork.export.plates.svg import svg_of
+from linkwork.foundation.errors import InputError
+
+__all__ = ["check_plate_file", "plates_of"]
+
+_FORMATS = (".dxf", ".svg", ".stl", ".3mf", ".step")
+
+
+def check_plate_file(file: Path) -> str:
+    """The suffix of a file of plates.
+
+    Raises
+    ------
+    InputError
+        If there is no such format.
+    """
+    suffix = file.suffix.lower()
+    if suffix not in _FORMATS:
+        known = ", ".join(_FORMATS)
+        raise InputError(f'cannot write "{file}": the suffix of plates is one of {known}')
+    return suffix
+
+
+def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:
+    """The content of a file of plates.
+
+    Parameters
+    ----------
+    stack : PlateStack
+    file : Path
+        Its suffix selects the format.
+    layout : bool
+        Whether plates are side by side on a sheet; otherwise they are assembled.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, or a plate is wider than the sheet.
+    MissingPackageError
+        If the package that writes the format is not installed.
+    """
+    suffix = check_plate_file(file)
+    placed = in_rows(stack) if layout else assembled(stack)
+    thickness = stack.sizes.thickness
+    match suffix:
+        case ".svg":
+            return svg_of(stack, placed, filled=not layout).encode()
+        case ".dxf":
+            return dxf_of(stack, placed).encode()
+        case ".step":
+            return step_of(stack.mechanism, placed, thickness)
+    meshes = [mesh_of(item, thickness) for item in placed]
+    if suffix == ".stl":
+        return stl_of(meshes)
+    names = [item.name for item in placed]
+    return three_mf_of(list(zip(names, meshes, strict=True)))

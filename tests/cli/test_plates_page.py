@@ -1,0 +1,23 @@
+"""``linkwork plates``: the bill of materials on the page, as CSV and as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.cli.conftest import Run
+
+
+def test_the_command_writes_plates_with_their_bill(run: Run, tmp_path: Path) -> None:
+    out, bill = tmp_path / "a.dxf", tmp_path / "bill.csv"
+    page = run("plates", "slider-crank", "-o", str(out), "--bill", str(bill)).stdout
+    assert "No two parts touch: proved for every position of the table." in page
+    assert max(map(len, page.replace(str(tmp_path), "").splitlines())) <= 80
+    lines = bill.read_text("utf-8").splitlines()
+    assert lines[0] == "kind,name,lowest layer,highest layer,length,diameter,area,holes"
+    assert out.exists()
+    data = json.loads(run("plates", "four-bar", "-o", str(out), "--json").stdout)
+    assert data["proved"]
+    assert {row["name"]: row["lowest layer"] for row in data["bill"] if row["kind"] == "plate"} == {
+        "base": 0, "crank": 1, "coupler": 2, "rocker": 1,
+    }  # fmt: skip

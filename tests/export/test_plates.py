@@ -1,0 +1,261 @@
+"""Plates: holes where the links have them, closed outlines and solids, free layers."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import xml.etree.ElementTree as Tree
+import zipfile
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.export.plates.construction import Construction
+from linkwork.export.plates.dxf import dxf_of
+from linkwork.export.plates.layer_order import Conflict, find_layers, obstacles
+from linkwork.export.plates.motion_boxes import BodyPoses, boxes_of
+from linkwork.export.plates.outline import Outline, circle, rounded
+from linkwork.export.plates.placing import assembled, box, in_rows
+from linkwork.export.plates.plate_file import plates_of
+from linkwork.foundation.errors import InputError
+from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
+from tests.library_mechanisms import read_example
+
+_SUFFIXES = (".dxf", ".svg", ".stl", ".3mf")
+_SOME = ("four-bar", "crank-shaper", "rapier-drive-links")
+
+
+@pytest.mark.parametrize("name", _SOME)
+def test_plates_keep_the_dimensions_and_do_not_touch(name: str) -> None:
+    mechanism = read_example(name)
+    stack, motion = made(mechanism)
+    text = dxf_of(stack, assembled(stack))
+    assert hole_error(mechanism, stack, text) <= 1e-9  # mm
+    assert simple(stack)
+    assert not overlaps(mechanism, stack, motion)
+    assert stack.proved
+
+
+def test_plates_forced_into_one_layer_are_seen_to_touch() -> None:
+    mechanism = read_example("four-bar")
+    stack, motion = made(mechanism)
+    forced = dict(stack.layer) | {"coupler": 1}
+    object.__setattr__(stack, "layer", forced)
+    assert overlaps(mechanism, stack, motion) == ["crank and coupler", "coupler and rocker"]
+
+
+def test_solids_are_closed_and_have_the_volume_of_their_outlines() -> None:
+    stack, _ = made(read_example("crank-shaper"), kerf=0.2)
+    # arcs are polygons of 128 sides a turn
+    assert max(solid_error(stack, item) for item in assembled(stack)) <= 1e-3
+
+
+def test_areas_are_those_of_circles_and_bars() -> None:
+    assert circle(3 + 4j, 2.0).area == pytest.approx(np.pi * 4.0, rel=1e-15)
+    bar = rounded([0j, 30 + 40j], 5.0)
+    assert bar.area == pytest.approx(np.pi * 25.0 + 500.0, rel=1e-15)
+    # Steiner: area + perimeter r + pi r²
+    triangle = rounded([0j, 30 + 0j, 40j], 5.0)
+    assert triangle.area == pytest.approx(600.0 + 120.0 * 5.0 + np.pi * 25.0, rel=1e-14)
+    assert triangle.grown(1.0).area == pytest.approx(600.0 + 120.0 * 6.0 + np.pi * 36.0, rel=1e-14)
+    square = Outline(corners=np.array([0, 2, 2 + 2j, 2j]), bulges=np.zeros(4))
+    assert square.grown(1.0).area == pytest.approx(16.0, rel=1e-15)
+
+
+def test_half_the_kerf_goes_outside_outlines_and_inside_holes() -> None:
+    stack, _ = made(read_example("four-bar"))
+    crank = next(plate for plate in stack.plates if plate.name == "crank")
+    outline, hole, *_ = crank.cut(0.5)
+    found = hole.as_circle
+    assert found is not None
+    assert found[1] == pytest.approx(stack.sizes.hole / 2.0 - 0.25, rel=1e-15)
+    grown = rounded(crank.core, stack.sizes.width / 2.0 + 0.25)
+    assert outline.area == pytest.approx(grown.area, rel=1e-14)
+
+
+def test_boxes_hold_all_positions_between_the_rows() -> None:
+    mechanism = read_example("crank-shaper")
+    model, motion = mechanism.model, mechanism.sweep(step=4)
+    boxes = boxes_of(model, motion)
+    poses = BodyPoses(model, ["ground", "crank", "lever", "link", "ram"], 1.0)
+    assert boxes.holds.all()
+    fine = mechanism.sweep(step=0.5)
+    wanted, spread, middle = (
+        poses.of(boxes_of(model, fine).v),
+        poses.spread(boxes),
+        poses.of(boxes.v),
+    )
+    x, fine_x = motion["crank"], fine["crank"]
+    for row in range(1, len(x) - 1):
+        near = np.abs(fine_x - x[row]) <= 2.0
+        for body, (origin, turn) in middle.items():
+            moved, turned = spread[body]
+            away = np.abs(wanted[body][0][near] - origin[row])
+            bent = np.abs(np.angle(wanted[body][1][near] / turn[row]))
+            assert away.max() <= moved[row] + 1e-9
+            assert bent.max() <= turned[row] + 1e-12
+            # bounds, but no more than a few times what moves
+            assert moved[row] <= 4.0 * away.max() + 1e-6
+
+
+def _clear(layers: tuple[int, ...], pins: list[frozenset[int]], conflicts: list[Conflict]) -> bool:
+    """The conditions of layers, spelled out."""
+
+    def span(part: int) -> tuple[int, int]:
+        if part >= 0:
+            return layers[part] - 1, layers[part] + 1
+        own = [layers[k] for k in pins[-1 - part]]
+        return min(own), max(own)
+
+    def meet(a: int, b: int) -> bool:
+        (low, high), (below, above) = span(a), span(b)
+        return bool(set(range(low + 1, high)) & set(range(below + 1, above)))
+
+    return not any(meet(a, b) for a, b in conflicts)
+
+
+def test_the_search_finds_an_order_exactly_where_one_exists() -> None:
+    chance = random.Random(5)
+    seen = set()
+    for _ in range(150):
+        plates = chance.randint(2, 5)
+        pins = [
+            frozenset(chance.sample(range(plates), chance.randint(2, min(3, plates))))
+            for _ in range(chance.randint(1, 3))
+        ]
+        parts = [*range(1, plates), *(-1 - k for k in range(len(pins)))]
+        pairs = [
+            (a, b) for a, b in itertools.combinations(parts, 2)
+            if (a >= 0 or a < 0) and not (b < 0 <= a and a in pins[-1 - b])
+        ]  # fmt: skip
+        conflicts = [pair for pair in pairs if chance.random() < 0.7]
+        found = find_layers(plates, pins, conflicts)
+        orders = itertools.product(range(1, plates), repeat=plates - 1)
+        exists = any(_clear((0, *order), pins, conflicts) for order in orders)
+        assert (found.layers is not None) == exists
+        assert found.complete
+        seen.add(exists)
+        if found.layers is not None:
+            assert _clear(found.layers, pins, conflicts)
+        else:
+            for conflict in (needed := obstacles(plates, pins, conflicts)):
+                fewer = [own for own in needed if own != conflict]
+                assert find_layers(plates, pins, fewer).layers is not None
+    assert seen == {True, False}
+
+
+def test_an_order_that_does_not_exist_is_refused_with_the_parts_in_the_way() -> None:
+    with pytest.raises(InputError, match=r"no order .* pin O4 and crank.* crank and driven"):
+        made(read_example("drag-link"))
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("rapier-drive", "given by equations: plates need points and links"),
+        ("curved-slot", r'"slot" \(curve\) cannot be made of plates'),
+        ("excavator", r'"boom_ram" \(cylinder\) cannot be made of plates'),
+        ("klann-leg", '"stride" cannot be converted to millimetres'),
+        ("scott-russell", r"the openings O and s of plate \"base\" overlap"),
+    ],
+)
+def test_what_cannot_be_made_is_refused_by_name(name: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        made(read_example(name))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "message"),
+    [
+        ({"width": 3.0, "pin": 4.0}, "holes of 4.1 mm do not fit into bars of 3 mm"),
+        ({"kerf": -0.1}, "kerf must be zero or more, got -0.1"),
+        ({"pin": 0.0}, "pin must be positive, got 0"),
+        ({"kerf": 40.0}, "a kerf of 40 mm leaves nothing of holes"),
+        ({"sheet": 20.0}, "a sheet of 20 mm is too narrow: the widest plate needs"),
+    ],
+)
+def test_sizes_that_do_not_fit_are_refused(sizes: dict[str, float], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        in_rows(made(read_example("four-bar"), **sizes)[0])
+
+
+def test_a_slot_is_as_long_as_the_stroke_and_the_guide_need() -> None:
+    mechanism = read_example("slider-crank")
+    stack, motion = made(mechanism)
+    base = stack.plates[0]
+    slot = next(own.outline for own in base.openings if own.name == "d")
+    low, high = box([slot])
+    stroke = float(np.ptp(motion["d"]))
+    sizes = stack.sizes
+    wanted = stroke + 2.0 * sizes.width + 2.0 * sizes.play + sizes.hole
+    assert (high - low).real == pytest.approx(wanted, rel=1e-9)
+
+
+def test_sheets_do_not_overlap() -> None:
+    stack, _ = made(read_example("jansen-leg"), kerf=0.3)
+    boxes = [box(item.curves) for item in in_rows(stack)]
+    for (low, high), (below, above) in itertools.combinations(boxes, 2):
+        apart = (
+            low.real > above.real or high.real < below.real
+            or low.imag > above.imag or high.imag < below.imag
+        )  # fmt: skip
+        assert apart
+
+
+def test_the_same_plates_are_the_same_bytes(tmp_path: Path) -> None:
+    stack, _ = made(read_example("four-bar"), labels=True)
+    again, _ = made(read_example("four-bar"), labels=True)
+    for suffix in _SUFFIXES:
+        file = tmp_path / f"plates{suffix}"
+        assert plates_of(stack, file) == plates_of(again, file)
+        assert plates_of(stack, file, layout=True) != plates_of(stack, file)
+
+
+def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
+    mechanism = read_example("four-bar")
+    options = lw.PlateOptions(labels=True)
+    for suffix in _SUFFIXES:
+        mechanism.to_plates(tmp_path / f"plates{suffix}", layout=True, options=options)
+    trimesh = import_module("trimesh")
+    solids = trimesh.load(tmp_path / "plates.stl").split()
+    assert len(solids) == 4
+    assert all(solid.is_watertight for solid in solids)
+    model = zipfile.ZipFile(tmp_path / "plates.3mf").read("3D/3dmodel.model")
+    names = {own.get("name") for own in Tree.fromstring(model).iter() if own.tag.endswith("object")}
+    assert names == {"0 base", "1 crank", "2 coupler", "1 rocker"}
+    document = import_module("ezdxf").readfile(tmp_path / "plates.dxf")
+    assert not document.audit().errors
+    assert document.header["$INSUNITS"] == 4
+    texts = {text.dxf.text for text in document.modelspace().query("TEXT")}
+    assert texts == {"base", "crank", "coupler", "rocker"}
+    root = Tree.parse(tmp_path / "plates.svg").getroot()
+    low, width = root.attrib["viewBox"].split()[0::2]
+    assert root.attrib["width"] == f"{width}mm"
+    assert float(low) < float(width)
+
+
+def test_a_suffix_without_a_format_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"the suffix of plates is one of \.dxf, \.svg, \.stl"):
+        read_example("four-bar").to_plates(tmp_path / "plates.obj")
+
+
+@pytest.mark.extended
+@pytest.mark.skipif(find_spec("build123d") is None, reason="build123d is not installed")
+def test_step_keeps_arcs(tmp_path: Path) -> None:
+    stack, _ = made(read_example("crank-shaper"))
+    content = plates_of(stack, tmp_path / "a.step")
+    assert content == plates_of(stack, tmp_path / "a.step")
+    assert content.count(b"CYLINDRICAL_SURFACE") >= 2 * len(stack.plates)
+
+
+def test_holes_of_welded_links_are_in_one_plate() -> None:
+    mechanism = read_example("boxer-engine")
+    motion = mechanism.sweep()
+    made_of = Construction.of(mechanism.model, motion, lw.PlateOptions(), 1.0)
+    throw = next(plate for plate in made_of.plates if plate.name == "throw1")
+    assert {own.name for own in throw.openings} >= {"O", "A1", "A2"}
+    assert "throw2" not in {plate.name for plate in made_of.plates}
