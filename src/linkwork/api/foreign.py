@@ -12,6 +12,7 @@ from linkwork import exchange, textfile
 from linkwork.api.mechanism import Mechanism
 from linkwork.exchange.source import LARGEST, LeftOut
 from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.internal import internal
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.linkage import Linkage
@@ -20,6 +21,7 @@ from linkwork.mechanism.part.index import PARTS
 __all__ = ["Imported", "imported"]
 
 
+@internal("description")
 @dataclass(frozen=True, kw_only=True)
 class Imported:
     """A mechanism from a file of another program.
