@@ -1,4 +1,4 @@
-"""Programs and robots of all library mechanisms, run and compared; see ``scripts/exports``."""
+"""Programs, robots, plates of all library mechanisms, run and compared; see `scripts/exports`."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ import click
 
 import linkwork as lw
 from linkwork.foundation.errors import InputError
+from scripts.plates import READERS, compared_plates
 from scripts.robots import LOADERS, compared_robot
 from tests.exchange.round_trips import robot_round_trip, round_trip
 from tests.export.running import RUNNERS, columns_of, largest_differences
 
-_SUFFIXES = (".py", ".js", ".c", ".m", ".st", *LOADERS)
+_SUFFIXES = (".py", ".js", ".c", ".m", ".st", *LOADERS, *READERS)
 #: Formats that are read back: no other program is needed.
 _BACK = ("pmks", "pylinkage", "pyslvs", "back.mjcf")
 
@@ -28,6 +29,8 @@ def _compared(name: str, suffix: str, folder: Path) -> str:
         return back if isinstance(back, str) else f"{back.rows} rows, points {back.difference:.1e}"
     if suffix in LOADERS:
         return compared_robot(name, suffix)
+    if suffix in READERS:
+        return compared_plates(name, suffix)
     mechanism, file = lw.example(name), folder / f"solver{suffix}"
     few = suffix == ".st"  # its parser is slow
     motion = mechanism.sweep(start=60, stop=62, step=1) if few else mechanism.sweep()
@@ -60,7 +63,7 @@ def main() -> None:
     names = [x for x in sys.argv[1:] if x not in _SUFFIXES + _BACK]
     names = names or [n for n in lw.examples() if lw.example(n).description.inputs]
     parser = {".st"} if find_spec("blark") else set[str]()
-    parser |= {suffix for suffix, package in LOADERS.items() if find_spec(package)}
+    parser |= {suffix for suffix, package in (LOADERS | READERS).items() if find_spec(package)}
     for suffix in wanted:
         if suffix not in RUNNERS | parser | set(_BACK):
             click.echo(f"{suffix}: SKIPPED, nothing here runs it")

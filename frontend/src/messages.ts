@@ -325,6 +325,97 @@ export interface Reload {
   id?: number;
 }
 
+export interface MoveTaskPoint {
+  kind: "move_task_point";
+  id?: number;
+  of: string;
+  index: number;
+  x: number;
+  y: number;
+  radius?: number | null;
+  live?: boolean;
+}
+
+export interface TurnPose {
+  kind: "turn_pose";
+  id?: number;
+  index: number;
+  angle: number;
+  live?: boolean;
+}
+
+export interface AddTaskPoint {
+  kind: "add_task_point";
+  id?: number;
+  of: string;
+  x: number;
+  y: number;
+  radius?: number;
+}
+
+export interface RemoveTaskPoint {
+  kind: "remove_task_point";
+  id?: number;
+  of: string;
+  index: number;
+}
+
+export interface SetTaskEntry {
+  kind: "set_task_entry";
+  id?: number;
+  key: string;
+  value?: number | string | null;
+  live?: boolean;
+}
+
+export interface DrawCurve {
+  kind: "draw_curve";
+  id?: number;
+  points: readonly (number)[];
+}
+
+export interface SetRegion {
+  kind: "set_region";
+  id?: number;
+  corners: readonly (number)[];
+}
+
+export interface ShowDesign {
+  kind: "show_design";
+  id?: number;
+  design: number;
+}
+
+export interface ShowCognates {
+  kind: "show_cognates";
+  id?: number;
+  design: number;
+}
+
+export interface SolveTask {
+  kind: "solve_task";
+  id?: number;
+}
+
+export interface OpenTask {
+  kind: "open_task";
+  id?: number;
+  name: string;
+  discard?: boolean;
+}
+
+export interface OpenDesign {
+  kind: "open_design";
+  id?: number;
+  design: number;
+}
+
+export interface ReturnToTask {
+  kind: "return_to_task";
+  id?: number;
+  discard?: boolean;
+}
+
 export interface PaletteShown {
   kind: "palette_shown";
   answers: number | null;
@@ -532,6 +623,88 @@ export interface StartOffered {
   answers: number | null;
 }
 
+export interface TaskState {
+  kind: "task_state";
+  answers: number | null;
+  file: string;
+  title: string;
+  text: string;
+  unsaved: boolean;
+  undo: string;
+  redo: string;
+  task: string;
+  length_unit: string;
+  angle_unit: string;
+  positions: readonly (PositionShown)[];
+  positions_from_file: boolean;
+  fixed_pivots: readonly (readonly [number, number])[];
+  moving_pivots: readonly (readonly [number, number])[];
+  region: readonly (readonly [number, number])[];
+  obstacles: readonly (readonly [number, number, number])[];
+  entries: Record<string, number | string>;
+  problems: readonly (ProblemShown)[];
+}
+
+export interface TaskSolved {
+  kind: "task_solved";
+  answers: number | null;
+  live: boolean;
+  solutions: string;
+  linkages: number;
+  count: number;
+  sound: number;
+  delivered: number;
+  completeness: string;
+  message: string;
+  interrupted: boolean;
+  error_unit: string;
+  defects: Record<string, number>;
+  costliest: string;
+  costs: number;
+  designs: readonly (DesignShown)[];
+  left_out: number;
+  dyads: readonly (DyadShown)[];
+  centre_curve: readonly (readonly (number)[])[];
+  chosen: DesignFound | null;
+}
+
+export interface TaskUnsolved {
+  kind: "task_unsolved";
+  answers: number | null;
+  live: boolean;
+  message: string;
+  problems: readonly (ProblemShown)[];
+  slow: boolean;
+  ended: boolean;
+}
+
+export interface DesignFound {
+  kind: "design_found";
+  answers: number | null;
+  design: DesignShown;
+  fixed: readonly (readonly [number, number])[];
+  guided: string;
+  line: number | null;
+  at: readonly (readonly (number)[])[];
+  rows: readonly (readonly (number)[])[];
+  marks: readonly (number)[];
+  curve: readonly (readonly (number)[])[];
+}
+
+export interface DesignOpened {
+  kind: "design_opened";
+  answers: number | null;
+  task: string;
+}
+
+export interface CognatesFound {
+  kind: "cognates_found";
+  answers: number | null;
+  design: number;
+  cognates: readonly (CognateShown)[];
+  curve: readonly (readonly (number)[])[];
+}
+
 export interface Picked {
   x: number;
   y: number;
@@ -718,6 +891,42 @@ export interface ProblemShown {
   message: string;
 }
 
+export interface PositionShown {
+  x: number;
+  y: number;
+  angle: number | null;
+  input: number | null;
+  tolerance: number;
+}
+
+export interface DesignShown {
+  index: number;
+  number: number;
+  mechanism: string;
+  drive: string;
+  sound: boolean;
+  delivered: boolean;
+  transmission: number | null;
+  size: number | null;
+  error: number | null;
+  score: number | null;
+  reason: string;
+}
+
+export interface DyadShown {
+  kind: string;
+  fixed: readonly [number, number];
+  proved: boolean;
+}
+
+export interface CognateShown {
+  points: Record<string, readonly [number, number]>;
+  drive: string;
+  index: number;
+  sound: boolean;
+  reason: string;
+}
+
 export type LiveEdit =
   | SetNumber
   | MovePoint
@@ -789,7 +998,20 @@ export type LiveRequest =
   | Undo
   | Redo
   | Save
-  | Reload;
+  | Reload
+  | MoveTaskPoint
+  | TurnPose
+  | AddTaskPoint
+  | RemoveTaskPoint
+  | SetTaskEntry
+  | DrawCurve
+  | SetRegion
+  | ShowDesign
+  | ShowCognates
+  | SolveTask
+  | OpenTask
+  | OpenDesign
+  | ReturnToTask;
 
 export type LiveEvent =
   | PaletteShown
@@ -811,4 +1033,10 @@ export type LiveEvent =
   | LinkMade
   | FileChanged
   | Saved
-  | StartOffered;
+  | StartOffered
+  | TaskState
+  | TaskSolved
+  | TaskUnsolved
+  | DesignFound
+  | DesignOpened
+  | CognatesFound;

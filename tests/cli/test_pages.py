@@ -271,6 +271,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "synthesize",
         "code",
         "robot",
+        "report",
         "plates",
         "study",
         "compile",

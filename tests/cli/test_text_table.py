@@ -6,7 +6,9 @@ import math
 
 import pytest
 
-from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
+from linkwork.cli.text_table import table_lines
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import fixed, lengths, short, significant
 
 
 def test_decimal_points_stand_below_each_other_and_units_behind() -> None:

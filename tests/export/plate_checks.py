@@ -16,10 +16,10 @@ from linkwork.export.plates.plate import Plate, PlateStack
 from linkwork.export.plates.solids import Mesh, mesh_of
 from linkwork.export.plates.stack import stack_of
 from linkwork.forces.geometry import Geometry
-from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.arrays import ComplexArray, IndexArray
 from linkwork.results.motion import Motion
 
-__all__ = ["hole_error", "made", "overlaps", "polygon_of", "simple", "solid_error"]
+__all__ = ["hole_error", "made", "overlaps", "simple", "solid_error"]
 
 shapely: Any = import_module("shapely")
 
@@ -30,15 +30,9 @@ def made(mechanism: lw.Mechanism, **sizes: Any) -> tuple[PlateStack, Motion]:
     return stack_of(mechanism.model, motion, PlateOptions(**sizes)), motion
 
 
-def polygon_of(item: PlacedPlate) -> Any:
-    """A plate as a polygon with holes."""
-    outer, *inner = ([(z.real, z.imag) for z in curve.polygon()] for curve in item.curves)
-    return shapely.Polygon(outer, inner)
-
-
 def simple(stack: PlateStack) -> bool:
     """Whether every outline is one closed curve without self-crossing around all its openings."""
-    return all(polygon_of(item).is_valid for item in (*assembled(stack), *in_rows(stack)))
+    return all(item.polygon.is_valid for item in (*assembled(stack), *in_rows(stack)))
 
 
 def hole_error(mechanism: lw.Mechanism, stack: PlateStack, text: str) -> float:
@@ -53,6 +47,8 @@ def hole_error(mechanism: lw.Mechanism, stack: PlateStack, text: str) -> float:
         layer = f"{stack.layer[plate.name]} {plate.name}"
         circles = document.modelspace().query(f'CIRCLE[layer=="{layer}"]')
         places = [complex(own.dxf.center.x, own.dxf.center.y) for own in circles]
+        if plate.outline.as_circle is not None:
+            del places[0]  # a plate around one hole
         points = local[plate.body]
         names = [own.name for own in plate.openings if own.outline.as_circle is not None]
         assert len(names) == len(places)
@@ -74,21 +70,32 @@ def overlaps(
     for one, other in itertools.combinations(stack.plates, 2):
         if stack.layer[one.name] != stack.layer[other.name]:
             continue
-        first, second = (_polygons(geometry, plate, millimetres)[rows] for plate in (one, other))
-        if shapely.intersects(first, second).any():
+        first, second = (_polygons(geometry, plate, millimetres, rows) for plate in (one, other))
+        together = shapely.intersects(first, second)
+        if (one.name, other.name) in stack.contacts:
+            # a roller touches its cam in every position, up to the arcs of their polygons
+            area = shapely.area(shapely.intersection(first, second))
+            size = shapely.area(second)
+            together = shapely.distance(first, second) > 1e-3 * np.sqrt(size)
+            together |= area > 1e-4 * size
+        if together.any():
             found.append(f"{one.name} and {other.name}")
     return found
 
 
-def _polygons(geometry: Geometry, plate: Plate, millimetres: float) -> Any:
-    """The outline of a plate in all rows."""
-    outline = plate.outline.polygon() / millimetres
-    if plate.body == "ground":
-        placed: ComplexArray = np.tile(outline, (geometry.rows, 1))
-    else:
-        origin = geometry.place(geometry.links[plate.body][0]).v[:, None]
-        placed = origin + geometry.direction(plate.body).v[:, None] * outline
-    return shapely.polygons(np.stack([placed.real, placed.imag], axis=-1))
+def _polygons(geometry: Geometry, plate: Plate, millimetres: float, rows: IndexArray) -> Any:
+    """A plate in some rows, a ring with its inner edge, other plates with their holes filled."""
+    edges = [own.outline for own in plate.openings if own.name == "teeth"]
+    rings = []
+    for outline in (plate.outline, *edges):
+        local = outline.polygon() / millimetres
+        if plate.body == "ground":
+            placed: ComplexArray = np.tile(local, (len(rows), 1))
+        else:
+            origin = geometry.place(geometry.links[plate.body][0]).v[rows, None]
+            placed = origin + geometry.direction(plate.body).v[rows, None] * local
+        rings.append(shapely.linearrings(np.stack([placed.real, placed.imag], axis=-1)))
+    return shapely.polygons(rings[0], rings[1][:, None] if edges else None)
 
 
 def solid_error(stack: PlateStack, item: PlacedPlate) -> float:

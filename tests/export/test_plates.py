@@ -16,12 +16,14 @@ import pytest
 import linkwork as lw
 from linkwork.export.plates.construction import Construction
 from linkwork.export.plates.dxf import dxf_of
+from linkwork.export.plates.gears import Wheel, involute_outline, touches
 from linkwork.export.plates.layer_order import Conflict, find_layers, obstacles
 from linkwork.export.plates.motion_boxes import BodyPoses, boxes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.placing import assembled, box, in_rows
 from linkwork.export.plates.plate_file import plates_of
 from linkwork.foundation.errors import InputError
+from linkwork.mechanism.figures import Disc
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
 from tests.library_mechanisms import read_example
 
@@ -48,9 +50,10 @@ def test_plates_forced_into_one_layer_are_seen_to_touch() -> None:
     assert overlaps(mechanism, stack, motion) == ["crank and coupler", "coupler and rocker"]
 
 
+@pytest.mark.extended
 def test_solids_are_closed_and_have_the_volume_of_their_outlines() -> None:
-    stack, _ = made(read_example("crank-shaper"), kerf=0.2)
-    # arcs are polygons of 128 sides a turn
+    stack, _ = made(read_example("slider-crank"), kerf=0.2)
+    # arcs are polygons of 256 sides a turn
     assert max(solid_error(stack, item) for item in assembled(stack)) <= 1e-3
 
 
@@ -207,12 +210,12 @@ def test_sheets_do_not_overlap() -> None:
 
 
 def test_the_same_plates_are_the_same_bytes(tmp_path: Path) -> None:
-    stack, _ = made(read_example("four-bar"), labels=True)
-    again, _ = made(read_example("four-bar"), labels=True)
+    stack, again = (made(read_example("double-pendulum"))[0] for _ in range(2))
     for suffix in _SUFFIXES:
         file = tmp_path / f"plates{suffix}"
-        assert plates_of(stack, file) == plates_of(again, file)
-        assert plates_of(stack, file, layout=True) != plates_of(stack, file)
+        once = plates_of(stack, file)
+        assert once == plates_of(again, file)
+        assert once != plates_of(stack, file, layout=True)
 
 
 def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
@@ -224,6 +227,9 @@ def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
     solids = trimesh.load(tmp_path / "plates.stl").split()
     assert len(solids) == 4
     assert all(solid.is_watertight for solid in solids)
+    stack, _ = made(mechanism)
+    wanted = sorted(stack.sizes.thickness * plate.area for plate in stack.plates)
+    assert sorted(solid.volume for solid in solids) == pytest.approx(wanted, rel=1e-3)
     model = zipfile.ZipFile(tmp_path / "plates.3mf").read("3D/3dmodel.model")
     names = {own.get("name") for own in Tree.fromstring(model).iter() if own.tag.endswith("object")}
     assert names == {"0 base", "1 crank", "2 coupler", "1 rocker"}
@@ -241,6 +247,89 @@ def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
 def test_a_suffix_without_a_format_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"the suffix of plates is one of \.dxf, \.svg, \.stl"):
         read_example("four-bar").to_plates(tmp_path / "plates.obj")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "geared-five-bar",
+        *(
+            pytest.param(name, marks=pytest.mark.extended)
+            for name in ("planetary-gear", "cardan-circles", "sun-and-planet")
+        ),
+    ],
+)
+def test_gears_mesh_without_touching_in_all_positions(name: str) -> None:
+    mechanism = read_example(name)
+    stack, motion = made(mechanism)
+    assert simple(stack)
+    assert stack.proved
+    # teeth in mesh are in one layer, and their outlines apart
+    assert not overlaps(mechanism, stack, motion)
+    assert max(solid_error(stack, item) for item in assembled(stack)) <= 1e-3
+
+
+def _wheel(teeth: int, *, ring: bool = False, backlash: float = 0.1) -> Wheel:
+    disc = Disc(
+        name="m", link="w", center="c", radius=float(teeth), kind="gear", ring=ring, teeth=teeth
+    )
+    pressure = np.radians(20.0)
+    return Wheel(disc=disc, module=2.0, phase=0.0, pressure=pressure, backlash=backlash)
+
+
+def test_flanks_are_involutes_and_teeth_as_thick_as_their_backlash_leaves() -> None:
+    outline = involute_outline(_wheel(40), 0j)
+    count = len(outline.corners) // 40
+    flank = outline.corners[count // 2 : count]
+    middle, step = (flank[1:] + flank[:-1]) / 2.0, np.diff(flank)
+    # normals of an involute are tangents of its base circle
+    base = np.abs((middle * step.conj()).real / np.abs(step))[:-2]  # the rest is straight
+    assert base == pytest.approx(40.0 * np.cos(np.radians(20.0)), rel=2e-4)
+    at = np.interp(40.0, np.abs(flank[::-1]), np.angle(flank[::-1]))
+    # half of the backlash is taken from each gear of a pair
+    # chords of sixteen points are a micrometre inside of the flank
+    assert 2.0 * 40.0 * at == pytest.approx(np.pi - 0.05, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "apart", "touching"),
+    [
+        (_wheel(20), _wheel(40), 60.0, False),
+        (_wheel(20), _wheel(40), 59.8, True),  # too near
+        (_wheel(20, backlash=0.0), _wheel(40, backlash=0.0), 60.0, True),
+        (_wheel(8), _wheel(60), 68.0, True),  # undercut would be needed
+        pytest.param(_wheel(20), _wheel(80, ring=True), 60.0, False, marks=pytest.mark.extended),
+        (_wheel(30, ring=True), _wheel(27), 3.0, True),  # the tips meet
+    ],
+)
+def test_teeth_that_touch_are_seen(
+    first: Wheel, second: Wheel, apart: float, touching: bool
+) -> None:
+    assert touches(first, second, apart) == touching
+
+
+def test_gears_without_whole_numbers_are_refused() -> None:
+    mechanism = read_example("geared-five-bar").changed(
+        gears=[
+            lw.Gear(
+                name="mesh", wheels=("left", "right"), centers=("O", "P"),
+                radii=("110*sqrt(2)/(1 + sqrt(2))", "110/(1 + sqrt(2))"),
+            )
+        ]
+    )  # fmt: skip
+    with pytest.raises(InputError, match="have no ratio of whole numbers: give their teeth"):
+        made(mechanism)
+
+
+@pytest.mark.extended
+def test_a_cam_touches_its_roller_and_nothing_else() -> None:
+    mechanism = read_example("cam-swinging-follower")
+    stack, motion = made(mechanism)
+    assert stack.contacts == (("cam", "swing roller"),)
+    assert stack.verdict.startswith("no two parts touch but cam and swing roller: proved")
+    assert stack.layer["cam"] == stack.layer["swing roller"]
+    assert not overlaps(mechanism, stack, motion)
+    assert simple(stack)
 
 
 @pytest.mark.extended

@@ -11,8 +11,8 @@ import pytest
 
 import linkwork as lw
 from linkwork.export import workbook_of
+from linkwork.export.formulas.dimension_units import dimension_kinds
 from linkwork.export.formulas.traced_equations import traced
-from linkwork.export.workbook.dimension_units import dimension_kinds
 from linkwork.foundation.errors import InputError
 from linkwork.results.quantity import Kind
 

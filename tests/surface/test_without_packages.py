@@ -27,6 +27,7 @@ class Missing:
 sys.meta_path.insert(0, Missing())
 import linkwork as lw
 from linkwork.api import example_text
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live.browser_desk import BrowserDesk
 
 said, told = {}, []
@@ -44,7 +45,7 @@ for name in ("four-bar", "jansen-leg", "rapier-drive"):
         repr(mechanism.scene()),
         mechanism.check().start_message,
     ]
-desk = BrowserDesk(lw.loads, example_text, told.append, list)
+desk = BrowserDesk(lw.loads, example_text, told.append, list, solve_task)
 desk.begin("#example=jansen-leg")
 said["events"] = told
 said["unclassified"] = lw.example("four-bar").check().unclassified

@@ -14,9 +14,19 @@ const TEMPLATES: Readonly<Record<string, string>> = {
   "cam-roller-follower": "Cam",
 };
 
+/** Tasks to begin with: what they are called here, and what they are for. */
+const TASKS: Readonly<Record<string, readonly [string, string]>> = {
+  "three-poses": ["Three poses", "Carry a body; choose pivots freely."],
+  "four-poses": ["Four poses", "Drag a pivot along its curve; the design follows."],
+  "five-poses": ["Five poses", "All four-bars and slider-cranks, proved."],
+  "nine-points": ["Nine points", "All four-bars whose point passes them."],
+  curve: ["A curve", "Draw it; the nearest coupler curves are found."],
+  function: ["A function", "The output follows a formula of the input."],
+};
+
 export interface StartHooks {
-  /** Open a mechanism of the library; "" is the blank sheet. */
-  readonly open: (name: string) => void;
+  /** Open a mechanism of the library, "" is the blank sheet, or a task. */
+  readonly open: (name: string, of: "example" | "task") => void;
   /** Leave the page as it is; absent where there is nothing to go back to. */
   readonly close?: () => void;
 }
@@ -43,7 +53,7 @@ export class StartPage {
     });
     const head = html("header", {}, this.element);
     html("h1", {}, head, "Linkwork");
-    html("p", {}, head, "Draw a mechanism, or begin with one of the library.");
+    html("p", {}, head, "Draw a mechanism, begin with one of the library, or design one for a task.");
     if (hooks.close) {
       const close = html("button", { type: "button" }, head, "Back");
       close.addEventListener("click", () => this.hooks.close?.());
@@ -54,6 +64,9 @@ export class StartPage {
       const entry = entries.find((one) => one.name === name);
       if (entry) this.card(first, { ...entry, title });
     }
+    html("h2", {}, this.element, "Design for a task");
+    const tasks = html("div", { class: "lw-cards lw-tasks" }, this.element);
+    for (const [name, [title, purpose]] of Object.entries(TASKS)) this.task(tasks, name, title, purpose);
     const label = html("label", { class: "lw-search" }, this.element, "Find by name, family or purpose");
     const field = html("input", { type: "search", placeholder: "press, straight line, dwell, walking …", autocomplete: "off" }, label);
     field.addEventListener("input", () => this.find(field.value));
@@ -98,7 +111,14 @@ export class StartPage {
     const card = html("button", { type: "button", class: "lw-card lw-blank" }, box);
     html("span", { class: "lw-plus", "aria-hidden": "true" }, card, "+");
     html("strong", {}, card, "Blank sheet");
-    card.addEventListener("click", () => this.hooks.open(""));
+    card.addEventListener("click", () => this.hooks.open("", "example"));
+  }
+
+  private task(box: Element, name: string, title: string, purpose: string): void {
+    const card = html("button", { type: "button", class: "lw-card", "data-task": name }, box);
+    html("strong", {}, card, title);
+    html("span", {}, card, purpose);
+    card.addEventListener("click", () => this.hooks.open(name, "task"));
   }
 
   private card(box: Element, { name, title, purpose, picture }: Entry): void {
@@ -111,7 +131,7 @@ export class StartPage {
     } else html("span", { class: "lw-formula-card", "aria-hidden": "true" }, card, "F(q) = 0");
     html("strong", {}, card, title);
     html("span", {}, card, purpose);
-    card.addEventListener("click", () => this.hooks.open(name));
+    card.addEventListener("click", () => this.hooks.open(name, "example"));
   }
 
   private tick(now: number): void {

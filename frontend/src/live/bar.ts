@@ -1,6 +1,6 @@
 // The toolbar: undo, redo, reload, link, save, and the mark of unsaved changes.
 
-import type { FileState } from "../messages";
+import type { FileState, TaskState } from "../messages";
 import { declareKeys, press, type Command } from "../keys";
 import { html } from "../svg";
 import type { Desk } from "./asking";
@@ -10,6 +10,7 @@ import { begin, restored } from "./fields";
 export class Bar {
   readonly element = html("div", { class: "lw-bar", role: "toolbar", "aria-label": "File" });
   private readonly file: HTMLElement;
+  private readonly back: HTMLButtonElement;
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
@@ -17,9 +18,11 @@ export class Bar {
   private readonly gone = new AbortController();
 
   constructor(
-    private readonly desk: Desk,
+    private readonly desk: Pick<Desk, "ask">,
     another: () => void,
   ) {
+    this.back = this.button("", "", () => this.goBack());
+    this.back.hidden = true;
     this.file = html("span", { class: "lw-file" }, this.element);
     this.undo = this.button("↶", "Undo", () => desk.ask({ kind: "undo" }));
     this.redo = this.button("↷", "Redo", () => desk.ask({ kind: "redo" }));
@@ -33,11 +36,12 @@ export class Bar {
     document.addEventListener("keydown", (event) => this.key(event), { signal: this.gone.signal });
     for (const kind of ["focusin", "change"]) document.addEventListener(kind, (event) => begin(event.target), { signal: this.gone.signal });
     window.addEventListener("beforeunload", (event) => {
-      if (this.element.dataset.unsaved === "true" && !this.save.disabled) event.preventDefault();
+      if (this.element.dataset.unsaved === "true" && !this.save.disabled && this.element.isConnected) event.preventDefault();
     });
   }
 
-  show(state: FileState): void {
+  show(state: FileState | TaskState): void {
+    declareKeys("File", this.commands);
     this.element.dataset.unsaved = String(state.unsaved);
     const name = state.file.split(/[\\/]/).pop();
     this.file.textContent = `${name}${state.unsaved ? " •" : ""}`;
@@ -49,6 +53,20 @@ export class Bar {
     this.link.renew();
     this.save.classList.toggle("lw-wanted", state.unsaved);
     document.title = `${state.unsaved ? "• " : ""}${state.title} – Linkwork`;
+  }
+
+  /** Offer the way back to the task of a design; "" for none. */
+  behind(task: string): void {
+    this.back.hidden = !task;
+    this.back.textContent = "← Task";
+    this.back.title = `Back to ${task}`;
+    this.back.setAttribute("aria-label", this.back.title);
+  }
+
+  private goBack(): void {
+    const unsaved = this.element.dataset.unsaved === "true";
+    if (unsaved && !confirm("Changes of this mechanism are not saved. Discard them?")) return;
+    this.desk.ask({ kind: "return_to_task", discard: unsaved });
   }
 
   /** Disable all buttons. */
@@ -70,6 +88,7 @@ export class Bar {
   ];
 
   private key(event: KeyboardEvent): void {
+    if (!this.element.checkVisibility()) return; // the page of another file is open
     const key = event.key.toLowerCase();
     const typing = (event.target as HTMLElement).matches("textarea") || (key === "z" && (event.ctrlKey || event.metaKey) && restored(event.target));
     if (key === "s" || !typing) press(this.commands, event);

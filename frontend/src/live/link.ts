@@ -46,8 +46,8 @@ export class LinkDialog {
   private readonly code = html("div", { class: "lw-code" });
   private readonly note = html("p", { class: "lw-lead", role: "status" });
 
-  constructor(private readonly desk: Desk) {
-    html("h2", { id: "lw-share-title" }, this.element, "Share this mechanism");
+  constructor(private readonly desk: Pick<Desk, "ask">) {
+    html("h2", { id: "lw-share-title" }, this.element, "Share this file");
     html("p", { class: "lw-lead" }, this.element, "The link contains the whole file, after the #: browsers do not send that part to a server.");
     this.element.append(this.address);
     this.app = html("input", { type: "text", inputmode: "url", autocomplete: "url", spellcheck: "false", placeholder: "https://…" }, this.address);

@@ -260,6 +260,9 @@ export class LivePage {
       case "file_changed":
         this.notices.changed(event, this.decisions());
         break;
+      case "design_opened":
+        this.bar.behind(event.task);
+        break;
       case "link_made":
         this.bar.link.show(event);
         break;
@@ -307,6 +310,7 @@ export class LivePage {
 
   /** Another file: nothing of the page stays. */
   private another(): void {
+    this.bar.behind("");
     this.page?.destroy();
     [this.page, this.moving, this.sketched, this.charted] = [null, null, null, false];
     this.editor.rest();

@@ -2,7 +2,7 @@
 
 import { libraryOf } from "../begin/library";
 import { StartPage } from "../begin/start_page";
-import type { FileState } from "../messages";
+import type { FileState, TaskState } from "../messages";
 import type { Desk } from "./asking";
 
 /** The start page in sight; it may be there before the program that opens what is chosen. */
@@ -10,16 +10,22 @@ let current: StartPage | null = null;
 /** What had the focus before. */
 let before: Element | null = null;
 
+/** What was chosen on the start page. */
+export interface Chosen {
+  readonly name: string;
+  readonly of: "example" | "task";
+}
+
 /** What was chosen before there was a program to open it. */
-let chosen: string | null = null;
+let chosen: Chosen | null = null;
 
 /** Show the start page, or let another function open what is chosen on it, or was chosen already. */
-export function offerStart(open: (name: string) => void, close?: () => void): void {
+export function offerStart(open: (name: string, of: Chosen["of"]) => void, close?: () => void): void {
   const hooks = { open, ...(close ? { close } : {}) };
   const early = chosen;
   chosen = null;
   if (early !== null && !close) {
-    open(early);
+    open(early.name, early.of);
     return;
   }
   if (current !== null && !close) {
@@ -30,12 +36,12 @@ export function offerStart(open: (name: string) => void, close?: () => void): vo
   current = new StartPage(libraryOf(document), hooks);
   before = document.activeElement;
   document.body.append(current.element);
-  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = true;
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork, #linkwork-task")) page.inert = true;
 }
 
 /** Keep a choice for the program that is being loaded. */
-export function chooseEarly(name: string): void {
-  chosen = name;
+export function chooseEarly(early: Chosen): void {
+  chosen = early;
   leaveStart();
 }
 
@@ -43,24 +49,24 @@ export function leaveStart(): void {
   if (current === null) return;
   current.destroy();
   current = null;
-  for (const page of document.querySelectorAll<HTMLElement>("#linkwork")) page.inert = false;
+  for (const page of document.querySelectorAll<HTMLElement>("#linkwork, #linkwork-task")) page.inert = false;
   if (before instanceof HTMLElement) before.focus();
 }
 
 export class Starting {
-  constructor(private readonly desk: Desk) {}
+  constructor(private readonly desk: Pick<Desk, "ask"> & { readonly file: () => FileState | TaskState | null }) {}
 
   /** Offer the library; `back`: the present file may stay. */
   offer(back: boolean): void {
-    offerStart((name) => this.open(name), back ? leaveStart : undefined);
+    offerStart((name, of) => this.open(name, of), back ? leaveStart : undefined);
   }
 
-  private open(name: string): void {
-    const state: FileState | null = this.desk.file(); // none before the first file is open
+  private open(name: string, of: Chosen["of"]): void {
+    const state: FileState | TaskState | null = this.desk.file(); // none before the first file is open
     const unsaved = state?.unsaved ?? false;
     const discard = unsaved && confirm(`Changes of ${state!.file} are not saved. Discard them?`);
     if (unsaved && !discard) return;
     leaveStart();
-    this.desk.ask({ kind: "open_example", name, discard });
+    this.desk.ask({ kind: of === "task" ? "open_task" : "open_example", name, discard });
   }
 }

@@ -1,6 +1,6 @@
 // Unsaved work, which survives closing and reloading the page.
 
-import type { FileState } from "../messages";
+import type { FileState, TaskState } from "../messages";
 
 /** A file as the page was left: its text when it was saved, and its text with all changes. */
 export interface Kept {
@@ -23,7 +23,7 @@ export function keptWork(): Kept | null {
 }
 
 /** Keep the work of this address while it is unsaved; returns whether that was possible. */
-export function keep(state: FileState, saved: string): boolean {
+export function keep(state: FileState | TaskState, saved: string): boolean {
   try {
     if (!state.unsaved) localStorage.removeItem(place());
     else localStorage.setItem(place(), JSON.stringify({ name: state.file, saved, text: state.text } satisfies Kept));

@@ -15,11 +15,14 @@ type Picker = (options: { suggestedName: string }) => Promise<FileHandle>;
 
 export class Saving {
   private handle: FileHandle | null = null;
+  private name = "";
 
   /** Write the text; returns the name of the file, or null if the visitor decided otherwise. */
   async write(name: string, text: string): Promise<string | null> {
     const pick = (window as { showSaveFilePicker?: Picker }).showSaveFilePicker;
     if (pick === undefined || window.parent !== window) return download(name, text);
+    if (name !== this.name) this.handle = null; // another file
+    this.name = name;
     try {
       this.handle ??= await pick.call(window, { suggestedName: name });
       const file = await this.handle.createWritable();

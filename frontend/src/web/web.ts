@@ -1,9 +1,9 @@
 // The entry point of the page that solves in the browser alone.
 
 import { setAppUrl } from "../live/link";
-import { LivePage } from "../live/live_page";
-import { chooseEarly, offerStart } from "../live/starting";
+import { chooseEarly, offerStart, type Chosen } from "../live/starting";
 import { html } from "../svg";
+import { openPages } from "../task/opened";
 import { engineFiles, type Engine } from "./engine";
 import { keptWork } from "./keeping";
 import { WorkerConnection } from "./worker_connection";
@@ -32,9 +32,9 @@ function begin(): void {
   }
   if (/^(https?|file):/.test(location.href)) setAppUrl(location.href);
   // while the engine loads; it finds in the address what is chosen before it begins
-  if (!location.hash.slice(1) && keptWork() === null) offerStart((name) => choose(name));
+  if (!location.hash.slice(1) && keptWork() === null) offerStart(choose);
   let connection!: WorkerConnection;
-  new LivePage(element, (hooks) => (connection = new WorkerConnection(hooks)));
+  openPages(element, (hooks) => (connection = new WorkerConnection(hooks)));
   engineFiles(engine, (bytes, all) => {
     bar.value = LOADED * Math.min(1, bytes / all); // prepared archives are larger
     doing.textContent = `Loading the engine: ${mega(Math.min(bytes, all))} of ${mega(all)} MB. Everything is computed in this browser.`;
@@ -53,10 +53,10 @@ function begin(): void {
   if (loads) keepForOffline();
 }
 
-function choose(name: string): void {
-  chooseEarly(name);
+function choose(name: string, of: Chosen["of"]): void {
+  chooseEarly({ name, of });
   try {
-    history.replaceState(null, "", `#example=${encodeURIComponent(name)}`);
+    history.replaceState(null, "", `#${of}=${encodeURIComponent(name)}`);
   } catch {
     // a frame without an address of its own: the program asks what was chosen
   }

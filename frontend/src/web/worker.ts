@@ -78,6 +78,7 @@ const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live.browser_desk import BrowserDesk
 `;
 
@@ -85,7 +86,7 @@ from linkwork.viewer.live.browser_desk import BrowserDesk
 const REHEARSE = `
 import gc
 
-desk = BrowserDesk(loads, example_text, lambda event: None, lambda: ())
+desk = BrowserDesk(loads, example_text, lambda event: None, lambda: (), solve_task)
 desk.begin("#example=four-bar")
 del desk
 gc.collect()
@@ -100,7 +101,7 @@ def pause():
         run_sync(turn())
 
 
-desk = BrowserDesk(loads, example_text, tell, take, pause)
+desk = BrowserDesk(loads, example_text, tell, take, solve_task, pause)
 begin, work = desk.begin, desk.work
 `;
 

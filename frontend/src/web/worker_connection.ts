@@ -1,7 +1,7 @@
 // The connection to a program in a worker of this page; it also saves and keeps the file.
 
 import type { Transport, TransportHooks } from "../live/transport";
-import type { FileState, LiveEvent, LiveRequest } from "../messages";
+import type { FileState, LiveEvent, LiveRequest, TaskState } from "../messages";
 import type { Engine, Found } from "./engine";
 import { keep, keptWork } from "./keeping";
 import { Saving } from "./saving";
@@ -12,7 +12,7 @@ export class WorkerConnection implements Transport {
   private worker: Worker | null = null;
   private readonly early: string[] = [];
   private count = 0;
-  private file: FileState | null = null;
+  private file: FileState | TaskState | null = null;
   /** The text of the file as it was saved last, or opened. */
   private saved: string | null = null;
 
@@ -56,7 +56,7 @@ export class WorkerConnection implements Transport {
   }
 
   /** The program counts the file as saved once the visitor has it. */
-  private async save(request: LiveRequest, id: number, state: FileState): Promise<void> {
+  private async save(request: LiveRequest, id: number, state: FileState | TaskState): Promise<void> {
     const name = await this.saving.write(state.file, state.text);
     if (name === null) return;
     this.saved = state.text;
@@ -64,10 +64,11 @@ export class WorkerConnection implements Transport {
   }
 
   private told(event: LiveEvent): void {
-    if (event.kind === "file_state") {
+    if (event.kind === "file_state" || event.kind === "task_state") {
+      if (this.file?.file !== event.file && this.file !== null) this.saved = null;
       this.saved ??= event.text;
       // a change was on its way when the file was written
-      if (!event.unsaved && this.file?.unsaved && event.text !== this.saved) void this.saving.write(event.file, event.text);
+      if (!event.unsaved && this.file?.unsaved && this.file.file === event.file && event.text !== this.saved) void this.saving.write(event.file, event.text);
       if (!event.unsaved) this.saved = event.text;
       this.file = event;
       keep(event, this.saved);

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwork import batch, drawing, motion, textfile, viewer
 from linkwork.api import solving
-from linkwork.api.exported import ExportedMechanism
+from linkwork.api.reported import ReportedMechanism
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_names
@@ -25,7 +25,7 @@ __all__ = ["Mechanism"]
 
 
 @internal("description", "read", "solving_page")
-class Mechanism(ExportedMechanism):
+class Mechanism(ReportedMechanism):
     """A planar mechanism: solve, sweep, check, draw, animate and export it.
 
     The functions :func:`load`, :func:`loads`, :func:`example`, :func:`linkage`, :func:`loops` and

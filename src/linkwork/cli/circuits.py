@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import click
 
 from linkwork.api import Mechanism
@@ -11,7 +9,6 @@ from linkwork.cli import picture
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.output_file import check_outputs
-from linkwork.cli.position_page import listed_links, redundant_lines
 from linkwork.cli.terminal import (
     bad,
     fields,
@@ -23,13 +20,13 @@ from linkwork.cli.terminal import (
     title_lines,
     wrapped,
 )
-from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.drawing.charts.circuit_chart import MOST_PANELS, circuit_chart
-from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import canonical
 from linkwork.motion import check_quantities
 from linkwork.results.circuits import Circuit, Circuits
+from linkwork.results.listing.circuit_listing import branch_columns, circuit_fields
 
 __all__ = ["circuits", "circuits_lines"]
 
@@ -124,64 +121,7 @@ def circuits_lines(found: Circuits) -> list[str]:
 
 
 def _circuit_lines(found: Circuits, circuit: Circuit) -> list[str]:
-    unit = f" [{found.input_unit}]" if found.input_unit else ""
-    branches = circuit.branches
-    table = [
-        Column(
-            header=circuit.name, cells=[b.name.removeprefix(f"{circuit.name} ") for b in branches]
-        ),
-        Column(
-            header=f"from {found.input}{unit}",
-            cells=[short(branch.input_range[0]) for branch in branches],
-            align="point",
-        ),
-        Column(
-            header="to", cells=[short(branch.input_range[1]) for branch in branches], align="point"
-        ),
-        Column(
-            header="at the guess's input",
-            cells=[branch.configuration or "-" for branch in branches],
-        ),
+    return [
+        *table_lines(branch_columns(found, circuit)),
+        *fields(list(circuit_fields(found, circuit))),
     ]
-    return [*table_lines(table), *fields(list(_facts(found, circuit)))]
-
-
-def _facts(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str]]:
-    proof = "proved" if circuit.certified else "not proved"
-    redundant = circuit.motion.redundant
-    if redundant and circuit.certified:
-        proof += f" without {listed_links(redundant)}"
-    yield ("closed" if circuit.closed else "not closed"), f"{circuit.end.story}; {proof}"
-    if circuit.closed:
-        yield from _turning(circuit)
-    resting = [
-        branch.name.removeprefix(f"{circuit.name} ")
-        for branch in circuit.branches
-        if branch.end is CircuitEnd.INPUT_CONSTANT
-    ]
-    if resting:
-        yield "input at rest", f"along {', '.join(resting)} {CircuitEnd.INPUT_CONSTANT.story}"
-    for limit in (*circuit.dead_points, *circuit.change_points):
-        yield limit.kind.word, limit.told(found.input, found.input_unit)
-    yield from redundant_lines(redundant)
-    if not (circuit.dead_points or circuit.change_points):
-        where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
-        yield (
-            "closest to a dead point",
-            f"σ_min = {circuit.smallest_singular_value:.3g}, near {where}",
-        )
-
-
-def _turning(circuit: Circuit) -> Iterator[tuple[str, str]]:
-    """Which links turn fully and which rock during one pass of the circuit."""
-    if circuit.turns:
-        times = "once" if circuit.turns == 1 else f"{circuit.turns} times"
-        yield "input", f"turns {times} before the circuit closes"
-    elif circuit.turns == 0:
-        yield "input", "turns back at the dead points"
-    turns = [f"{link} ({n:+d})" if abs(n) > 1 else link for link, n in circuit.turning.items() if n]
-    rocks = [link for link, n in circuit.turning.items() if not n]
-    if turns:
-        yield "turning", ", ".join(turns)
-    if rocks:
-        yield "rocking", ", ".join(rocks)

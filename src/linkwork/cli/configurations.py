@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import click
 
 from linkwork.api import Mechanism
@@ -18,7 +16,6 @@ from linkwork.cli.options import (
     set_option,
 )
 from linkwork.cli.output_file import check_outputs
-from linkwork.cli.position_page import Row, inputs_text, value_cells
 from linkwork.cli.terminal import (
     bad,
     fields,
@@ -30,11 +27,15 @@ from linkwork.cli.terminal import (
     title_lines,
     wrapped,
 )
-from linkwork.cli.text_table import Column, short, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.drawing.sheet import configuration_sheet
-from linkwork.foundation.certification import Certification
-from linkwork.results.configurations import Configurations, PathCount, solution_counts
-from linkwork.results.position import Certificate
+from linkwork.results.configurations import Configurations
+from linkwork.results.listing.configuration_listing import (
+    completeness_fields,
+    configuration_columns,
+)
+from linkwork.results.listing.number_text import short
+from linkwork.results.listing.position_listing import inputs_text
 from linkwork.results.quantity import Kind
 
 __all__ = ["configurations", "configurations_lines"]
@@ -102,59 +103,12 @@ def _written(draw: str | None, count: int) -> list[str]:
 
 def configurations_lines(mechanism: Mechanism, found: Configurations) -> list[str]:
     """The page: one row per configuration, then completeness and the counts of solutions."""
+    kinds = {v.name: Kind(v.kind) for v in mechanism.loop_equations.unknowns}
     lines = title_lines(found.mechanism)
     count = len(found)
     what = "1 configuration" if count == 1 else f"{count or 'No'} configurations"
     where = inputs_text(found.input, found.input_units)
     lines += sentence(good if found.completeness.complete and count else bad, what, where)
     if count:
-        lines += ["", *_table(mechanism, found)]
-    return [*lines, "", *fields(_evidence(found))]
-
-
-def _table(mechanism: Mechanism, found: Configurations) -> list[str]:
-    columns = [Column(header="name", cells=found.names)]
-    for variable in mechanism.loop_equations.unknowns:
-        if variable.name not in found.positions[0].unknowns:
-            continue  # a redundant link's length
-        kind = Kind(variable.kind)
-        unit = found.positions[0].units.of(kind)
-        rows = [
-            Row(name=variable.name, kind=kind, value=position.unknowns[variable.name])
-            for position in found
-        ]
-        header = f"{variable.name} [{unit}]" if unit else variable.name
-        columns.append(Column(header=header, cells=value_cells(rows), align="point"))
-    certified = [_certified(p.certificate) for p in found]
-    columns.append(Column(header="certified", cells=certified))
-    return table_lines(columns)
-
-
-def _evidence(found: Configurations) -> Iterator[tuple[str, str]]:
-    yield "complete", found.message
-    label = "paths"
-    for count in found.paths:
-        yield label, path_sentence(count, several=len(found.paths) > 1)
-        label = ""
-
-
-def path_sentence(count: PathCount, *, several: bool) -> str:
-    """The counts of solutions of one block in words."""
-    block = f"{', '.join(count.unknowns)}: " if several else ""
-    if not count.paths:
-        return f"{block}follow from the others"
-    text = solution_counts(count)
-    text += f", {count.multiple} multiple" if count.multiple else ""
-    text += f", for {count.solved} positions of earlier blocks" if count.solved > 1 else ""
-    others = [
-        f"{number} {end}"
-        for number, end in ((count.at_infinity, "to infinity"), (count.failed, "lost"))
-        if number
-    ]
-    return f"{block}{text}" + (f"; {count.paths} paths: {', '.join(others)}" if others else "")
-
-
-def _certified(certificate: Certificate) -> str:
-    if certificate.certification is Certification.SUBSET_CERTIFIED:
-        return "partly"
-    return "yes" if certificate.certified else "no"
+        lines += ["", *table_lines(configuration_columns(found, kinds))]
+    return [*lines, "", *fields(completeness_fields(found))]

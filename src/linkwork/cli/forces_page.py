@@ -6,16 +6,18 @@ import cmath
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from linkwork.cli.motion_page import limit_fields, range_lines
-from linkwork.cli.position_page import inputs_text
+from linkwork.cli.motion_page import range_lines
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
-from linkwork.cli.text_table import Column, fixed, significant, table_lines
-from linkwork.foundation.arrays import BoolArray
+from linkwork.cli.text_table import table_lines
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.force_listing import force_fields, undefined_fields
+from linkwork.results.listing.motion_listing import limit_fields
+from linkwork.results.listing.number_text import fixed, significant
+from linkwork.results.listing.position_listing import inputs_text
 from linkwork.results.motion import Motion
 from linkwork.results.reactions import ForceStatus, Reactions
 from linkwork.results.stall import Stall
@@ -37,7 +39,7 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
     )
     lines = title_lines(found.mechanism)
     if found.status in _NONE:
-        why = [("why", found.status.value), *_undefined(found)]
+        why = [("why", found.status.value), *undefined_fields(found)]
         if found.status is ForceStatus.SELF_LOCKING:
             why.append(("proved", "yes" if found.proved else "no"))
         return [*lines, *sentence(bad, "No forces", where), *fields(why)]
@@ -57,7 +59,7 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
     if vectors:
         lines += ["", *_vectors(found, vectors)]
     lines += ["", *_numbers("total", found, totals)]
-    return [*lines, "", *fields(list(_evidence(found)))]
+    return [*lines, "", *fields(list(force_fields(found)))]
 
 
 def motion_forces_lines(
@@ -81,8 +83,7 @@ def motion_forces_lines(
         if name != "disagreement" and np.isfinite(found.values[name]).any()
     ]
     lines += ["", *range_lines(motion, listed)] if listed else []
-    stops = [("stalls", _stall(stall)) for stall in stalls]
-    return [*lines, "", *fields([*stops, *_evidence(found)])]
+    return [*lines, "", *fields(list(force_fields(found, stalls)))]
 
 
 def reactions_data(found: Reactions, table: Table, stalls: Sequence[Stall] = ()) -> dict[str, Any]:
@@ -156,47 +157,3 @@ def _vectors(found: Reactions, stems: Sequence[str]) -> list[str]:
 def _carrier(about: str) -> str:
     """The body that a force acts on, from its explanation."""
     return about.rpartition(" on ")[2]
-
-
-def _evidence(found: Reactions) -> Iterator[tuple[str, str]]:
-    """How far virtual work and free bodies agree, and what is wrong with joints."""
-    if "disagreement" in found.values:
-        worst = np.nanmax(found.values["disagreement"], initial=0.0)
-        yield "check", f"virtual work and free bodies agree to {worst:.1e} of the largest term"
-    yield from _undefined(found)
-    lost = [name for name, rows in found.undetermined.items() if rows.any()]
-    if lost:
-        yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
-    for name, rows in found.lifted.items():
-        if rows.any():
-            yield "lifts off", f"{name} would have to pull{_where(rows)}"
-    for name, rows in found.slipping.items():
-        if rows.any():
-            yield "slips", f"{name} needs more friction than there is{_where(rows)}"
-    unsure = int(np.sum(~found.proved))
-    if unsure:
-        yield "not proved", f"that friction leaves an equilibrium, or none, in {unsure} rows"
-
-
-def _undefined(found: Reactions) -> Iterator[tuple[str, str]]:
-    for name, rows in found.undefined.items():
-        if rows.any():
-            yield "no value", f"{name}{_where(rows)}"
-
-
-def _where(rows: BoolArray) -> str:
-    return "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
-
-
-def _stall(stall: Stall) -> str:
-    """Where friction stops the mechanism, and whether this is proved."""
-    moves, locked = stall.bracket
-    proof = (
-        f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"
-    )
-    others = (name for name in stall.position.unknowns if name != stall.input)
-    places = [
-        f"{name} = {stall.position[name]:.8g} {stall.position.value_units[name]}"
-        for name in (stall.input, *islice(others, 1))
-    ]
-    return f"at {', '.join(places)} ({proof})"

@@ -43,6 +43,7 @@ _COMMANDS = (
     "robot",
     "import",
     "export",
+    "report",
     "plates",
     "study",
     "compile",

@@ -28,9 +28,10 @@ from linkwork.cli.terminal import (
     sentence,
     title_lines,
 )
-from linkwork.cli.text_table import Column, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.export import PlateOptions, PlateStack, check_plate_file, plates_of, stack_of
 from linkwork.mechanism.dimensions import Number
+from linkwork.results.listing.column import Column
 
 __all__ = ["plates"]
 
@@ -41,6 +42,8 @@ _SIZES = (
     ("kerf", "Width of the cut, halved on either side."),
     ("thickness", "Thickness of plates."),
     ("gap", "Least distance of moving plates in one layer."),
+    ("module", "Module of gears that are given by radii."),
+    ("backlash", "Backlash of gears on the pitch circle."),
     ("sheet", "Width of the sheet of --layout."),
 )
 

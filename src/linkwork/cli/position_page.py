@@ -4,39 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from linkwork.api import Mechanism
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
-from linkwork.cli.text_table import Column, fixed, lengths, short, significant, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.foundation.certification import Certification
 from linkwork.motion.leading_input import leading_input
-from linkwork.results.position import Certificate, NewtonStep, NewtonTrail, Position
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import lengths, significant
+from linkwork.results.listing.position_listing import (
+    Row,
+    certificate_text,
+    changes_text,
+    inputs_text,
+    listed_links,
+    redundant_lines,
+    system_columns,
+    trail_columns,
+    value_cells,
+)
+from linkwork.results.position import NewtonTrail, Position
 from linkwork.results.quantity import Kind, Units
 
-__all__ = [
-    "Row",
-    "inputs_text",
-    "listed_links",
-    "position_lines",
-    "redundant_lines",
-    "residual_measure",
-    "value_cells",
-]
+__all__ = ["position_lines", "residual_measure"]
 
 _NOISE = 1e-13  # relative to the largest derivative: rounding, printed as 0
-_SYSTEM_DIGITS = 6
 _SAME_END = 1e-6  # of a turn, or relative
-_NUMBER_DIGITS = 10  # for a number without a unit
-
-
-@dataclass(frozen=True, kw_only=True)
-class Row:
-    """One named number of a table and its kind (length, angle, number)."""
-
-    name: str
-    kind: Kind
-    value: float
 
 
 def position_lines(mechanism: Mechanism, position: Position) -> list[str]:
@@ -56,23 +49,6 @@ def position_lines(mechanism: Mechanism, position: Position) -> list[str]:
         lines += ["", *_points(position)]
     lines += ["", *fields(_evidence(mechanism, position))]
     return [*lines, *_steps(position, mechanism)]
-
-
-def value_cells(rows: Sequence[Row]) -> list[str]:
-    """Values as text: angles with six decimals, lengths and forces six digits, numbers ten."""
-    sizes = iter(lengths(row.value for row in rows if row.kind is Kind.LENGTH))
-    texts = []
-    for row in rows:
-        match row.kind:
-            case Kind.LENGTH:
-                texts.append(next(sizes))
-            case Kind.ANGLE:
-                texts.append(fixed(row.value))
-            case Kind.NUMBER:
-                texts.append(significant(row.value, _NUMBER_DIGITS))
-            case _:
-                texts.append(significant(row.value))
-    return texts
 
 
 def _tables(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, list[Row]]]:
@@ -153,42 +129,16 @@ def _evidence(mechanism: Mechanism, position: Position) -> Iterator[tuple[str, s
     without = ""
     if position.certificate.certification is Certification.SUBSET_CERTIFIED:
         without = f"; without {listed_links(position.redundant)}"
-    yield "certificate", _certificate(position.certificate, residual_measure(mechanism)) + without
+    yield (
+        "certificate",
+        certificate_text(position.certificate, residual_measure(mechanism)) + without,
+    )
     yield from redundant_lines(position.redundant)
-
-
-def listed_links(redundant: Mapping[str, float]) -> str:
-    """``the redundant links a, b``."""
-    return f"the redundant link{'s' if len(redundant) > 1 else ''} {', '.join(redundant)}"
-
-
-def redundant_lines(redundant: Mapping[str, float]) -> Iterator[tuple[str, str]]:
-    """How far the length of each redundant link is from its given value."""
-    for link, gap in redundant.items():
-        size = significant(gap, 2)
-        yield "redundant", f"{link}: its length holds to {size} of the longest link, not proved"
-
-
-def _certificate(certificate: Certificate, measure: str) -> str:
-    """The certificate of the position in one line, or why there is none."""
-    proved = certificate.certified or (certificate.certification is Certification.SUBSET_CERTIFIED)
-    if not proved or certificate.radius is None:
-        return f"none: {certificate.certification.value}"
-    radius = significant(certificate.radius, 2)
-    alone = certificate.unique_within or 0.0
-    where = "anywhere" if math.isinf(alone) else f"within {significant(alone, 2)}"
-    return f"true position within {radius}{measure}; no other {where}"
 
 
 def residual_measure(mechanism: Mechanism) -> str:
     """The measure of residuals and radii, printed after the number."""
     return " of the longest link" if mechanism.loop_equations.loops else ""
-
-
-def inputs_text(values: Mapping[str, float], units: Mapping[str, str]) -> str:
-    """``at θ12 = 60 deg``, or nothing without an input."""
-    parts = [f"{name} = {short(value)} {units[name]}".rstrip() for name, value in values.items()]
-    return f"at {', '.join(parts)}" if parts else ""
 
 
 def _steps(position: Position, mechanism: Mechanism) -> Iterator[str]:
@@ -231,39 +181,9 @@ def _trail(mechanism: Mechanism, trail: NewtonTrail) -> Iterator[str]:
     units = mechanism.model.units
     if len(mechanism.model.compiled.solver.blocks) > 1:
         yield from sentence(str, ", ".join(f'"{label}"' for label in trail.equations))
-    steps = trail.steps
-    columns = [Column(header="k", cells=[str(step.k) for step in steps], align="right")]
-    for name in steps[0].unknowns:
-        kind = kinds[name]
-        unit = f" [{units.of(kind)}]" if units.of(kind) else ""
-        rows = [Row(name=name, kind=kind, value=step.unknowns[name]) for step in steps]
-        columns.append(Column(header=f"{name}{unit}", cells=value_cells(rows), align="point"))
-    residuals = [f"{step.residual:.2e}" for step in steps]
-    changes = ["" if step.step is None else f"{step.step:.2e}" for step in steps]
-    columns.append(Column(header="|F|", cells=residuals, align="right"))
-    columns.append(Column(header="step", cells=changes, align="right"))
-    yield from table_lines(columns)
+    yield from table_lines(trail_columns(trail, kinds, units))
     if not trail.status.ok:
         yield from sentence(bad, trail.status.value)
-    for step in steps[:-1]:
-        yield from ("", *table_lines(_system(trail, step)))
-        changes = [
-            f"{name} {significant(change, _SYSTEM_DIGITS)} {units.of(kinds[name])}".rstrip()
-            for name, change in step.changes.items()
-        ]
-        yield from wrapped(", ".join(changes), "  Δ  ")
-
-
-def _system(trail: NewtonTrail, step: NewtonStep) -> list[Column]:
-    """F and J of one iterate as columns."""
-
-    def column(header: str, numbers: Sequence[float]) -> Column:
-        cells = [significant(number, _SYSTEM_DIGITS) for number in numbers]
-        return Column(header=header, cells=cells, align="point")
-
-    slopes = zip(step.unknowns, zip(*step.jacobian, strict=True), strict=True)
-    return [
-        Column(header=f"k = {step.k}", cells=trail.rows),
-        column("F", step.values),
-        *(column(f"∂F/∂{name}", slope) for name, slope in slopes),
-    ]
+    for step in trail.steps[:-1]:
+        yield from ("", *table_lines(system_columns(trail, step)))
+        yield from wrapped(changes_text(step, kinds, units), "  Δ  ")

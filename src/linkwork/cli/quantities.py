@@ -11,7 +11,8 @@ import click
 from linkwork.cli.mechanism_source import read_mechanism
 from linkwork.cli.options import debug_option, file_argument, json_option, set_option
 from linkwork.cli.terminal import print_json, print_lines, title_lines
-from linkwork.cli.text_table import WIDTH, Column, table_lines
+from linkwork.cli.text_table import WIDTH, table_lines
+from linkwork.results.listing.column import Column
 from linkwork.results.quantities.registry import Listed
 
 __all__ = ["quantities"]

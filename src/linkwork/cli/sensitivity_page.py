@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
-from linkwork.cli.text_table import Column, fixed, short, significant, table_lines
+from linkwork.cli.text_table import table_lines
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import short, significant
+from linkwork.results.listing.tolerance_listing import (
+    contribution_columns,
+    sampled_fields,
+    tolerance_fields,
+)
 from linkwork.results.sensitivity import Sensitivity, SensitivityStatus
 from linkwork.results.summary import driven_text
 from linkwork.results.tolerance import Tolerance
@@ -111,65 +118,14 @@ def tolerance_lines(found: Tolerance) -> list[str]:
     if found.status is not SensitivityStatus.FOUND:
         lines += sentence(bad, f"No tolerance of {found.of}", where)
         lines += fields([("why", found.status.value)])
-        return [*lines, *_sampled_lines(found)]
+        return [*lines, *_sampled(found)]
     lines += sentence(good, f"Tolerance of {found.of}", where)
-    unit = found.unit
-    lines += fields(
-        [
-            ("value", f"{short(found.value)} {unit}".rstrip()),
-            ("worst case", f"± {significant(found.worst_case)} {unit}".rstrip()),
-            ("root sum square", f"{significant(found.root_sum_square)} {unit}".rstrip()),
-        ]
-    )
-    lines += _sampled_lines(found)
-    parts = found.contributions
-    names = [part.name if part.kind == "dimension" else f"pin {part.name}" for part in parts]
-    cells = [significant(part.sensitivity) for part in parts]
-    return [
-        *lines,
-        "",
-        *table_lines(
-            [
-                Column(header="number", cells=names),
-                Column(
-                    header="deviation",
-                    cells=[short(part.deviation) for part in parts],
-                    align="point",
-                    units=[part.deviation_unit for part in parts],
-                ),
-                Column(
-                    header="sensitivity",
-                    cells=cells,
-                    align="point",
-                    units=[part.unit for part in parts],
-                ),
-                Column(
-                    header="change",
-                    cells=[significant(part.worst) for part in parts],
-                    align="point",
-                    units=[unit for _ in parts],
-                ),
-                Column(
-                    header="share %",
-                    cells=[fixed(100.0 * part.share, 1) for part in parts],
-                    align="point",
-                ),
-            ]
-        ),
-    ]
+    lines += [*fields(tolerance_fields(found)), *_sampled(found)]
+    return [*lines, "", *table_lines(contribution_columns(found))]
 
 
-def _sampled_lines(found: Tolerance) -> list[str]:
-    drawn = found.sampled
-    if drawn is None:
-        return []
-    unit = found.unit
-    text = (
-        f"deviation {significant(drawn.deviation)} ± {significant(drawn.error, 2)} {unit}, mean "
-        f"{short(drawn.mean)} {unit}, from {short(drawn.low)} to {short(drawn.high)} {unit}; "
-        f"{drawn.found} of {drawn.designs} designs found, seed {drawn.seed}"
-    )
-    return fields([("sampled", text)])
+def _sampled(found: Tolerance) -> list[str]:
+    return [] if found.sampled is None else fields(sampled_fields(found))
 
 
 def tolerance_data(found: Tolerance) -> dict[str, Any]:

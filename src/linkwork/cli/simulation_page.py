@@ -11,8 +11,10 @@ import numpy as np
 from linkwork.api import Mechanism
 from linkwork.cli.motion_page import range_lines
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
-from linkwork.cli.text_table import Column, fixed, significant, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.results.equilibrium import Equilibrium
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import fixed, significant
 from linkwork.results.motion import Motion
 from linkwork.results.table import Table
 

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from linkwork.batch.study import OutputSummary, Progress, Summary, Verification
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
-from linkwork.cli.text_table import WIDTH, Column, lengths, significant, table_lines
+from linkwork.cli.text_table import WIDTH, table_lines
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import lengths, significant
 
 __all__ = ["progress_line", "summary_lines", "verification_lines"]
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
-from linkwork.cli.text_table import Column, significant, table_lines
+from linkwork.cli.text_table import table_lines
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import significant
 
 __all__ = ["synthesis_lines"]
 

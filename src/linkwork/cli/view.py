@@ -13,11 +13,12 @@ import click
 from linkwork.api import example_text, examples, loads
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import is_link, text_of_link
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet, new_file
 from linkwork.viewer.live.server import LiveServer
-from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["view"]
 
@@ -69,13 +70,15 @@ def _told(name: str, address: str) -> list[str]:
 @json_option
 @debug_option
 def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
-    """Draw, show and edit a mechanism in a browser until Ctrl-C.
+    """Draw, show and edit a mechanism, or design one for a task, in a browser
+    until Ctrl-C.
 
-    Without FILE the page begins with the library and a blank sheet.
+    Without FILE the page begins with the library, a blank sheet and tasks.
 
     \b
       linkwork view
       linkwork view rapier.toml   (a blank sheet, if there is no such file)
+      linkwork view task.toml     (a task: its designs)
       linkwork view four-bar      (of the library: saved as four-bar.toml)
       linkwork view "LINK"        (saved as linked.toml)
       linkwork view rapier.toml --port 8123 --no-browser
@@ -87,8 +90,8 @@ def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
         raise InputError("standard input cannot be edited and saved: give the name of a file")
     opened = new_file() if file is None else _opened(file)
     with progress("opening"):
-        workbench = Workbench(opened, loads, start=file is None)
-    server = LiveServer(workbench, port)
+        bench = Bench(opened, loads, solve_task, start=file is None)
+    server = LiveServer(bench, port)
 
     def tell() -> None:
         if as_json:
@@ -101,6 +104,5 @@ def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
     try:
         server.run(tell)
     finally:
-        kept = workbench.keep_unsaved()
-        if kept is not None:
+        for kept in bench.keep_unsaved():
             print_lines([f"Unsaved changes were written to {kept}."])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.elementwise import phase as phase_of
 from linkwork.mechanism.figures import Disc, Mesh
 
-__all__ = ["ADDENDUM", "DEDENDUM", "tooth_outline", "tooth_phases"]
+__all__ = ["ADDENDUM", "DEDENDUM", "mesh_phases", "tooth_outline", "tooth_phases"]
 
 #: Distances of tips and roots from the pitch circle, in modules (ISO 53).
 ADDENDUM, DEDENDUM = 1.0, 1.25
@@ -60,29 +61,39 @@ def _involute(angle: Array) -> Array:
 
 
 def tooth_phases(pose: Pose) -> dict[Disc, float]:
-    """The direction [rad] of the first tooth (of a ring: gap) of every gear with known teeth.
+    """The direction [rad] of the first tooth (of a ring: gap) of every gear with known teeth."""
+    meshes = [m.discs for m in pose.skeleton.of(Mesh) if all(d.teeth for d in m.discs)]
+    return mesh_phases(meshes, pose.angle, pose.points)
+
+
+def mesh_phases(
+    meshes: Iterable[tuple[Disc, Disc]],
+    angle: Callable[[str], float],
+    points: Mapping[str, complex],
+) -> dict[Disc, float]:
+    """The direction [rad] of the first tooth (of a ring: gap) of gears in mesh.
 
     The teeth of the first wheel of a train rotate with its link; those of the following wheels are
     placed in mesh. Since the wheels roll on each other, they rotate with their links too.
     """
     phases: dict[Disc, float] = {}
-    meshes = [m.discs for m in pose.skeleton.of(Mesh) if all(d.teeth for d in m.discs)]
-    while meshes:
+    left = list(meshes)
+    while left:
         # Meshes with a wheel of known phase come first.
-        one, other = min(meshes, key=lambda pair: not phases.keys() & set(pair))
-        meshes.remove((one, other))
+        one, other = min(left, key=lambda pair: not phases.keys() & set(pair))
+        left.remove((one, other))
         if other in phases:
             one, other = other, one
-        phases.setdefault(one, pose.angle(one.link))
-        phases.setdefault(other, _meshing(pose, one, phases[one], other))
+        phases.setdefault(one, angle(one.link))
+        line = phase_of(points[other.center] - points[one.center])
+        phases.setdefault(other, _meshing(line, one, phases[one], other))
     return phases
 
 
-def _meshing(pose: Pose, one: Disc, phase: float, other: Disc) -> float:
-    """The phase of a wheel in mesh with one of known phase."""
+def _meshing(line: float, one: Disc, phase: float, other: Disc) -> float:
+    """The phase of a wheel in mesh with one of known phase; ``line``: that of the centres [rad]."""
     assert one.teeth is not None
     assert other.teeth is not None
-    line = phase_of(pose.points[other.center] - pose.points[one.center])
     if one.ring or other.ring:
         # The point of contact lies beyond the smaller wheel; its teeth are in the ring's gaps.
         line = line if one.ring else line + math.pi

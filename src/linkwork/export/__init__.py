@@ -18,6 +18,15 @@ if TYPE_CHECKING:
         plates_of as plates_of,
     )
     from linkwork.export.plates.stack import stack_of as stack_of
+    from linkwork.export.report.findings import Findings as Findings
+    from linkwork.export.report.report import (
+        check_report_file as check_report_file,
+        report_of as report_of,
+    )
+    from linkwork.export.report.template import (
+        Template as Template,
+        template_of as template_of,
+    )
     from linkwork.export.robot.robot_file import (
         check_robot_file as check_robot_file,
         robot_of as robot_of,

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from linkwork.textfile.text_edits import TextEdits as TextEdits
     from linkwork.textfile.toml_text import bytes_of as bytes_of
     from linkwork.textfile.writer import (
+        part_lines as part_lines,
         save as save,
         save_bytes as save_bytes,
         save_text as save_text,

@@ -58,11 +58,14 @@ class ReadFile:
         From key path to line number.
     name : str
         The file's name, for messages.
+    text : str
+        The file's content.
     """
 
     description: Linkage | Loops | PlainEquations
     lines: Lines
     name: str
+    text: str
 
     def located(self, error: MechanismError) -> MechanismFileError:
         """The same problems with file name and line numbers, in the file's order."""
@@ -117,7 +120,7 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
             problems += [p for p in error.problems if p.key[:1] not in lost]
         else:
             if not problems:
-                return ReadFile(description=description, lines=lines, name=name)
+                return ReadFile(description=description, lines=lines, name=name, text=text)
     raise located_error(problems, lines, name) from None
 
 

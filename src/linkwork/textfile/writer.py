@@ -21,7 +21,7 @@ from linkwork.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["save", "save_bytes", "save_text", "write_tables", "write_text"]
+__all__ = ["part_lines", "save", "save_bytes", "save_text", "write_tables", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
@@ -58,6 +58,36 @@ def write_tables(tables: Mapping[str, Any]) -> str:
     for name, table in nested.items():
         _add(document, name, table)
     return tomlkit.dumps(document)
+
+
+def part_lines(description: Description) -> list[tuple[str, str]]:
+    """The links, parts, masses, loads and inputs of a file: the name of the table, its entries.
+
+    Without the tables of numbers by name, equations, and what is asked about the mechanism.
+    """
+    found = []
+    for name, given in _tables(description).items():
+        if name in _NUMBERS:
+            continue
+        listed = given if isinstance(given, list) else [given]
+        found += [(name, _line(table)) for table in listed if table]
+    return found
+
+
+_NUMBERS = ("dimensions", "points", "lengths", "angles", "loops", "equations", "trace", "questions")
+
+
+def _line(entry: Any) -> str:
+    """An entry in one line: ``link = crank, from = 0, to = 360``."""
+    match entry:
+        case dict():
+            return ", ".join(f"{key} = {_line(each)}" for key, each in entry.items())
+        case list() | tuple():
+            return f"[{', '.join(map(_line, entry))}]"
+        case bool():
+            return str(entry).lower()
+        case _:
+            return str(entry)
 
 
 def save(description: Description, path: Path | str) -> None:

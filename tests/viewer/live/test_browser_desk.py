@@ -10,6 +10,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.textfile.link import fragment_of
 from linkwork.viewer.live.browser_desk import BrowserDesk
 from tests.viewer.live.conftest import FOUR_BAR
@@ -23,7 +24,12 @@ class Page:
         self.later: list[str] = []  # messages that arrive during a pause
         self.told: list[dict[str, Any]] = []
         self.desk = BrowserDesk(
-            lw.loads, example_text, self._tell, self._take, self._pause if pauses else None
+            lw.loads,
+            example_text,
+            self._tell,
+            self._take,
+            solve_task,
+            self._pause if pauses else None,
         )
 
     def ask(self, kind: str, **fields: Any) -> list[dict[str, Any]]:

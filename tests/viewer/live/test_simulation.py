@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.browser_desk import BrowserDesk
 from linkwork.viewer.live.mechanism_file import MechanismFile
@@ -185,7 +186,7 @@ def test_a_worker_cancels_between_two_steps() -> None:
         if time.monotonic() - began > 0.1:
             waiting.append('{"kind": "cancel", "id": 2}')
 
-    desk = BrowserDesk(lw.loads, lw.example_text, events.append, take, pause)
+    desk = BrowserDesk(lw.loads, lw.example_text, events.append, take, solve_task, pause)
     desk.open("pendulum.toml", PENDULUM)
     assert desk.work()
     assert "cancelled" in events[-1]

@@ -19,6 +19,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.api import example_text
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live.browser_desk import BrowserDesk
 from linkwork.viewer.web.pyodide_files import pyodide_files
 from linkwork.viewer.web.web_app import web_folder
@@ -132,7 +133,7 @@ def in_python(text: str, folder: Path) -> dict[str, Any]:
     before = Path.cwd()
     os.chdir(folder)
     try:
-        BrowserDesk(lw.loads, example_text, events.append, list).open("a.toml", text)
+        BrowserDesk(lw.loads, example_text, events.append, list, solve_task).open("a.toml", text)
     finally:
         os.chdir(before)
     return next(e for e in map(json.loads, events) if e["kind"] == "motion_found")

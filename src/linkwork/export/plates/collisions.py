@@ -41,17 +41,27 @@ class Collisions:
     ----------
     plates : sequence of Plate
     pins : sequence of Pin
+    meshes : sequence of frozenset of str
+        Plates of gears in mesh, whose teeth are proved by themselves.
     spacer : float
         Outer radius of spacers on pins [mm].
     """
 
-    def __init__(self, plates: Sequence[Plate], pins: Sequence[Pin], spacer: float) -> None:
-        self.plates, self.pins, self.spacer = plates, pins, spacer
+    def __init__(
+        self,
+        plates: Sequence[Plate],
+        pins: Sequence[Pin],
+        meshes: Sequence[frozenset[str]],
+        spacer: float,
+    ) -> None:
+        self.plates, self.pins, self.meshes, self.spacer = plates, pins, meshes, spacer
 
     def pairs(self) -> Iterator[Conflict]:
         """All pairs of parts that may collide: plates, pins and plates without their hole, pins."""
         count = len(self.plates)
-        yield from itertools.combinations(range(1, count), 2)
+        for a, b in itertools.combinations(range(1, count), 2):
+            if frozenset((self.plates[a].name, self.plates[b].name)) not in self.meshes:
+                yield a, b
         for p, pin in enumerate(self.pins):
             others = (k for k in range(1, count) if self.plates[k].name not in pin.plates)
             yield from ((-1 - p, k) for k in others)
@@ -86,7 +96,23 @@ class Collisions:
                     origin, turn = poses[body]
                     made[part] = _geometries(origin[:, None] + turn[:, None] * core)
             radii = self._shapes[a][2] + self._shapes[b][2]
-            yield (a, b), shapely().distance(made[a], made[b]) - radii
+            distance = shapely().distance(made[a], made[b]) - radii
+            for ring, other in ((a, b), (b, a)):
+                if ring >= 0 and self.plates[ring].inner:
+                    distance = np.maximum(distance, self._inside(ring, other, poses))
+            yield (a, b), distance
+
+    def _inside(
+        self, ring: int, other: int, poses: Mapping[str, tuple[ComplexArray, ComplexArray]]
+    ) -> Array:
+        """How far a part is from the inner edge of a ring around it [mm], (B,)."""
+        (origin, turn), plate = poses[self.plates[ring].body], self.plates[ring]
+        body, core, radius = self._shapes[other]
+        there, by = poses[body]
+        center = origin + turn * plate.core[0]
+        away = np.abs(there[:, None] + by[:, None] * core - center[:, None]).max(axis=1)
+        found: Array = plate.inner - away - radius
+        return found
 
     def conflicts(
         self,

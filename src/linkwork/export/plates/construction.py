@@ -2,27 +2,47 @@
 
 from __future__ import annotations
 
+import cmath
 import itertools
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkwork.drawing.link_symbols import convex_outline
+from linkwork.export.plates.gears import GearMesh, Wheel, gear_meshes
 from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.plate import Opening, Pin, Plate
-from linkwork.export.plates.rigid_bodies import Guideway, RigidBody, guideways, rigid_bodies
+from linkwork.export.plates.rigid_bodies import (
+    Guideway,
+    RigidBody,
+    guideways,
+    rigid_bodies,
+    same_place,
+)
+from linkwork.export.plates.wheel_plates import (
+    Blank,
+    WheelPlate,
+    cam_blank,
+    gear_blank,
+    ring_plate,
+    wheel_plate,
+)
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Contour, Disc
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.skeleton import Skeleton
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
 __all__ = ["BASE", "Construction"]
 
+_GEAR = 0.8  # of a gear's radius: bars this wide leave room for a pin and a fastener
 #: The plate of the ground.
 BASE = "base"
 
@@ -31,7 +51,9 @@ BASE = "base"
 class Construction:
     """Plates and pins of a linkage.
 
-    ``travel``: the first and the last displacement of each guide [mm]. ``ways``: its guides.
+    ``ways``: its guides; ``travel``: the least and the largest displacement of each [mm].
+    ``holes`` of points and ``more`` of fasteners, by body; ``meshes``: plates in contact, which
+    share a layer; ``contacts``: cams with their rollers, at the points ``rollers``.
     """
 
     linkage: Linkage
@@ -41,6 +63,11 @@ class Construction:
     ways: tuple[Guideway, ...]
     travel: dict[str, tuple[float, float]]
     holes: dict[str, dict[str, complex]] = field(default_factory=dict)
+    more: dict[str, dict[str, complex]] = field(default_factory=dict)
+    meshes: list[frozenset[str]] = field(default_factory=list)
+    contacts: list[tuple[str, str]] = field(default_factory=list)
+    rollers: set[str] = field(default_factory=set)
+    notes: list[str] = field(default_factory=list)
     plates: list[Plate] = field(default_factory=list)
     pins: list[Pin] = field(default_factory=list)
 
@@ -64,6 +91,7 @@ class Construction:
         gaps = [
             abs(a - b) for own in holes.values() for a, b in itertools.combinations(own.values(), 2)
         ]
+        gaps += [_GEAR * mm * disc.radius for disc in model.skeleton.of(Disc) if not disc.ring]
         sizes = sizes_of(options, mm, longest, min(gaps, default=longest))
         found = motion.found
         values = {name: mm * own.value[found] for name, own in motion.sliders.items()}
@@ -72,38 +100,129 @@ class Construction:
         ends = {name: (float(own.min()), float(own.max())) for name, own in values.items()}
         travel = {way.name: ends[way.name] for way in ways}
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
-        made._make()
+        turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
+        points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
+        wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
+        made._gears(wheels, meshes, turns)
+        made._cams(model.skeleton, turns)
+        made._main_plates()
+        for plate in made.plates:
+            check_webs(plate, sizes)
+        made._join()
         return made
 
-    def _make(self) -> None:
-        for name, body in _distinct(self.bodies):
-            self.plates.append(self._main_plate(name, body))
-        plate_of = {plate.body: plate.name for plate in self.plates}
+    def _gears(
+        self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
+    ) -> None:
+        names = []
+        for wheel in wheels:
+            body = self.bodies[wheel.disc.link]
+            own = replace(wheel, phase=wheel.phase + turns[wheel.disc.link] - turns[body.name])
+            if wheel.disc.ring:
+                names.append(self._add(ring_plate(own, body, self.sizes)))
+            else:
+                names.append(self._add(self._wheel(gear_blank(own, body), body)))
+        for mesh in meshes:
+            one, other = (wheels[k] for k in mesh.wheels)
+            self.meshes.append(frozenset(names[k] for k in mesh.wheels))
+            self.notes.append(
+                f"{mesh.name}: {one.teeth} and {other.teeth} teeth, module {one.module:.6g} mm, "
+                f"pressure angle {math.degrees(one.pressure):g} deg, backlash "
+                f"{one.backlash:.3g} mm"
+            )
+
+    def _cams(self, skeleton: Skeleton, turns: Mapping[str, float]) -> None:
+        """Cams with rollers; these turn freely on their pins."""
+        rollers = {disc.name: disc for disc in skeleton.of(Disc) if disc.kind == "roller"}
+        for contour in skeleton.of(Contour):
+            roller, body = rollers[contour.name], self.bodies[contour.link]
+            turn = cmath.exp(1j * (turns[contour.link] - turns[body.name]))
+            points = self.millimetres * turn * np.array(contour.points)
+            cam = self._add(self._wheel(cam_blank(body.places[contour.center], points), body))
+            carrier, radius = self.bodies[roller.link], self.millimetres * roller.radius
+            center, name = carrier.places[roller.center], f"{roller.name} roller"
+            if radius < self.sizes.hole / 2.0 + self.sizes.web:
+                raise InputError(
+                    f'the roller of "{roller.name}" is too small for its hole of '
+                    f"{self.sizes.hole:g} mm: choose smaller pins"
+                )
+            hole = Opening(name=roller.center, outline=circle(center, self.sizes.hole / 2.0))
+            plate = Plate(
+                name=name,
+                body=carrier.name,
+                outline=circle(center, radius),
+                openings=(hole,),
+                core=np.array([center]),
+                radius=radius,
+            )
+            self.plates.append(plate)
+            self.meshes.append(frozenset((cam, name)))
+            self.contacts.append((cam, name))
+            self.rollers.add(roller.center)
+
+    def _wheel(self, blank: Blank, body: RigidBody) -> WheelPlate:
+        slides = any(body.name in (way.on, way.runner) for way in self.ways)
+        guided = slides or body.name == GROUND
+        return wheel_plate(blank, body, self.holes[body.name], self.sizes, guided=guided)
+
+    def _add(self, wheel: WheelPlate) -> str:
+        """Add a wheel's plate with its fasteners; returns its name."""
+        body, name = wheel.plate.body, wheel.plate.name
+        self.plates.append(wheel.plate)
+        self.more.setdefault(body, {}).update(wheel.fastened)
+        for own, place in wheel.fastened.items():
+            plates = frozenset((name, self._main_name(body)))
+            self.pins.append(Pin(name=own, body=body, place=place, plates=plates, fixed=True))
+        return name
+
+    def _main_plates(self) -> None:
+        """The other plates of all bodies, the base plate first."""
+        whole = {plate.name for plate in self.plates}
+        main = [self._main_plate(own) for own, _ in _distinct(self.bodies) if own not in whole]
+        self.plates = main + self.plates
+
+    def _main_name(self, body: str) -> str:
+        return BASE if body == GROUND else body
+
+    def _join(self) -> None:
+        """The pins of all joints and guides."""
+        with_hole: dict[tuple[str, str], set[str]] = {}
+        for plate in self.plates:
+            for own in plate.openings:
+                with_hole.setdefault((plate.body, own.name), set()).add(plate.name)
         joined: dict[str, set[str]] = {}
         for point in self.linkage.points:
             bodies = {self.bodies[link].name for link in self.linkage.bodies_at(point)}
-            joined[point] = {plate_of[body] for body in bodies}
+            held = {name: with_hole.get((name, self._hole(name, point)), set()) for name in bodies}
+            joined[point] = set().union(*held.values())
+            if sum(map(bool, held.values())) < 2 and point not in self.rollers:
+                joined[point] = set()
         for way in self.ways:
+            slotted = with_hole[way.on, way.name]
             if way.reach == 0.0:
-                joined[way.point].add(plate_of[way.on])
+                held_by = with_hole[way.runner, self._hole(way.runner, way.point)]
+                joined[way.point] |= slotted | held_by
                 continue
-            own = frozenset({plate_of[way.on], plate_of[way.runner]})
             for k, place in enumerate(way.places, start=1):
-                self.pins.append(
-                    Pin(name=f"{way.name} {k}", body=way.runner, place=place, plates=own)
-                )
-        for point, plates in joined.items():
-            if len(plates) > 1:
+                name = f"{way.name} {k}"
+                plates = frozenset(slotted | with_hole[way.runner, name])
+                self.pins.append(Pin(name=name, body=way.runner, place=place, plates=plates))
+        for point, found in joined.items():
+            if found:
                 body = self.bodies[next(self.linkage.bodies_at(point))]
-                pin = Pin(
-                    name=point, body=body.name, place=body.places[point], plates=frozenset(plates)
-                )
-                self.pins.append(pin)
+                place = body.places[point]
+                through = frozenset(found)
+                self.pins.append(Pin(name=point, body=body.name, place=place, plates=through))
 
-    def _main_plate(self, name: str, body: RigidBody) -> Plate:
+    def _hole(self, body: str, point: str) -> str:
+        """The name of the hole of a point: points that coincide share one."""
+        holes, place = self.holes[body], self.bodies[body].places[point]
+        return next((p for p, z in holes.items() if same_place(z, place)), point)
+
+    def _main_plate(self, name: str) -> Plate:
         """The plate around the holes and slots of a body."""
         sizes, core, openings = self.sizes, [], []
-        for point, place in self.holes[name].items():
+        for point, place in (self.holes[name] | self.more.get(name, {})).items():
             core.append(place)
             openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
         for way in self.ways:
@@ -116,20 +235,17 @@ class Construction:
                 ends = self.slot_ends(way)
                 core += ends
                 openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
-        own = BASE if name == GROUND else name
         if not core:
             raise InputError(f'nothing is joined to "{name}": it has no plate')
         hull = convex_outline(core)
-        plate = Plate(
-            name=own,
+        return Plate(
+            name=self._main_name(name),
             body=name,
             outline=rounded(hull, sizes.width / 2.0),
             openings=tuple(openings),
             core=np.array(hull if hull[0] != hull[-1] else hull[:1]),
             radius=sizes.width / 2.0,
         )
-        check_webs(plate, sizes)
-        return plate
 
     def slot_ends(self, way: Guideway) -> tuple[complex, complex]:
         """The centres of a pin at both ends of a slot, in the frame of its body."""
@@ -190,7 +306,7 @@ def _holes(
         here = {bodies[link].name for link in linkage.bodies_at(point)}
         free = body.name != GROUND and point not in lines
         # points that coincide share one hole
-        apart = all(abs(place - other) > 1e-9 * abs(place) for other in taken)
+        apart = not any(same_place(place, other) for other in taken)
         if (len(here) > 1 or point in held or free) and apart:
             taken.append(place)
             yield point, place

@@ -31,10 +31,8 @@ def dxf_of(stack: PlateStack, placed: Sequence[PlacedPlate]) -> str:
         if stack.sizes.labels:
             document.layers.add(_ENGRAVE, color=5)
             for item in placed:
-                text, place = item.label
-                entity = space.add_text(
-                    text, height=stack.sizes.width / 3.0, dxfattribs={"layer": _ENGRAVE}
-                )
+                text, place, height = item.label(stack.sizes.width / 3.0)
+                entity = space.add_text(text, height=height, dxfattribs={"layer": _ENGRAVE})
                 entity.set_placement((place.real, place.imag), align=_middle())
         stream = io.StringIO()
         document.write(stream)

@@ -26,6 +26,7 @@ def find_layers(
     plates: int,
     pins: Sequence[frozenset[int]],
     conflicts: Iterable[Conflict],
+    together: Sequence[frozenset[int]] = (),
     most: int = _MOST,
 ) -> LayerOrder:
     """An order with as few layers as possible; plate 0 is alone in layer 0.
@@ -38,6 +39,8 @@ def find_layers(
         The plates of every pin, which goes through all layers between them.
     conflicts : iterable of Conflict
         Parts that would collide in one layer.
+    together : sequence of frozenset of int
+        Plates that have to be in one layer: gears in mesh.
     most : int
         Assignments tried for one number of layers, at most.
 
@@ -47,7 +50,7 @@ def find_layers(
     """
     known, complete = tuple(conflicts), True
     for count in range(2, plates + 1):
-        search = _Search(plates, pins, known, count, most)
+        search = _Search(plates, pins, known, together, count, most)
         if search.place(0):
             return LayerOrder(layers=tuple(search.layer))
         complete = complete and search.left > 0
@@ -55,13 +58,16 @@ def find_layers(
 
 
 def obstacles(
-    plates: int, pins: Sequence[frozenset[int]], conflicts: Iterable[Conflict]
+    plates: int,
+    pins: Sequence[frozenset[int]],
+    conflicts: Iterable[Conflict],
+    together: Sequence[frozenset[int]] = (),
 ) -> list[Conflict]:
     """Conflicts that allow no order together; in short searches none of them can be left out."""
     needed = list(conflicts)
     for conflict in tuple(needed):
         fewer = [own for own in needed if own != conflict]
-        found = find_layers(plates, pins, fewer, _FEW)
+        found = find_layers(plates, pins, fewer, together, _FEW)
         if found.layers is None and found.complete:
             needed = fewer
     return needed
@@ -74,6 +80,7 @@ class _Search:
     plates: int
     pins: Sequence[frozenset[int]]
     conflicts: Sequence[Conflict]
+    together: Sequence[frozenset[int]]
     count: int
     left: int
     layer: list[int] = field(default_factory=list)
@@ -126,6 +133,9 @@ class _Search:
         own = self.layer[plate]
         if any(self.layer[k] == own for k in self.apart[plate]):
             return False
+        for group in self.together:
+            if plate in group and any(self.layer[k] not in (own, -1) for k in group):
+                return False
         for pin in self.near[plate]:
             low, high = self._span(pin)
             if low < own < high:

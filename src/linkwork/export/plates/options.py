@@ -12,7 +12,7 @@ __all__ = ["PlateOptions", "Sizes", "sizes_of"]
 
 _STEPS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _WIDTH, _PIN, _THICKNESS, _GAP = 0.12, 0.4, 0.25, 0.05  # of the longest link; of the width
-_CLEARANCE = 0.025  # of the pin
+_CLEARANCE, _BACKLASH = 0.025, 0.05  # of the pin; of the module of gears
 _SPACER, _WEB = 0.75, 0.25  # of the width; of the wall beside a hole
 
 
@@ -34,6 +34,10 @@ class PlateOptions:
         Thickness of plates.
     gap : number, optional
         Least distance of moving plates in one layer.
+    module : number, optional
+        Module of gears given by radii, as near as whole numbers of teeth allow.
+    backlash : number, optional
+        Backlash of gears on the pitch circle.
     sheet : number, optional
         Width of the sheet on which plates are laid out.
     labels : bool
@@ -52,6 +56,8 @@ class PlateOptions:
     kerf: float = 0.0
     thickness: float | None = None
     gap: float | None = None
+    module: float | None = None
+    backlash: float | None = None
     sheet: float | None = None
     labels: bool = False
 
@@ -61,7 +67,7 @@ class PlateOptions:
             if field.name == "labels" or given is None:
                 continue
             number = finite_number(field.name, given)
-            may_vanish = field.name in ("clearance", "kerf", "gap")
+            may_vanish = field.name in ("clearance", "kerf", "gap", "backlash")
             if number < 0.0 or (number == 0.0 and not may_vanish):
                 what = "zero or more" if may_vanish else "positive"
                 raise InputError(f"{field.name} must be {what}, got {number:g}")
@@ -77,6 +83,8 @@ class Sizes:
     kerf: float
     thickness: float
     gap: float
+    module: float | None
+    backlash: float | None
     sheet: float | None
     labels: bool
 
@@ -104,6 +112,10 @@ class Sizes:
     def play(self) -> float:
         """How much longer slots are at each end than the motion needs."""
         return self.hole / 4.0
+
+    def backlash_of(self, module: float) -> float:
+        """Backlash of gears of a module."""
+        return _BACKLASH * module if self.backlash is None else self.backlash
 
 
 def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest: float) -> Sizes:
@@ -136,6 +148,8 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
         kerf=own["kerf"] or 0.0,
         thickness=own["thickness"] or _preferred(_THICKNESS * width),
         gap=_GAP * width if own["gap"] is None else own["gap"],
+        module=own["module"],
+        backlash=own["backlash"],
         sheet=own["sheet"],
         labels=options.labels,
     )

@@ -14,7 +14,7 @@ from linkwork.foundation.arrays import Array, ComplexArray
 __all__ = ["Outline", "circle", "rounded"]
 
 _FLAT = 1e-12  # bulge below which a side is straight
-_ARC = math.tau / 128  # of an arc, in one side of its polygon: 0.04 % of a circle's area
+_ARC = math.tau / 256  # of an arc, in one side of its polygon: 0.01 % of a circle's area
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from linkwork.export.plates.outline import Outline
+from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.plate import Plate, PlateStack
 from linkwork.foundation.errors import InputError
 
 __all__ = ["PlacedPlate", "assembled", "in_rows"]
 
+_NEAR, _ROOM = 0.25, 0.6  # of the letters' height; of the radius of the room for them
 _SQUARE = 1.3  # of a sheet's width to the side of a square of the boxes' area
 
 
@@ -35,10 +38,16 @@ class PlacedPlate:
         return f"{self.layer} {self.plate.name}"
 
     @property
-    def label(self) -> tuple[str, complex]:
-        """Its name, and the middle of its box."""
-        low, high = box(self.curves[:1])
-        return self.plate.name, (low + high) / 2.0
+    def polygon(self) -> Any:
+        """The material as a polygon of shapely."""
+        outer, *inner = ([(z.real, z.imag) for z in curve.polygon()] for curve in self.curves)
+        return shapely().Polygon(outer, inner)
+
+    def label(self, height: float) -> tuple[str, complex, float]:
+        """Its name, where there is most room for it, and the height of its letters [mm]."""
+        line = shapely().maximum_inscribed_circle(self.polygon, _NEAR * height)
+        x, y = line.coords[0]
+        return self.plate.name, complex(x, y), min(height, _ROOM * line.length)
 
 
 def box(curves: Sequence[Outline]) -> tuple[complex, complex]:

@@ -38,7 +38,8 @@ class Opening:
 class Plate:
     """A plate of a body, in the body's frame [mm].
 
-    ``core`` and ``radius``: the plate lies within this distance of the convex hull of the core.
+    ``core`` and ``radius``: the plate lies within this distance of the convex hull of the core, and
+    farther than ``inner`` from the middle of a ring.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Plate:
     openings: tuple[Opening, ...]
     core: ComplexArray
     radius: float
+    inner: float = 0.0
 
     @property
     def area(self) -> float:
@@ -104,6 +106,8 @@ class PlateStack:
         In how many positions no two parts touch.
     proved : bool
         Whether that is proved for all positions between them too.
+    contacts : tuple of (str, str)
+        Cams with their rollers, which touch as they should.
     open : tuple of str
         Intervals of the input for which it is not.
     notes : tuple of str
@@ -128,6 +132,7 @@ class PlateStack:
     poses: Mapping[str, tuple[complex, complex]]
     checked: int
     proved: bool
+    contacts: tuple[tuple[str, str], ...] = ()
     open: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -160,10 +165,14 @@ class PlateStack:
     @property
     def verdict(self) -> str:
         """What is known of collisions, as a sentence."""
+        pairs = (" and ".join(pair) for pair in self.contacts)
+        but = f" but {'; '.join(pairs)}" if self.contacts else ""
         if self.proved:
-            return "no two parts touch: proved for every position of the table"
-        what = f"no two parts touch in {self.checked} positions of the table: checked, not proved"
-        return what + (f" for {', '.join(self.open)}" if self.open else "")
+            return f"no two parts touch{but}: proved for every position of the table"
+        what = f"no two parts touch{but} in {self.checked} positions of the table"
+        return f"{what}: checked, not proved" + (
+            f" for {', '.join(self.open)}" if self.open else ""
+        )
 
     def bill(self) -> Table:
         """The bill of materials: a row for every plate, pin, fastener and spacer [mm], [mm²].

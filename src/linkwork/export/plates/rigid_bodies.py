@@ -7,11 +7,14 @@ from dataclasses import dataclass, field
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.figures import Disc, Mesh
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.pairs import Pair, PairKind
+from linkwork.mechanism.part.part import Part
 
-__all__ = ["Guideway", "RigidBody", "guideways", "rigid_bodies"]
+__all__ = ["Guideway", "RigidBody", "guideways", "rigid_bodies", "same_place"]
 
+_TOGETHER = 1e-9  # of a distance
 #: Origin [mm] and direction of links in one position, by link.
 Poses = Mapping[str, tuple[complex, complex]]
 
@@ -50,10 +53,24 @@ def _pairs(linkage: Linkage) -> Iterator[Pair]:
         If a part is no pair of plates.
     """
     for part in linkage.parts:
-        found = part.pairs(linkage)
-        if found is None or found.couplings or any(not body.on for body in found.bodies):
+        if not _is_made(part, linkage):
             raise InputError(f'"{part.label}" ({part.title.lower()}) cannot be made of plates')
-        yield from found.pairs
+        found = part.pairs(linkage)
+        yield from () if found is None else found.pairs
+
+
+def _is_made(part: Part, linkage: Linkage) -> bool:
+    """Whether plates are known for a part: pins, slides, gears, cams with rollers."""
+    found, figures = part.pairs(linkage), tuple(part.figures(linkage, {}))
+    if found is None:
+        return any(isinstance(figure, Disc) and figure.kind == "roller" for figure in figures)
+    meshes = [figure for figure in figures if isinstance(figure, Mesh)]
+    return len(meshes) == len(found.couplings) and all(body.on for body in found.bodies)
+
+
+def same_place(a: complex, b: complex) -> bool:
+    """Whether two points coincide, up to rounding."""
+    return abs(a - b) <= _TOGETHER * max(abs(a), abs(b))
 
 
 def _seen(poses: Poses, body: str, other: str, place: complex) -> complex:

@@ -54,11 +54,9 @@ def mesh_of(item: PlacedPlate, thickness: float) -> Mesh:
     rings = [curve.polygon() for curve in item.curves]
     flat = np.concatenate(rings)
     count = len(flat)
-    pairs = [np.stack([ring.real, ring.imag], axis=-1) for ring in rings]
-    polygon = shapely().Polygon(pairs[0], pairs[1:])
     number = {(z.real, z.imag): k for k, z in enumerate(flat.tolist())}
     faces = []
-    for triangle in shapely().get_parts(shapely().constrained_delaunay_triangles(polygon)):
+    for triangle in shapely().get_parts(shapely().constrained_delaunay_triangles(item.polygon)):
         a, b, c = (number[x, y] for x, y in triangle.exterior.coords[:3])
         left = ((flat[b] - flat[a]).conjugate() * (flat[c] - flat[a])).imag > 0.0
         faces.append((a, b, c) if left else (a, c, b))

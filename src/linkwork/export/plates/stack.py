@@ -56,7 +56,7 @@ def stack_of(
     poses = BodyPoses(model, list(dict.fromkeys(bodies)), millimetres)
     boxes = boxes_of(model, motion)
     placed = poses.of(boxes.v)
-    collisions = Collisions(made.plates, made.pins, made.sizes.spacer / 2.0)
+    collisions = Collisions(made.plates, made.pins, made.meshes, made.sizes.spacer / 2.0)
     conflicts = collisions.conflicts(placed, made.sizes.gap, lambda x: tell(_SAMPLED * x))
     while True:
         layers = _layers(collisions, conflicts)
@@ -76,6 +76,7 @@ def stack_of(
         poses={name: (complex(z[0]), complex(turn[0])) for name, (z, turn) in placed.items()},
         checked=len(boxes.v),
         proved=not proof.open,
+        contacts=tuple(made.contacts),
         open=_intervals(model, boxes.lead, proof),
         notes=tuple(notes),
     )
@@ -100,7 +101,7 @@ def _checked(model: Model, motion: Motion) -> Linkage:
 
 def _notes(linkage: Linkage, motion: Motion, made: Construction, longest: float) -> list[str]:
     """What the plates lack; refuse redundant links that are too far from fitting."""
-    notes = []
+    notes = list(made.notes)
     nothing = KinematicPairs()
     left = [part.label for part in linkage.parts if part.pairs(linkage) == nothing]
     if left:
@@ -122,7 +123,8 @@ def _layers(collisions: Collisions, conflicts: frozenset[Conflict]) -> tuple[int
     number = {plate.name: k for k, plate in enumerate(plates)}
     pins = [frozenset(number[name] for name in pin.plates) for pin in collisions.pins]
     ordered = sorted(conflicts)
-    found = find_layers(len(plates), pins, ordered)
+    together = [frozenset(number[name] for name in mesh) for mesh in collisions.meshes]
+    found = find_layers(len(plates), pins, ordered, together)
     if found.layers is not None:
         return found.layers
     if not found.complete:
@@ -132,7 +134,7 @@ def _layers(collisions: Collisions, conflicts: frozenset[Conflict]) -> tuple[int
         )
     pairs = (
         f"{collisions.name(a)} and {collisions.name(b)}"
-        for a, b in obstacles(len(plates), pins, ordered)
+        for a, b in obstacles(len(plates), pins, ordered, together)
     )
     raise InputError(
         "no order of layers lets this mechanism move: these meet and cannot all be in different "

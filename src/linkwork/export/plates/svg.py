@@ -46,10 +46,10 @@ def _group(stack: PlateStack, item: PlacedPlate, filled: bool) -> Iterator[str]:
         f'stroke-width="{_number(_LINE)}"/>'
     )
     if stack.sizes.labels:
-        text, place = item.label
+        text, place, height = item.label(stack.sizes.width / 3.0)
         yield (
-            f'<text x="{_number(place.real)}" y="{_number(-place.imag)}" '
-            f'font-size="{_number(stack.sizes.width / 3.0)}" font-family="sans-serif" '
+            f'<text x="{_number(place.real)}" y="{_number(height / 3.0 - place.imag)}" '
+            f'font-size="{_number(height)}" font-family="sans-serif" '
             f'text-anchor="middle" fill="{_ENGRAVE}">{escape(text)}</text>'
         )
     yield "</g>"

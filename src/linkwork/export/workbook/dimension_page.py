@@ -9,10 +9,10 @@ import numpy as np
 
 from linkwork.equations.model import Variable
 from linkwork.export.formulas.cell_formula import CellFormula, cell_number
+from linkwork.export.formulas.dimension_units import dimension_kinds
 from linkwork.export.formulas.rate_formulas import rate_key
 from linkwork.export.formulas.traced_equations import Dimension
 from linkwork.export.workbook.book import CYCLE, DIMENSIONS, FIRST, Book, cached, column_name
-from linkwork.export.workbook.dimension_units import dimension_kinds
 from linkwork.export.workbook.page_layout import print_on_one_page
 from linkwork.expression.writing import text
 from linkwork.foundation.arrays import Array

@@ -10,19 +10,22 @@ from urllib.parse import unquote
 
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import text_of_link
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.messages import MessageError, decoded, encoded
 from linkwork.viewer.live.requests import SetText
 from linkwork.viewer.live.solvable import Read
+from linkwork.viewer.live.task.cycle import SolveTask
+from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.waiting import Waiting, WorkSigns, answer, answers_of
-from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["BrowserDesk"]
 
 _LOOK_FOR_MESSAGES = 0.025  # interval at which long work looks for newer changes [s]
 _LONGEST_NAME = 100  # characters of a file's name
 _EXAMPLE = "example="
+_TASK = "task="
 
 
 class BrowserDesk:
@@ -38,6 +41,8 @@ class BrowserDesk:
         Receives each event as JSON.
     take : callable
         Returns the messages that have arrived since the last call, as JSON.
+    solve : callable
+        Solves a task.
     pause : callable, optional
         Lets the browser deliver messages during long work. Without it a newer change cannot cancel
         a cycle that is being solved.
@@ -49,13 +54,14 @@ class BrowserDesk:
         library: Callable[[str], str],
         tell: Callable[[str], None],
         take: Callable[[], Iterable[str]],
+        solve: SolveTask,
         pause: Callable[[], None] | None = None,
     ) -> None:
-        self._read, self._library = read, library
+        self._read, self._library, self._solve = read, library, solve
         self._tell, self._take, self._pause = tell, take, pause
         self._waiting = Waiting()
         self._signs = WorkSigns(self._send)
-        self._workbench: Workbench | None = None
+        self._workbench: Bench | None = None
         self._looked = 0.0
 
     def begin(self, fragment: str, name: str = "", saved: str = "", text: str = "") -> None:
@@ -64,7 +70,8 @@ class BrowserDesk:
         Parameters
         ----------
         fragment : str
-            The part of the address from ``#`` on: a link to a mechanism, ``#example=NAME`` or "".
+            The part of the address from ``#`` on: a link to a file, ``#example=NAME``,
+            ``#task=NAME`` or "".
         name, saved, text : str
             The file that the page kept: its name, its text, and the text with changes that are not
             saved; ``name`` is "" if it kept none.
@@ -87,6 +94,9 @@ class BrowserDesk:
         if code.startswith(_EXAMPLE) and code != _EXAMPLE:
             name = unquote(code.removeprefix(_EXAMPLE))
             return f"{name}.toml", self._library(name)
+        if code.startswith(_TASK):
+            file = task_template(unquote(code.removeprefix(_TASK)))
+            return file.name, file.text
         if code in ("", _EXAMPLE):
             return "untitled.toml", blank_sheet("Untitled")
         return "linked.toml", text_of_link(code)
@@ -108,12 +118,12 @@ class BrowserDesk:
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
         file = MechanismFile(path, saved)
-        workbench = Workbench(file, self._read, start=start)
+        workbench = Bench(file, self._read, self._solve, start=start)
         self._workbench, self._waiting = workbench, Waiting()
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
         self._send(answer(workbench.opened))
-        workbench.cycle.hurried, workbench.cycle.working = self._hurried, self._signs
+        workbench.listen(self._hurried, self._signs)
 
     def work(self) -> bool:
         """Process the next request; returns whether there was one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.textfile.text_edits import TextEdits
-from linkwork.viewer.live import requests as ask
+from linkwork.viewer.live import requests as ask, task_requests as do
 from linkwork.viewer.live.messages import kind_of
 from linkwork.viewer.live.moving_points import Before
 from linkwork.viewer.live.queries import Query
@@ -33,6 +33,12 @@ def same_thing(edit: ask.Request) -> str:
             return f"point {edit.point} {edit.lengths_follow}"
         case ask.MovePoints():
             return f"points {' '.join(edit.places)}"
+        case do.MoveTaskPoint():
+            return f"{edit.of} {edit.index}"
+        case do.TurnPose():
+            return f"angle {edit.index}"
+        case do.SetTaskEntry():
+            return f"entry {edit.key}"
         case _:
             return kind_of(type(edit))
 

@@ -34,8 +34,17 @@ from linkwork.viewer.live.file_state import (
     PartShown,
     Pick,
     Point,
+    ProblemShown,
     Remedy,
     Unknown,
+)
+from linkwork.viewer.live.task_events import (
+    CognatesFound,
+    DesignFound,
+    DesignOpened,
+    TaskSolved,
+    TaskState,
+    TaskUnsolved,
 )
 from linkwork.viewer.page_data import PageData
 
@@ -46,7 +55,10 @@ __all__ = [
     "ChangeableNumber",
     "CircuitFound",
     "CircuitsFound",
+    "CognatesFound",
     "ConfigurationsFound",
+    "DesignFound",
+    "DesignOpened",
     "Drive",
     "DrivenInput",
     "EntryShown",
@@ -82,6 +94,9 @@ __all__ = [
     "SimulationFound",
     "SketchShown",
     "StartOffered",
+    "TaskSolved",
+    "TaskState",
+    "TaskUnsolved",
     "Unknown",
     "Way",
     "Working",
@@ -234,15 +249,6 @@ class PointMoved:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProblemShown:
-    """A problem: its line in the text, its key and the remedy."""
-
-    line: int | None
-    key: str
-    message: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class ProblemsFound:
     """Problems of a change or of the file on disk; the display does not change."""
 
@@ -314,6 +320,12 @@ Event = (
     | FileChanged
     | Saved
     | StartOffered
+    | TaskState
+    | TaskSolved
+    | TaskUnsolved
+    | DesignFound
+    | DesignOpened
+    | CognatesFound
 )
 
 EVENTS: tuple[type, ...] = Event.__args__

@@ -21,11 +21,21 @@ __all__ = [
     "PartShown",
     "Pick",
     "Point",
+    "ProblemShown",
     "Remedy",
     "Unknown",
 ]
 
 Point = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProblemShown:
+    """A problem: its line in the text, its key and the remedy."""
+
+    line: int | None
+    key: str
+    message: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,8 +23,8 @@ def blank_sheet(name: str) -> str:
     return f'format = 1\nname = {json.dumps(name, ensure_ascii=False)}\nlength = "mm"\n'
 
 
-def new_file(example: str = "") -> MechanismFile:
-    """A mechanism of the library, or a blank sheet, under a name that no file has.
+def new_file(example: str = "", text: str | None = None) -> MechanismFile:
+    """A mechanism of the library, a blank sheet or a text, under a name that no file has.
 
     Raises
     ------
@@ -32,7 +32,8 @@ def new_file(example: str = "") -> MechanismFile:
         If the library has no such mechanism.
     """
     stem = example or "untitled"
-    text = example_text(example) if example else blank_sheet("Untitled")
+    if text is None:
+        text = example_text(example) if example else blank_sheet("Untitled")
     for k in range(1, _MOST_COPIES):
         path = Path(f"{stem}.toml" if k == 1 else f"{stem}-{k}.toml")
         if not path.exists():

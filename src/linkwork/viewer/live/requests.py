@@ -19,6 +19,7 @@ from linkwork.viewer.live.part_requests import (
     SetMass,
     SetPart,
 )
+from linkwork.viewer.live.task_requests import TaskRequest
 from linkwork.viewer.live.whole_edits import AddOutput, ChangeUnits, Duplicate, Mirror, Rename
 
 __all__ = [
@@ -94,8 +95,7 @@ class SetNumber:
 class MovePoint:
     """Move a point of the sketch [length].
 
-    Measured lengths change with it. Given lengths stay unless ``lengths_follow``; formulas always
-    stay.
+    Measured lengths change with it, given ones stay unless ``lengths_follow``, formulas always.
     """
 
     point: str
@@ -265,9 +265,8 @@ class SetText:
 
 @dataclass(frozen=True, kw_only=True)
 class SetSheet:
-    """Set the width of the visible part of the plane [length], by which symbols are sized.
-
-    Of a flat view, the width that its height allows.
+    """Set the width of the visible part of the plane [length], by which symbols are sized: of a
+    flat view, the width that its height allows.
 
     ``edited``: the mechanism is changed in the drawing, which is then sent at its start.
     """
@@ -373,7 +372,7 @@ class MakeLink:
     app: str = ""
 
 
-#: A question about the mechanism and its motion, which changes nothing.
+#: Asks about the mechanism and its motion, and changes nothing.
 Question = ListCircuits | ListQuantities | Export | MakeLink
 
 Request = (
@@ -394,6 +393,7 @@ Request = (
     | Redo
     | Save
     | Reload
+    | TaskRequest
 )
 
 EDITS: tuple[type, ...] = Edit.__args__

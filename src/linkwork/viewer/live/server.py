@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
 from linkwork.viewer.live.messages import LARGEST_MESSAGE, MessageError, decoded, encoded
@@ -37,7 +38,7 @@ class LiveServer:
 
     Parameters
     ----------
-    workbench : Workbench
+    workbench : Workbench or Bench
     port : int
         0 selects a free port.
 
@@ -47,7 +48,7 @@ class LiveServer:
         If the port is taken.
     """
 
-    def __init__(self, workbench: Workbench, port: int = 0) -> None:
+    def __init__(self, workbench: Workbench | Bench, port: int = 0) -> None:
         self._socket = _listening(port)
         self.port: int = self._socket.getsockname()[1]
         # other programs and web pages on this machine can reach the port, but do not know the token

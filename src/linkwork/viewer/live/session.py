@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from functools import partial
 
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.requests import Request
 from linkwork.viewer.live.waiting import Tell, Waiting, WorkSigns, answer, answers_of
 from linkwork.viewer.live.workbench import Workbench
@@ -22,19 +23,19 @@ class Desk:
 
     Parameters
     ----------
-    workbench : Workbench
+    workbench : Workbench or Bench
         For exclusive use until :meth:`close`.
     tell : callable
         Called in the desk's thread.
     """
 
-    def __init__(self, workbench: Workbench, tell: Tell) -> None:
+    def __init__(self, workbench: Workbench | Bench, tell: Tell) -> None:
         self._workbench, self._tell = workbench, tell
         self._waiting = Waiting()
         self._changed = threading.Condition()
         self._closing = False
         self._signs = WorkSigns(tell)
-        workbench.cycle.hurried, workbench.cycle.working = self._hurried, self._signs
+        workbench.listen(self._hurried, self._signs)
         self._thread = threading.Thread(target=self._work, name="linkwork desk", daemon=True)
         self._thread.start()
 

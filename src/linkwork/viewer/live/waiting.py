@@ -7,9 +7,11 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.events import Event, Refused, Working
 from linkwork.viewer.live.requests import EDITS, Cancel, Request
+from linkwork.viewer.live.task_requests import TASK_EDITS
 from linkwork.viewer.live.workbench import Workbench
 
 __all__ = ["Tell", "Waiting", "WorkSigns", "answer", "answers_of"]
@@ -37,7 +39,9 @@ class Waiting:
     @property
     def ends_work(self) -> bool:
         """Whether a change of the file or a cancellation waits."""
-        return any(isinstance(request, (*EDITS, Cancel)) for request, _ in self._requests)
+        return any(
+            isinstance(request, (*EDITS, *TASK_EDITS, Cancel)) for request, _ in self._requests
+        )
 
     def add(self, request: Request | None, number: int | None) -> None:
         """Queue a request."""
@@ -76,7 +80,7 @@ class WorkSigns:
             self._tell([Working(fraction=min(1.0, max(0.0, fraction)))], self._number)
 
 
-def answers_of(workbench: Workbench, request: Request | None) -> list[Event]:
+def answers_of(workbench: Workbench | Bench, request: Request | None) -> list[Event]:
     """The events that answer a request."""
     return workbench.opened() if request is None else workbench.handle(request)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import singledispatchmethod
-from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.textfile.text_edits import TextEdits
@@ -17,8 +17,9 @@ from linkwork.viewer.live.drag import Drag, goes_on, same_thing
 from linkwork.viewer.live.edits import Followed, applied, edit_title
 from linkwork.viewer.live.force_entries import FORMS
 from linkwork.viewer.live.history import History
-from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk, new_file
+from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.moving_points import Before
+from linkwork.viewer.live.opened_file import FILE_REQUESTS, Events, OpenedFile
 from linkwork.viewer.live.palette import PALETTE
 from linkwork.viewer.live.queries import Query, answered
 from linkwork.viewer.live.refusals import Refusing, refusing
@@ -27,14 +28,11 @@ from linkwork.viewer.live.subject import Subject, read_subject
 
 __all__ = ["Workbench"]
 
-Events = list[tell.Event]
-
-
 #: Requests that add text: their problems are at lines that the file does not have.
 _ADDING = (ask.AddPoint, ask.AddLink, ask.AddJoint, ask.AddPart, ask.DrawPart, ask.Together)
 
 
-class Workbench:
+class Workbench(OpenedFile):
     """One mechanism file, its text, its history and its motion.
 
     Parameters
@@ -58,22 +56,16 @@ class Workbench:
         *,
         start: bool = False,
     ) -> None:
-        self._file, self._read, self._begun = file, read, not start
+        super().__init__(file)
+        self._read, self._begun = read, not start
         self.cycle = Cycle(self._read_whatever(file.text))
-        self._history = History(file.text)
         self._drag: Drag | None = None
-        self._conflict: tell.FileChanged | None = None
 
     @property
     def text(self) -> str:
         """The current text, including an intermediate change."""
         on_the_way = None if self._drag is None else self._drag.latest
         return self._history.text if on_the_way is None else on_the_way
-
-    @property
-    def unsaved(self) -> bool:
-        """Whether the text differs from the one last read or written."""
-        return self.text != self._file.text
 
     def opened(self) -> Events:
         """All events that a page needs at its start."""
@@ -93,37 +85,9 @@ class Workbench:
             events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
         return [*events, *(self.cycle.events() if self.cycle.owed else [])]
 
-    def poll(self) -> Events:
-        """Report changes of the file by other programs; load them unless changes are unsaved."""
-        news = self._file.news()
-        if news is None:
-            return []
-        name = self._file.name
-        if news is OnDisk.SAME:
-            self._conflict = None
-            return [self._changed(f'"{name}" again has the content that was read here')]
-        if news is OnDisk.MISSING:
-            message = f'"{name}" has been deleted: save to write it again'
-            self._conflict = self._changed(message, missing=True)
-            return [self._conflict]
-        if self.unsaved:
-            message = (
-                f'"{name}" has been changed by another program, and changes made here are not '
-                "saved: reload the file, or save and overwrite it"
-            )
-            self._conflict = self._changed(message)
-            return [self._conflict]
-        return self._taken_over()
-
-    def keep_unsaved(self) -> Path | None:
-        """Write unsaved text to a copy next to the file; ``None`` if all is saved.
-
-        Raises
-        ------
-        InputError
-            If the copy cannot be written.
-        """
-        return self._file.keep_beside(self.text) if self.unsaved else None
+    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+        """Let long work end for a newer change, and report its progress."""
+        self.cycle.hurried, self.cycle.working = hurried, working
 
     # Requests
 
@@ -131,6 +95,8 @@ class Workbench:
     def _handle(self, request: ask.Request) -> Events:
         if isinstance(request, ask.EDITS):
             return self._edited(request)  # type: ignore[arg-type]
+        if isinstance(request, FILE_REQUESTS):
+            return self._on_file(request)
         if isinstance(request, Query):
             return answered(request, self.cycle.subject.mechanism)
         if isinstance(request, ask.Question):
@@ -200,24 +166,6 @@ class Workbench:
             )
         self._open(new_file(request.name))
         return self._everything()
-
-    @_handle.register
-    def _(self, request: ask.Undo) -> Events:
-        if self._history.undone() is None:
-            raise InputError("there is nothing to undo")
-        return self._went()
-
-    @_handle.register
-    def _(self, request: ask.Redo) -> Events:
-        if self._history.redone() is None:
-            raise InputError("there is nothing to redo")
-        return self._went()
-
-    @_handle.register
-    def _(self, request: ask.Save) -> Events:
-        self._file.write(self.text, overwrite=request.overwrite)
-        self._conflict = None
-        return [tell.Saved(file=self._file.name), self._state()]
 
     @_handle.register
     def _(self, request: ask.Reload) -> Events:
@@ -306,13 +254,6 @@ class Workbench:
         except MechanismError as error:
             return [telling.problems_found(error)]
         return [self._changed(f'"{self._file.name}" has been read again', reloaded=True), *events]
-
-    def _changed(
-        self, message: str, *, reloaded: bool = False, missing: bool = False
-    ) -> tell.FileChanged:
-        return tell.FileChanged(
-            message=message, reloaded=reloaded, unsaved=self.unsaved, missing=missing
-        )
 
     def _read_whatever(self, text: str) -> Subject:
         return read_subject(text, self._file.name, self._read, whatever=True)

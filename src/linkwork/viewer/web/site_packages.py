@@ -11,12 +11,11 @@ from importlib.resources.abc import Traversable
 __all__ = ["site_packages"]
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
-#: What a page never imports: commands, syntheses, studies, and the front end (but for the pages
+#: What a page never imports: commands, studies, and the front end (but for the pages
 #: that it exports).
 _UNUSED = (
     "batch/study",
     "cli",
-    "design/precision",
     "export/code",
     "kernels/gpu",
     "viewer/web",

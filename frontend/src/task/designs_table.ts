@@ -1,0 +1,158 @@
+// All designs in a table that sorts; refused ones are grey, with their reason.
+
+import type { DesignShown, TaskSolved, TaskState } from "../messages";
+import { measured, trimmed, shortNumber } from "../numbers";
+import { html, say } from "../svg";
+import { toggle } from "../controls";
+
+type Column = "number" | "mechanism" | "transmission" | "size" | "error" | "score";
+
+const TITLES: Readonly<Record<Column, string>> = { number: "No.", mechanism: "Mechanism", transmission: "μ min", size: "Size", error: "Error", score: "Score" };
+const ABOUT: Readonly<Record<Column, string>> = {
+  number: "Rank among the sound designs, or place among the refused ones",
+  mechanism: "Mechanism and driven link",
+  transmission: "Smallest transmission angle over the driven range",
+  size: "Longest link, or distance of the fixed pivots",
+  error: "How far positions are missed",
+  score: "Score of the ranking, 0 to 1",
+};
+/** Large values first when a column is chosen. */
+const FALLING: readonly Column[] = ["transmission", "score"];
+
+export class DesignsTable {
+  readonly element = html("div", { class: "lw-t-designs" });
+  private readonly lead = html("p", { class: "lw-lead", role: "status" }, this.element);
+  private readonly reasons = html("ul", { class: "lw-t-reasons" }, this.element);
+  private readonly scroll = html("div", { class: "lw-t-scroll" }, this.element);
+  private readonly table = html("table", {}, this.scroll);
+  private readonly head = html("tr", {}, html("thead", {}, this.table));
+  private readonly body = html("tbody", {}, this.table);
+  private readonly more = html("p", { class: "lw-lead" }, this.element);
+  private solved: TaskSolved | null = null;
+  private task: TaskState | null = null;
+  private by: Column | null = null;
+  private falling = false;
+  private refused = true;
+  private chosen = -1;
+
+  constructor(private readonly choose: (index: number) => void) {
+    const box = html("div", { class: "lw-t-filter" });
+    this.lead.after(box);
+    toggle(box, "Refused designs too", true, (on) => {
+      this.refused = on;
+      this.fill();
+    });
+    this.table.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** The list; null while there is none. */
+  show(task: TaskState, solved: TaskSolved | null, why = ""): void {
+    this.task = task;
+    this.solved = solved;
+    this.element.classList.toggle("lw-t-none", !solved?.designs.length);
+    say(this.lead, solved ? verdict(solved) : why);
+    this.reasons.replaceChildren();
+    if (solved && !solved.sound) for (const [defect, count] of Object.entries(solved.defects)) html("li", {}, this.reasons, `${count} × ${defect}`);
+    this.fill();
+  }
+
+  /** Mark the chosen design. */
+  mark(index: number): void {
+    this.chosen = index;
+    for (const row of this.body.rows) row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
+  }
+
+  private get columns(): Column[] {
+    const errors = this.solved?.designs.some(({ error }) => error) ?? false;
+    return ["number", "mechanism", "transmission", "size", ...(errors ? ["error" as const] : []), "score"];
+  }
+
+  private fill(): void {
+    const { solved, task } = this;
+    this.head.replaceChildren();
+    this.body.replaceChildren();
+    say(this.more, solved?.left_out ? `${solved.left_out} more designs are not listed; linkwork synthesize --csv writes all.` : "");
+    if (!solved || !task) return;
+    for (const column of this.columns) this.title(column, task, solved);
+    const shown = solved.designs.filter(({ sound }) => sound || this.refused);
+    for (const design of this.sorted(shown)) this.row(design, task);
+    this.mark(this.chosen);
+  }
+
+  private title(column: Column, task: TaskState, solved: TaskSolved): void {
+    const unit = { transmission: task.angle_unit === "deg" ? "°" : "rad", size: task.length_unit, error: solved.error_unit === "deg" ? "°" : solved.error_unit }[column as string];
+    const sorted = this.by === column ? (this.falling ? "descending" : "ascending") : "none";
+    const cell = html("th", { scope: "col", "aria-sort": sorted }, this.head);
+    const button = html("button", { type: "button", title: ABOUT[column] }, cell, TITLES[column] + (unit ? ` [${unit}]` : ""));
+    button.addEventListener("click", () => {
+      this.falling = this.by === column ? !this.falling : FALLING.includes(column);
+      this.by = column;
+      this.fill();
+      this.head.querySelectorAll<HTMLElement>("button")[this.columns.indexOf(column)]?.focus();
+    });
+  }
+
+  private sorted(designs: readonly DesignShown[]): readonly DesignShown[] {
+    const { by } = this;
+    if (by === null) return designs;
+    const sense = this.falling ? -1 : 1;
+    const key = (one: DesignShown): number | string | null => (by === "mechanism" ? `${one.mechanism} ${one.drive}` : one[by]);
+    return [...designs].sort((one, other) => {
+      const [a, b] = [key(one), key(other)];
+      if (a === null || b === null) return a === b ? 0 : a === null ? 1 : -1; // without a value last
+      return sense * (typeof a === "string" ? a.localeCompare(String(b)) : a - (b as number));
+    });
+  }
+
+  private row(design: DesignShown, task: TaskState): void {
+    const row = html("tr", { tabindex: 0, "data-index": design.index, class: design.sound ? "" : "lw-t-refused" }, this.body);
+    row.addEventListener("click", () => this.choose(design.index));
+    for (const column of this.columns) {
+      if (column === "mechanism") {
+        const cell = html("td", {}, row, `${inWords(design)}, ${design.drive}`);
+        if (design.reason) html("span", { class: "lw-t-reason" }, cell, design.reason);
+      } else html(column === "number" ? "th" : "td", column === "number" ? { scope: "row" } : {}, row, this.number(design, column, task));
+    }
+  }
+
+  private number(design: DesignShown, column: Exclude<Column, "mechanism">, task: TaskState): string {
+    const value = design[column];
+    if (value === null) return "–";
+    if (column === "number") return design.sound ? String(value) : `(${value})`;
+    if (column === "transmission") return trimmed(shortNumber(value, task.angle_unit === "deg" ? 3 : 4));
+    return trimmed(shortNumber(value, 4));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const row = (event.target as Element).closest<HTMLTableRowElement>("tbody tr");
+    if (!row) return;
+    const next = { ArrowDown: row.nextElementSibling, ArrowUp: row.previousElementSibling }[event.key];
+    if (next === undefined && event.key !== "Enter") return;
+    event.preventDefault();
+    event.stopPropagation();
+    const chosen = (next ?? row) as HTMLTableRowElement;
+    chosen.focus();
+    this.choose(Number(chosen.dataset.index));
+  }
+}
+
+/** The counts in one sentence, or why there is no sound design. */
+export function verdict(solved: TaskSolved): string {
+  const designs = `${solved.count} design${solved.count === 1 ? "" : "s"}`;
+  if (!solved.count) return "No mechanism of the wanted kinds solves the task.";
+  if (solved.sound) return `${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
+  const cost = solved.costliest ? ` The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : "";
+  return `No design is free of defects (${designs}).${cost}`;
+}
+
+/** A design in one line. */
+export function inOneLine(design: DesignShown, task: TaskState): string {
+  const driven = design.drive === "slider" ? "driven at the slider" : `driven at ${design.drive}`;
+  const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(Number(design.transmission.toPrecision(3)), task.angle_unit)}`;
+  const size = design.size === null ? "" : `, longest link ${`${trimmed(shortNumber(design.size, 4))} ${task.length_unit}`}`;
+  return `${inWords(design)} ${driven}${angle}${size}`;
+}
+
+function inWords({ mechanism }: DesignShown): string {
+  return mechanism.replace("inverted-", "inverted ");
+}

@@ -1,0 +1,75 @@
+// A four-bar or slider-crank in one position, drawn in pixels.
+
+import type { DesignFound } from "../messages";
+import { svg } from "../svg";
+import type { Place } from "./geometry";
+
+/** Places on the screen of points of the plane. */
+export type Project = (place: Place) => Place;
+
+/** A, B and P of a row. */
+export function jointsOf(row: readonly number[]): [Place, Place, Place] {
+  return [[row[0]!, row[1]!], [row[2]!, row[3]!], [row[4]!, row[5]!]];
+}
+
+/** Draw a design at a row of its points into a group. */
+export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | "design" | "guided" | "line">, row: readonly number[], project: Project, named = false): void {
+  const [a, b, p] = jointsOf(row).map(project) as [Place, Place, Place];
+  const fixed = design.fixed.map((place) => project(place));
+  const slides = fixed.length === 3;
+  const drivesB = design.design.drive === "B0";
+  if (slides) line(group, fixed[1]!, fixed[2]!, "lw-t-rail");
+  plate(group, [a, b, p]);
+  if (slides) block(group, b, fixed[1]!, fixed[2]!, design.design.drive === "slider");
+  else if (design.line !== null) {
+    // a line of the coupler, through B, slides in a block that turns about B0
+    const along = Math.atan2(a[1] - b[1], b[0] - a[0]) + design.line;
+    const [dx, dy] = [26 * Math.cos(along), -26 * Math.sin(along)];
+    const [x, y] = fixed[1]!;
+    const sense = (x - b[0]) * dx + (y - b[1]) * dy < 0 ? -1 : 1;
+    line(group, [b[0] - sense * dx, b[1] - sense * dy], [x + sense * dx, y + sense * dy], "lw-t-rod");
+    block(group, [x, y], [x - dx, y - dy], [x + dx, y + dy], drivesB);
+  }
+  else line(group, fixed[1]!, b, drivesB ? "lw-t-bar lw-t-driven" : "lw-t-bar lw-t-rocker");
+  line(group, fixed[0]!, a, drivesB || design.design.drive === "slider" ? "lw-t-bar lw-t-rocker" : "lw-t-bar lw-t-driven");
+  for (const place of slides ? fixed.slice(0, 1) : fixed) ground(group, place);
+  for (const [x, y] of [a, b, ...(slides ? fixed.slice(0, 1) : fixed)]) svg("circle", { cx: x, cy: y, r: 4.5, class: "lw-t-pin" }, group);
+  if (named) {
+    label(group, "A₀", fixed[0]!, a);
+    if (!slides) label(group, "B₀", fixed[1]!, b);
+    label(group, "A", a, b);
+    label(group, "B", b, a);
+  }
+  if (design.guided === "P") svg("circle", { cx: p[0], cy: p[1], r: 4, class: "lw-t-guided" }, group);
+}
+
+/** The coupler alone, thin: another position of the same design. */
+export function drawGhost(group: Element, row: readonly number[], project: Project): void {
+  const places = jointsOf(row).map(project);
+  svg("path", { d: `M${places.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`, class: "lw-t-ghost" }, group);
+}
+
+function plate(group: Element, [a, b, p]: readonly [Place, Place, Place]): void {
+  const d = `M${[a, b, p].map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`;
+  svg("path", { d, class: "lw-t-plate" }, group);
+}
+
+function line(group: Element, [x1, y1]: Place, [x2, y2]: Place, name: string): void {
+  svg("line", { x1: x1.toFixed(1), y1: y1.toFixed(1), x2: x2.toFixed(1), y2: y2.toFixed(1), class: name }, group);
+}
+
+/** The name of a joint, away from another place. */
+function label(group: Element, name: string, [x, y]: Place, [u, v]: Place): void {
+  const away = Math.hypot(x - u, y - v) || 1;
+  svg("text", { x: (x + (16 * (x - u)) / away).toFixed(1), y: (y + (16 * (y - v)) / away).toFixed(1), "text-anchor": "middle", dy: "0.35em", class: "lw-t-name" }, group).textContent = name;
+}
+
+/** A fixed pivot: a triangle on hatching. */
+function ground(group: Element, [x, y]: Place): void {
+  svg("path", { d: `M${x} ${y}l-9 13h18zM${x - 13} ${y + 13}h26M${x - 9} ${y + 13}l-5 6m10-6l-5 6m10-6l-5 6m10-6l-5 6`, class: "lw-t-ground" }, group);
+}
+
+function block(group: Element, [x, y]: Place, [x1, y1]: Place, [x2, y2]: Place, driven: boolean): void {
+  const angle = (Math.atan2(y2 - y1, x2 - x1) * 180) / Math.PI;
+  svg("rect", { x: x - 15, y: y - 9, width: 30, height: 18, rx: 2, class: driven ? "lw-t-block lw-t-driven" : "lw-t-block", transform: `rotate(${angle.toFixed(2)} ${x.toFixed(1)} ${y.toFixed(1)})` }, group);
+}

@@ -1,0 +1,168 @@
+// The numbers and wishes of a task as fields, and its text.
+
+import { fill } from "../live/fields";
+import type { LiveRequest, TaskState } from "../messages";
+import { shortNumber, trimmed } from "../numbers";
+import { html, say } from "../svg";
+import type { Thing } from "./handles";
+
+type Ask = (request: LiveRequest) => void;
+
+const KINDS: Readonly<Record<string, string>> = { motion: "Poses of a body", path: "Points of a path", mixed: "Points and poses", function: "A function" };
+const MECHANISMS: Readonly<Record<string, string>> = {
+  "": "all kinds of mechanisms",
+  "four-bar": "four-bars",
+  "slider-crank": "slider-cranks",
+  "inverted-slider-crank": "inverted slider-cranks",
+  given: "as in the text",
+};
+
+/** Entries that are one number or text: key, label, unit. */
+const WISHES = [
+  ["wanted.transmission.least", "Transmission angle at least", "angle"],
+  ["wanted.lengths.least", "Links not shorter than", "length"],
+  ["wanted.lengths.most", "Links not longer than", "length"],
+  ["wanted.lengths.ratio", "Longest over shortest link at most", ""],
+] as const;
+const FUNCTION = [
+  ["function.of", "Function of x", ""],
+  ["function.x.0", "x from", ""],
+  ["function.x.1", "x to", ""],
+  ["function.input.0", "Crank from", "angle"],
+  ["function.input.1", "Crank to", "angle"],
+  ["function.output.0", "Output from", ""],
+  ["function.output.1", "Output to", ""],
+] as const;
+
+export class TaskForm {
+  readonly element = html("div", { class: "lw-t-form" });
+  private readonly kind = this.choice("Task", KINDS, (value) => this.set("task", value));
+  private readonly mechanism = this.choice("Find", MECHANISMS, (value) => value !== "given" && this.set("mechanism", value || null));
+  private readonly positions = html("table", { class: "lw-t-positions" }, this.element);
+  private readonly functions = html("div", { class: "lw-t-fields" }, this.element);
+  private readonly order = this.choice("Order of positions", { "as given": "as given", any: "any" }, (value) => this.set("wanted.order", value));
+  private readonly range = this.choice("Driven range", { "": "from the first position to the last", "turns fully": "turns fully", given: "as in the text" }, (value) => value !== "given" && this.set("wanted.input", value || null));
+  private readonly wishes = html("div", { class: "lw-t-fields" }, this.element);
+  private readonly extra = html("p", { class: "lw-lead" }, this.element);
+  private readonly text: HTMLTextAreaElement;
+  private readonly fields = new Map<string, { input: HTMLInputElement; unit: HTMLElement; kind: string }>();
+  private rows = "";
+
+  constructor(
+    private readonly ask: Ask,
+    private readonly pick: (thing: Thing) => void,
+  ) {
+    for (const [key, label, kind] of FUNCTION) this.field(this.functions, key, label, kind);
+    for (const [key, label, kind] of WISHES) this.field(this.wishes, key, label, kind);
+    const box = html("details", { class: "lw-group" }, this.element);
+    html("summary", {}, box, "Text of the task");
+    this.text = html("textarea", { rows: 18, spellcheck: "false", "aria-label": "Text of the task" }, box);
+    const apply = html("button", { type: "button" }, box, "Use this text");
+    apply.addEventListener("click", () => this.ask({ kind: "set_text", text: this.text.value }));
+  }
+
+  show(task: TaskState): void {
+    const { entries } = task;
+    this.kind.value = task.task;
+    const kinds = String(entries.mechanism ?? "");
+    const several = !(kinds in MECHANISMS);
+    this.mechanism.value = several ? "given" : kinds;
+    (this.mechanism.querySelector("[value=given]") as HTMLOptionElement).hidden = !several;
+    this.order.value = String(entries["wanted.order"] ?? "as given");
+    const ranged = "wanted.input.from" in entries;
+    this.range.value = ranged ? "given" : String(entries["wanted.input"] ?? "");
+    (this.range.querySelector("[value=given]") as HTMLOptionElement).hidden = !ranged;
+    const functions = task.task === "function";
+    this.functions.hidden = !functions;
+    this.positions.hidden = this.order.parentElement!.hidden = functions;
+    this.mechanism.parentElement!.hidden = task.task === "path" || task.task === "mixed";
+    for (const [key, { input, unit, kind }] of this.fields) {
+      const value = entries[key];
+      fill(input, value === undefined ? "" : typeof value === "number" ? plain(value) : value);
+      say(unit, kind === "angle" ? (task.angle_unit === "deg" ? "°" : "rad") : kind === "length" ? task.length_unit : "");
+    }
+    const pivots = task.fixed_pivots.length + task.moving_pivots.length;
+    const parts = [pivots && `${pivots} fixed ${pivots === 1 ? "pivot" : "pivots"}`, task.region.length && "a region of fixed pivots", task.obstacles.length && `${task.obstacles.length} obstacle${task.obstacles.length === 1 ? "" : "s"}`].filter(Boolean);
+    say(this.extra, parts.length ? `Drawn besides: ${parts.join(", ")}. Pick one on the canvas and press Delete to remove it.` : "");
+    if (this.text !== document.activeElement) this.text.value = task.text;
+    this.table(task);
+  }
+
+  /** Mark the row of the picked position. */
+  mark(thing: Thing | null): void {
+    for (const row of this.positions.querySelectorAll<HTMLElement>("tr[data-index]")) row.classList.toggle("lw-t-picked", thing?.of === "position" && Number(row.dataset.index) === thing.index);
+  }
+
+  private set(key: string, value: number | string | null): void {
+    this.ask({ kind: "set_task_entry", key, value });
+  }
+
+  private choice(label: string, options: Readonly<Record<string, string>>, chosen: (value: string) => void): HTMLSelectElement {
+    const holder = html("label", { class: "lw-t-choice" }, this.element, label);
+    const select = html("select", {}, holder);
+    for (const [value, text] of Object.entries(options)) html("option", { value }, select, text);
+    select.addEventListener("change", () => chosen(select.value));
+    return select;
+  }
+
+  private field(parent: Element, key: string, label: string, kind: string): void {
+    const holder = html("label", { class: "lw-t-field" }, parent, label);
+    const input = html("input", { type: "text", class: "lw-field", spellcheck: "false", "data-key": key, ...(key === "function.of" ? {} : { inputmode: "decimal" }) }, holder);
+    const unit = html("span", { class: "lw-unit" }, holder);
+    input.addEventListener("change", () => this.set(key, key === "function.of" ? input.value.trim() || null : number(input.value)));
+    this.fields.set(key, { input, unit, kind });
+  }
+
+  /** Positions as rows of fields; kept while their number stays, so that the focus does. */
+  private table(task: TaskState): void {
+    const posed = task.task === "motion" || task.positions.some(({ angle }) => angle !== null);
+    const made = `${task.positions.length} ${posed} ${task.length_unit} ${task.angle_unit} ${task.positions_from_file}`;
+    if (made !== this.rows) this.tableAnew(task, posed);
+    this.rows = made;
+    task.positions.forEach(({ x, y, angle }, k) => {
+      for (const [name, value] of Object.entries({ x, y, angle })) {
+        const input = this.positions.querySelector<HTMLInputElement>(`tr[data-index="${k}"] input[data-name=${name}]`);
+        if (input) fill(input, value === null ? "" : plain(value));
+      }
+    });
+  }
+
+  private tableAnew(task: TaskState, posed: boolean): void {
+    this.positions.replaceChildren();
+    const names = posed ? ["x", "y", "angle"] : ["x", "y"];
+    const head = html("tr", {}, html("thead", {}, this.positions));
+    html("td", {}, head);
+    for (const name of names) html("th", { scope: "col" }, head, name === "angle" ? `angle [${task.angle_unit === "deg" ? "°" : "rad"}]` : `${name} [${task.length_unit}]`);
+    html("td", {}, head);
+    const body = html("tbody", {}, this.positions);
+    task.positions.forEach((_, k) => this.position(body, k, names, task.positions_from_file));
+  }
+
+  private position(body: Element, index: number, names: readonly string[], fixed: boolean): void {
+    const row = html("tr", { "data-index": index }, body);
+    html("th", { scope: "row" }, row, String(index + 1));
+    for (const name of names) {
+      const input = html("input", { type: "text", class: "lw-field", inputmode: "decimal", "data-name": name, "aria-label": `${name} of position ${index + 1}` }, html("td", {}, row));
+      input.disabled = fixed;
+      input.addEventListener("focus", () => this.pick({ of: "position", index, knob: false }));
+      const key = name === "angle" ? `positions.${index}.angle` : `positions.${index}.point.${name === "x" ? 0 : 1}`;
+      input.addEventListener("change", () => this.set(key, number(input.value)));
+    }
+    const cell = html("td", {}, row);
+    if (fixed) return;
+    const gone = html("button", { type: "button", class: "lw-close", "aria-label": `Remove position ${index + 1}` }, cell, "×");
+    gone.addEventListener("click", () => this.ask({ kind: "remove_task_point", of: "position", index }));
+  }
+}
+
+/** What is typed: a number with comma or point, nothing, or a text that the reader refuses with its reason. */
+function number(text: string): number | string | null {
+  const plainText = text.trim().replace(",", ".").replace("−", "-");
+  if (!plainText) return null;
+  return Number.isFinite(Number(plainText)) ? Number(plainText) : text;
+}
+
+/** A number as it is typed. */
+function plain(value: number): string {
+  return trimmed(shortNumber(value, 8)).replace("−", "-").replace(/^(.*)·10.*$/, () => String(value));
+}

@@ -1,0 +1,317 @@
+// The page of a task: its canvas, its designs, and what they cost.
+
+import { declareKeys, press, showKeys, type Command } from "../keys";
+import { Bar } from "../live/bar";
+import { Busy } from "../live/busy";
+import { Latest } from "../live/latest";
+import { Notices } from "../live/notices";
+import { Starting } from "../live/starting";
+import { Tabs } from "../live/tabs";
+import type { Transport } from "../live/transport";
+import type { DesignFound, LiveEvent, LiveRequest, TaskSolved, TaskState, TaskUnsolved } from "../messages";
+import { html, say } from "../svg";
+import { themeButton } from "../theme_button";
+import { Cognates } from "./cognates";
+import { DesignsTable, inOneLine } from "./designs_table";
+import { Pareto } from "./pareto";
+import { PositionPlayer } from "./position_player";
+import { TaskCanvas } from "./task_canvas";
+import { TaskForm } from "./task_form";
+import { TOOLS } from "./tools";
+
+const ANSWERS = new Set(["task_solved", "task_unsolved", "refused"]);
+const KINDS: Readonly<Record<string, string>> = { motion: "pose", path: "point", mixed: "position", improve: "point" };
+
+export class TaskPage {
+  private readonly root: HTMLElement;
+  private readonly title: HTMLElement;
+  private readonly summary: HTMLElement;
+  private readonly bar: Bar;
+  private readonly busy = new Busy();
+  private readonly notices = new Notices();
+  private readonly canvas: TaskCanvas;
+  private readonly player: PositionPlayer;
+  private readonly chosen = html("div", { class: "lw-t-chosen" });
+  private readonly open: HTMLButtonElement;
+  private readonly line: HTMLElement;
+  private readonly waiting = html("div", { class: "lw-t-waiting", role: "status", hidden: "" });
+  private readonly table: DesignsTable;
+  private readonly pareto: Pareto;
+  private readonly cognates: Cognates;
+  private readonly form: TaskForm;
+  private readonly tabs: Tabs;
+  private readonly latest: Latest<LiveRequest>;
+  private task: TaskState | null = null;
+  private solved: TaskSolved | null = null;
+  private design: DesignFound | null = null;
+  private lost_ = false;
+
+  constructor(
+    private readonly element: HTMLElement,
+    private readonly transport: Transport,
+  ) {
+    this.root = html("div", { class: "lw lw-full lw-task", tabindex: -1 }, element);
+    this.latest = new Latest((request) => this.send(request));
+    const desk = { ask: (request: LiveRequest) => this.ask(request), file: () => this.task };
+    const starting = new Starting(desk);
+    this.bar = new Bar(desk, () => starting.offer(true));
+    const head = html("header", { class: "lw-head" }, this.root);
+    this.title = html("h1", {}, head);
+    this.summary = html("p", { class: "lw-summary" }, head);
+    head.append(this.bar.element);
+    const corner = html("div", { class: "lw-corner" }, head);
+    themeButton(corner, this.root);
+    const keys = html("button", { type: "button", class: "lw-keys-button", "aria-label": "Keys", title: "All keys (?)" }, corner, "?");
+    keys.addEventListener("click", () => showKeys(this.root));
+    const stage = html("section", { class: "lw-stage", "aria-label": "Canvas" }, this.root);
+    this.canvas = new TaskCanvas({ ask: (request) => this.ask(request), drag: (request) => this.latest.put(request), picked: (thing) => this.form.mark(thing) });
+    this.player = new PositionPlayer((row, at) => this.canvas.stand(row, at));
+    stage.append(this.canvas.element, this.waiting, this.notices.element, this.player.element);
+    this.open = html("button", { type: "button", class: "lw-t-open" }, this.chosen, "Open as mechanism");
+    this.line = html("p", {}, this.chosen);
+    this.open.addEventListener("click", () => this.design && this.ask({ kind: "open_design", design: this.design.design.index }));
+    const choose = (index: number): void => this.ask({ kind: "show_design", design: index });
+    this.table = new DesignsTable(choose);
+    this.pareto = new Pareto(choose);
+    this.cognates = new Cognates(choose);
+    this.form = new TaskForm((request) => this.ask(request), (thing) => this.canvas.pick(thing));
+    this.tabs = new Tabs([
+      { title: "Designs", element: this.table.element },
+      { title: "Trade-off", element: this.pareto.element },
+      { title: "Cognates", element: this.cognates.element, shown: (on) => on && this.askCognates() },
+      { title: "Task", element: this.form.element },
+    ]);
+    const side = html("section", { class: "lw-side", "aria-label": "Designs" }, this.root);
+    side.append(this.chosen, this.tabs.element);
+    document.body.append(this.busy.element);
+    document.addEventListener("keydown", (event) => this.key(event));
+    this.chosen.hidden = this.player.element.hidden = true;
+  }
+
+  told(event: LiveEvent): void {
+    switch (event.kind) {
+      case "task_state":
+        this.state(event);
+        break;
+      case "task_solved":
+        this.solve(event);
+        break;
+      case "task_unsolved":
+        this.unsolved(event);
+        break;
+      case "design_found":
+        this.look(event);
+        break;
+      case "cognates_found":
+        this.cognates.show(event);
+        break;
+      case "working":
+        this.working(event.fraction);
+        return;
+      case "refused":
+        this.refused(event.message);
+        break;
+      case "problems_found":
+        this.notices.problems(event);
+        break;
+      case "file_changed":
+        this.notices.changed(event, this.decisions());
+        break;
+      case "link_made":
+        this.bar.link.show(event);
+        break;
+      case "saved":
+        this.notices.done(`Saved in ${event.file}.`);
+        break;
+    }
+    this.busy.answered(event.answers);
+    if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
+  }
+
+  lost(message: string): void {
+    this.lost_ = true;
+    this.busy.stop();
+    this.waiting.hidden = true;
+    this.root.classList.add("lw-lost");
+    this.element.classList.add("lw-lost");
+    this.bar.close();
+    this.open.disabled = true;
+    this.notices.say(message, { "Reload this page": () => location.reload() }, false);
+  }
+
+  private ask(request: LiveRequest): void {
+    this.latest.clear();
+    this.notices.clear();
+    this.send(request);
+  }
+
+  private send(request: LiveRequest): number {
+    const id = this.transport.ask(request);
+    if (!this.lost_) this.busy.asked(id);
+    return id;
+  }
+
+  private state(task: TaskState): void {
+    if (this.task?.file !== task.file) this.another();
+    declareKeys("Task", this.commands);
+    this.task = task;
+    this.bar.show(task);
+    say(this.title, task.title);
+    this.canvas.show(task);
+    this.form.show(task);
+    if (!this.canvas.dragging) this.stale(true);
+    this.count();
+  }
+
+  private another(): void {
+    this.solved = this.design = null;
+    this.canvas.solve(null);
+    this.player.show(null);
+    this.cognates.show(null);
+  }
+
+  /** Designs of the task before are pale until those of the present one are found. */
+  private stale(on: boolean): void {
+    this.root.classList.toggle("lw-t-stale", on);
+  }
+
+  private solve(solved: TaskSolved): void {
+    this.waiting.hidden = true;
+    this.stale(false);
+    this.solved = solved;
+    this.design = solved.chosen;
+    this.canvas.solve(solved);
+    this.player.show(solved.chosen, solved.live);
+    this.notices.calm();
+    this.describe();
+    this.root.dataset.live = String(solved.live);
+    this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
+    if (solved.live) return;
+    this.table.show(this.task!, solved);
+    this.pareto.show(this.task!, solved);
+    this.mark();
+    this.count();
+    if (this.tabs.chosen === this.tabs.indexOf("Cognates")) this.askCognates();
+  }
+
+  private unsolved(event: TaskUnsolved): void {
+    this.waiting.hidden = true;
+    if (event.slow) {
+      this.stale(true);
+      return;
+    }
+    this.solved = this.design = null;
+    this.canvas.solve(null);
+    this.player.show(null);
+    this.describe();
+    this.stale(false);
+    const lines = event.problems.map(({ line, key, message }) => [line === null ? "" : `line ${line}, `, key, " ", message].join(""));
+    const text = [event.message, ...lines.slice(0, 3)].join(" ");
+    const choices: [string, string, () => void][] = event.ended ? [["Solve", "Search for designs again", () => this.ask({ kind: "solve_task" })]] : [];
+    this.notices.open(text, choices);
+    this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
+    if (event.live) return;
+    this.table.show(this.task!, null, text);
+    this.pareto.show(this.task!, null);
+    this.cognates.show(null);
+    this.count();
+  }
+
+  /** A search that takes long has a button to end it. */
+  private working(fraction: number): void {
+    this.busy.progress(fraction);
+    if (this.waiting.hidden) {
+      this.waiting.replaceChildren();
+      html("span", {}, this.waiting);
+      const end = html("button", { type: "button" }, this.waiting, "End the search");
+      end.addEventListener("click", () => this.ask({ kind: "cancel" }));
+      this.waiting.hidden = false;
+    }
+    say(this.waiting.querySelector("span")!, `Searching for designs: ${Math.round(100 * fraction)} %`);
+  }
+
+  private look(found: DesignFound): void {
+    this.design = found;
+    this.canvas.look(found);
+    this.player.show(found);
+    this.describe();
+    this.mark();
+    if (this.tabs.chosen === this.tabs.indexOf("Cognates")) this.askCognates();
+  }
+
+  private mark(): void {
+    const index = this.design?.design.index ?? -1;
+    this.table.mark(index);
+    this.pareto.mark(index);
+  }
+
+  private askCognates(): void {
+    if (this.design && ["path", "mixed"].includes(this.task!.task)) this.send({ kind: "show_cognates", design: this.design.design.index });
+    else this.cognates.show(null);
+  }
+
+  /** The chosen design in words. */
+  private describe(): void {
+    const design = this.design?.design;
+    this.chosen.hidden = !design;
+    if (!design) return;
+    say(this.line, `${design.sound ? `Design ${design.number}` : "Refused"}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason}` : ""}`);
+    this.chosen.classList.toggle("lw-t-refused", !design.sound);
+  }
+
+  private count(): void {
+    const { task, solved } = this;
+    if (!task) return;
+    const word = KINDS[task.task];
+    const count = task.positions.length;
+    const given = word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";
+    say(this.summary, solved ? `${given} · ${solved.count} designs, ${solved.sound} without defects` : given);
+    this.summary.title = solved ? `${solved.solutions}; ${solved.message}` : "";
+  }
+
+  private decisions(): Record<string, () => void> {
+    return { Reload: () => this.ask({ kind: "reload" }), Overwrite: () => this.ask({ kind: "save", overwrite: true }) };
+  }
+
+  private refused(message: string): void {
+    if (this.bar.link.opened) this.bar.link.refuse(message);
+    else this.notices.say(message, /overwrite/.test(message) ? this.decisions() : {});
+    if (this.task && !this.canvas.dragging) {
+      this.canvas.show(this.task);
+      this.form.show(this.task);
+    }
+  }
+
+  private readonly commands: readonly Command[] = [
+    { keys: [" "], does: "Play the chosen design, or stand still", act: () => this.player.play() },
+    { keys: ["ArrowRight", "ArrowLeft", "ArrowUp", "ArrowDown"], does: "Move what is picked, with Shift finely; else the next position", act: (event) => this.arrow(event) },
+    { keys: [..."123456789"], does: "Go to this position", act: (event) => this.player.goTo(Number(event.key) - 1) },
+    { keys: ["Delete", "Backspace"], does: "Remove what is picked", act: () => this.canvas.remove() },
+    { keys: ["Escape"], does: "Pick nothing; the tool that moves", act: () => this.rest() },
+    { keys: ["+", "="], does: "Zoom in", act: () => this.canvas.zoom(1.25) },
+    { keys: ["-"], does: "Zoom out", act: () => this.canvas.zoom(0.8) },
+    { keys: ["0"], does: "See the whole task", act: () => this.canvas.whole() },
+    ...TOOLS.map(({ tool, name, key, does, of }): Command => ({ keys: [key], does: `${name}: ${does}`, when: () => of.includes(this.task?.task ?? ""), act: () => this.canvas.choose(tool) })),
+    { keys: ["?"], does: "All keys", act: () => showKeys(this.root) },
+  ];
+
+  private arrow(event: KeyboardEvent): void {
+    const [dx, dy] = ({ ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as const)[event.key as "ArrowUp"]!;
+    if (!this.canvas.nudge(dx, dy, event.shiftKey)) this.player.step(dx + dy);
+  }
+
+  private rest(): void {
+    this.canvas.pick(null);
+    this.canvas.choose("move");
+    this.root.focus();
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if (this.element.hidden || this.element.inert || target.closest("dialog")) return;
+    if (target !== document.body && !this.root.contains(target)) return;
+    if (target.matches("select, textarea, input") && event.key !== "Escape") return;
+    if (event.key === " " && target.matches("button, summary")) return;
+    press(this.commands, event);
+  }
+}

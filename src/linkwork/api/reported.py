@@ -1,0 +1,240 @@
+"""The mechanism as a report for people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from linkwork import export, motion, textfile
+from linkwork.api.exported import ExportedMechanism
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.internal import internal
+from linkwork.foundation.paths import as_path
+from linkwork.results.reactions import ForceStatus
+
+if TYPE_CHECKING:
+    from linkwork.results.motion import Motion
+    from linkwork.results.position import Position
+
+__all__ = ["ReportedMechanism"]
+
+T = TypeVar("T")
+
+_SWEPT, _FOLLOWED, _FOUND = 0.3, 0.6, 0.7  # finished fractions: sweep, circuits, the others
+_MOST_TOLERANCES = 6  # quantities, if the template names none
+_NO_POINTS = "the mechanism has no points to draw"
+_NO_INPUT = "the mechanism has no input"
+_NOT_FOUND = "no position was found"
+
+
+@internal("findings")
+class ReportedMechanism(ExportedMechanism):
+    """A mechanism whose results can be written as a report."""
+
+    def to_report(
+        self,
+        path: str | Path,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        template: str | Path = "engineer",
+        configuration: str | None = None,
+        title: str | None = None,
+        author: str | None = None,
+        institution: str | None = None,
+        date: str | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Write a report: equations, drawings, tables, plots, what is proved, the file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; its suffix selects the format: ``.html``, ``.pdf``, ``.docx``, or ``.md`` with
+            its pictures in the folder ``<name>-pictures``.
+        at : number or Mapping[str, number], optional
+            The input of the drawing, the vectors, the configurations and the iterations; by default
+            round values near those of the guess.
+        template : str or Path
+            ``engineer``, ``student``, or a template file, which names the sections.
+        configuration : str, optional
+            The configuration or branch of the motion, as in :meth:`solve`.
+        title, author, institution, date : str, optional
+            The head of the report, instead of that in the template.
+        progress : callable, optional
+            Called with the finished fraction, 0 to 1.
+
+        Raises
+        ------
+        InputError
+            If the suffix is unknown, the template has errors or does not fit the mechanism, or the
+            file cannot be written.
+        MissingPackageError
+            If the package that writes the format is not installed.
+
+        Examples
+        --------
+        >>> import linkwork as lw, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     lw.example("four-bar").to_report(f"{folder}/bar.html", author="A. Student")
+        ...     text = pathlib.Path(folder, "bar.html").read_text("utf-8")
+        >>> "A. Student" in text, "What is proved" in text
+        (True, True)
+        """
+        target = as_path(path)
+        export.check_report_file(target)
+        chosen = export.template_of(template).with_head(
+            {"title": title, "author": author, "institution": institution, "date": date}
+        )
+        tell = progress or (lambda fraction: None)
+        found = self.findings(chosen, at, configuration, lambda part: tell(_FOUND * part))
+        written = export.report_of(
+            found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part)
+        )
+        for name, picture in written.pictures.items():
+            place = target.parent / name
+            place.parent.mkdir(exist_ok=True)
+            textfile.save_bytes(picture, place)
+        textfile.save_bytes(written.content, target)
+
+    def findings(
+        self,
+        template: export.Template,
+        at: float | Mapping[str, float] | None,
+        configuration: str | None,
+        progress: Callable[[float], None],
+    ) -> export.Findings:
+        """The results that the sections of a template show."""
+        gathering = _Gathering(self, template, at, configuration, progress)
+        gathering.gather()
+        source = textfile.write_text(self.description) if self._read is None else self._read.text
+        return export.Findings(
+            model=self.model, source=source, absent=gathering.absent, **gathering.found
+        )
+
+
+class _Gathering:
+    """Computes the results of the sections; notes why a section has none."""
+
+    def __init__(
+        self,
+        mechanism: ReportedMechanism,
+        template: export.Template,
+        at: float | Mapping[str, float] | None,
+        configuration: str | None,
+        progress: Callable[[float], None],
+    ) -> None:
+        self.mechanism, self.template = mechanism, template
+        self.at, self.configuration, self.progress = at, configuration, progress
+        self.found: dict[str, Any] = {}
+        self.absent: dict[str, str] = {}
+
+    def gather(self) -> None:
+        """Compute the position and the motion, then what they allow."""
+        mechanism = self.mechanism
+        self.found["check"] = mechanism.check()
+        swept = None
+        if mechanism.description.inputs:
+            swept = mechanism.sweep(
+                configuration=self.configuration,
+                progress=lambda part: self.progress(_SWEPT * part / _FOUND),
+            )
+        position = self._position(swept)
+        self.found |= {"position": position, "motion": swept}
+        self._leave_out(position, swept)
+        self._list(position)
+        self._load(position, swept)
+        self._vary(position)
+        self.progress(1.0)
+
+    def _wanted(self, section: str) -> bool:
+        return section in self.template.sections and section not in self.absent
+
+    def _without(self, sections: Collection[str], reason: str) -> None:
+        for name in self.template.sections:
+            if name in sections:
+                self.absent.setdefault(name, reason)
+
+    def _position(self, swept: Motion | None) -> Position:
+        mechanism, steps = self.mechanism, self.configuration is None
+        position = mechanism.solve(self.at, configuration=self.configuration, with_steps=steps)
+        if self.at is not None or swept is None or not swept.found.any():
+            return position
+        model = mechanism.model if steps else mechanism.model.from_position(position)
+        near = motion.solve_round_start(model, swept, position)
+        if not near.status.ok or near.input == position.input:
+            return position
+        return mechanism.solve(near.input, with_steps=True) if steps else near
+
+    def _leave_out(self, position: Position, swept: Motion | None) -> None:
+        """Note the sections that have nothing to show."""
+        drawn = bool(self.mechanism.model.compiled.points.names)
+        if not position.status.ok:
+            self._without(("drawing", "vectors"), _NOT_FOUND)
+        if not drawn:
+            self._without(("drawing", "paths"), _NO_POINTS)
+        if not self.mechanism.loop_equations.loops:
+            self._without(("vectors",), "the mechanism has no loop equations")
+        if not self.mechanism.loop_equations.unknowns:
+            self._without(("newton",), "the mechanism has no unknowns")
+        elif not position.steps:
+            self._without(("newton",), "a chosen configuration has no iterations from the guess")
+        if swept is None:
+            self._without(("plots", "paths", "circuits"), _NO_INPUT)
+        elif not swept.found.any():
+            self._without(("plots", "paths", "forces", "tolerances"), _NOT_FOUND)
+        elif not swept.skeleton.traced:
+            self._without(("paths",), "the file traces no point")
+
+    def _list(self, position: Position) -> None:
+        """Circuits, configurations, vectors."""
+        if self._wanted("vectors"):
+            self.found["vectors"] = motion.vector_loops(self.mechanism.model, position)
+        if self._wanted("circuits"):
+            span = (_FOLLOWED - _SWEPT) / _FOUND
+            self._try(
+                "circuits",
+                lambda: self.mechanism.circuits(
+                    progress=lambda part: self.progress(_SWEPT / _FOUND + span * part)
+                ),
+            )
+        if self._wanted("configurations"):
+            asked = position.input or None
+            self._try("configurations", lambda: self.mechanism.configurations(asked))
+
+    def _load(self, position: Position, swept: Motion | None) -> None:
+        if not self._wanted("forces"):
+            return
+        mechanism = self.mechanism
+        self._try(
+            "forces",
+            lambda: (
+                mechanism.forces(position.input)
+                if swept is None
+                else mechanism.forces(motion=swept)
+            ),
+        )
+        acting = self.found.get("forces")
+        if swept is not None and acting is not None and ForceStatus.SELF_LOCKING in acting.statuses:
+            self.found["stalls"] = mechanism.stalls(motion=swept, configuration=self.configuration)
+
+    def _vary(self, position: Position) -> None:
+        """The tolerances at the drawn position."""
+        if not self._wanted("tolerances"):
+            return
+        usual = (position.outputs or position.unknowns) if position.status.ok else {}
+        names = self.template.tolerances_of or tuple(usual)[:_MOST_TOLERANCES]
+        at = position.input or None
+        self._try(
+            "tolerances",
+            lambda: tuple(
+                self.mechanism.tolerance(of, at, configuration=self.configuration) for of in names
+            ),
+        )
+
+    def _try(self, section: str, compute: Callable[[], object]) -> None:
+        """Keep a result, or the reason why there is none."""
+        try:
+            self.found[section] = compute()
+        except InputError as error:
+            self.absent[section] = str(error)

@@ -1,0 +1,55 @@
+"""The pictures of a report as bytes, with their printed size, and progress."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from linkwork.drawing import render
+from linkwork.export.report.document import Document, Figure
+
+__all__ = ["FigureFile", "figure_files"]
+
+_DPI = 200.0  # twice that of a screen
+_INCH, _POINTS = 25.4, 72.0  # [mm], [pt/in]
+_WIDEST, _TALLEST = 150.0, 115.0  # printed [mm]: two figures fit a page
+_SIZE = re.compile(
+    rb'<svg [^>]*height="([\d.]+)pt"[^>]* width="([\d.]+)pt"|'
+    rb'<svg [^>]*width="([\d.]+)pt"[^>]* height="([\d.]+)pt"'
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FigureFile:
+    """The content of a picture and its printed width [mm]."""
+
+    number: int
+    content: bytes
+    width: float
+
+
+def figure_files(
+    document: Document, kind: str, progress: Callable[[float], None]
+) -> Iterator[FigureFile]:
+    """Every figure as ``svg`` or ``png``."""
+    figures = [b for section in document.sections for b in section.blocks if isinstance(b, Figure)]
+    for k, figure in enumerate(figures, 1):
+        content = render(figure.picture, kind, dpi=_DPI)
+        wide, high = _size(content)
+        width = wide * min(1.0, _WIDEST / wide, _TALLEST / high)
+        yield FigureFile(number=figure.number, content=content, width=width)
+        progress(k / len(figures))
+
+
+def _size(content: bytes) -> tuple[float, float]:
+    """Width and height [mm]."""
+    found = _SIZE.search(content)
+    if found is None:  # the header of a PNG file
+        wide, high = struct.unpack(">II", content[16:24])
+        return wide * _INCH / _DPI, high * _INCH / _DPI
+    high, wide, *swapped = found.groups()
+    if wide is None:
+        wide, high = swapped
+    return float(wide) * _INCH / _POINTS, float(high) * _INCH / _POINTS

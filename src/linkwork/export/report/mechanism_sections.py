@@ -1,0 +1,219 @@
+"""Sections about the mechanism itself: summary, drawings, dimensions, equations, iterations."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+
+from linkwork.drawing import SceneOptions, scene_of
+from linkwork.equations.mathml import MathML
+from linkwork.equations.notation import Latex
+from linkwork.equations.writing import EquationSheet
+from linkwork.export.formulas.dimension_units import dimension_kinds
+from linkwork.export.formulas.traced_equations import traced
+from linkwork.export.report.document import (
+    Block,
+    Equation,
+    Facts,
+    Figure,
+    Note,
+    Paragraph,
+    Table,
+    shown_name,
+    split_columns,
+)
+from linkwork.export.report.findings import Findings
+from linkwork.export.report.template import Template
+from linkwork.foundation.names import canonical, pretty
+from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.varied_number import varied_numbers
+from linkwork.results.listing.check_listing import check_fields
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import fixed, lengths, short
+from linkwork.results.listing.position_listing import (
+    changes_text,
+    inputs_text,
+    system_columns,
+    trail_columns,
+)
+from linkwork.results.quantity import Kind
+from linkwork.textfile import part_lines
+
+__all__ = ["dimensions", "drawing", "equations", "newton", "summary", "vectors"]
+
+_TABLES = {
+    "dimensions": "Dimensions",
+    "lengths": "Lengths of links",
+    "angles": "Angles of links",
+    "sliders": "Offsets of sliders",
+}
+
+
+def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
+    """One table, or several if it is wider than the page."""
+    for k, part in enumerate(split_columns(columns)):
+        yield Table(caption=caption if not k else f"{caption} (continued)", columns=part)
+
+
+def summary(found: Findings, template: Template) -> Iterator[Block]:
+    """What the mechanism is, and how the file was read."""
+    description = found.model.description
+    told = [("purpose", description.purpose), ("source", description.source)]
+    units = f"lengths in {description.length}, angles in {description.angle.value}"
+    pairs = [*(p for p in told if p[1]), *check_fields(found.check), ("units", units)]
+    if not found.position.status.ok and found.position.failure is not None:
+        pairs += found.position.failure.sentences()
+    yield Facts(pairs=tuple(pairs))
+
+
+def drawing(found: Findings, template: Template) -> Iterator[Block]:
+    """The position with its dimensions, and the paths of traced points."""
+    options = SceneOptions(dimensions=True, title="")
+    scene = scene_of(found.position, found.motion, options=options)
+    where = inputs_text(found.position.input, found.position.input_units)
+    traced_points = found.motion is not None and found.motion.skeleton.traced
+    paths = ", with the paths of traced points" if traced_points else ""
+    caption = (
+        f"The mechanism {where}".rstrip() + f"{paths}. Lengths in {found.model.description.length}."
+    )
+    yield Figure(caption=caption, picture=scene)
+
+
+def vectors(found: Findings, template: Template) -> Iterator[Block]:
+    """The loop equations as vectors: a diagram and their sizes and directions."""
+    where = inputs_text(found.position.input, found.position.input_units)
+    options = SceneOptions(vectors=found.vectors, title="", arrows=False)
+    scene = scene_of(found.position, None, options=options)
+    yield Figure(
+        caption=f"The loop equations as vectors, head to tail, {where}".rstrip(" ,") + ".",
+        picture=scene,
+    )
+    unit = found.model.description.length
+    for k, loop in enumerate(found.vectors, 1):
+        sides = [("left", vector) for vector in loop.left]
+        sides += [("right", vector) for vector in loop.right]
+        values = [vector.value for _, vector in sides]
+        angles = [math.degrees(cmath.phase(z)) if z else math.nan for z in values]
+        columns = [
+            Column(header="vector", cells=[vector.name for _, vector in sides]),
+            Column(header="side", cells=[side for side, _ in sides]),
+            Column(header=f"size [{unit}]", cells=lengths(map(abs, values)), align="point"),
+            Column(header="direction [deg]", cells=[fixed(a, 3) for a in angles], align="point"),
+            Column(header=f"x [{unit}]", cells=lengths(z.real for z in values), align="point"),
+            Column(header=f"y [{unit}]", cells=lengths(z.imag for z in values), align="point"),
+        ]
+        yield from tables(
+            f"Vectors of loop {k}, {pretty(loop.label)}, {where}".rstrip(" ,"), columns
+        )
+
+
+def dimensions(found: Findings, template: Template) -> Iterator[Block]:
+    """The given numbers by their tables in the file, then the parts."""
+    description = found.model.description
+    kinds = {v.name: v.kind for v in found.model.equations.variables}
+    named = dimension_kinds(traced(description))
+    numbers = [n for n in varied_numbers(description) if n.table != "guess"]
+    for table, caption in _TABLES.items():
+        rows = [n for n in numbers if n.table == table]
+        if not rows:
+            continue
+        units = [
+            found.model.units.of(named.get(canonical(n.key), Kind.NUMBER))
+            if table == "dimensions"
+            else n.unit(description, kinds)
+            for n in rows
+        ]
+        written = [n.written(description) for n in rows]
+        formulas = [f"= {given}" if isinstance(given, str) else "" for given in written]
+        # given numbers as they are, values of formulas rounded
+        cells = [
+            short(n.of(description), 7 if formula else 10)
+            for n, formula in zip(rows, formulas, strict=True)
+        ]
+        columns = [
+            Column(header="name", cells=[shown_name(n.name) for n in rows]),
+            Column(header="value", cells=cells, align="point", units=units),
+        ]
+        if any(formulas):
+            columns.append(Column(header="formula", cells=formulas))
+        yield from tables(caption, columns)
+    yield from _points(found)
+    if found.check.measured:
+        links, points, values = zip(*found.check.measured, strict=True)
+        columns = [
+            Column(header="link", cells=links),
+            Column(header="points", cells=points),
+            Column(header=f"length [{description.length}]", cells=lengths(values), align="point"),
+        ]
+        yield from tables("Lengths measured in the sketch", columns)
+    parts = part_lines(description)
+    if parts:
+        names, given = zip(*parts, strict=True)
+        columns = [Column(header="table", cells=names), Column(header="given", cells=given)]
+        yield from tables("Further data of the file, in its words and units", columns)
+
+
+def _points(found: Findings) -> Iterator[Table]:
+    """The coordinates in the file, a row for every point."""
+    description = found.model.description
+    if not isinstance(description, Draft) or not description.points:
+        return
+    unit = description.length
+    ground = found.model.equations.fixed
+    columns = [Column(header="point", cells=list(map(pretty, description.points)))]
+    for axis, letter in enumerate("xy"):
+        given = [description.numbers(place[axis]) for place in description.points.values()]
+        header = f"{letter} [{unit}]"
+        columns.append(Column(header=header, cells=list(map(short, given)), align="point"))
+    of = ["fixed" if name in ground else "sketch" for name in description.points]
+    columns.append(Column(header="", cells=of))
+    yield from tables("Coordinates of points in the file", columns)
+
+
+def equations(found: Findings, template: Template) -> Iterator[Block]:
+    """The closure equations in complex form and as scalar equations."""
+    sheet = EquationSheet(found.model.equations)
+    own = sheet.equations
+    kinds = [("unknowns", own.unknowns), ("inputs", own.inputs)]
+    told = [
+        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in listed))
+        for name, listed in kinds
+        if listed
+    ]
+    yield Facts(pairs=tuple(told))
+    if not own.labels:
+        yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
+    mathml, latex = MathML(), Latex()
+    if own.loops:
+        yield Note(text="Loop closure equations in complex form")
+        for loop in own.loops:
+            yield Equation(mathml=sheet.loop(loop, mathml).element(), latex=sheet.loop(loop, latex))
+        yield Note(text="Scalar equations: real parts, imaginary parts, others")
+    rows = zip(sheet.real_rows(mathml), sheet.real_rows(latex), strict=True)
+    for row, tex in rows:
+        zero = mathml.equation(row, mathml.number("0"))
+        yield Equation(mathml=zero.element(), latex=f"{tex} = 0")
+    for law in own.laws:
+        if law.meaning:
+            yield Paragraph(text=f"{pretty(law.label)}: {law.meaning}")
+
+
+def newton(found: Findings, template: Template) -> Iterator[Block]:
+    """The iterations of every block: the iterates, then F, J and Δ of each."""
+    position, units = found.position, found.model.units
+    kinds = {v.name: Kind(v.kind) for v in found.model.equations.unknowns}
+    where = inputs_text(position.input, position.input_units)
+    yield Paragraph(
+        text=f"Newton-Raphson solves F(x) = 0 from the guess of the file {where}".rstrip()
+        + ": in each iteration J Δ = −F gives the change Δ of the unknowns, with J = ∂F/∂x "
+        "(angles in radians)."
+    )
+    for trail in position.steps:
+        block = ", ".join(map(pretty, trail.equations))
+        yield from tables(f"Iterates of {block}", trail_columns(trail, kinds, units))
+        if not trail.status.ok:
+            yield Paragraph(text=f"{trail.status.value}.")
+        for step in trail.steps[:-1]:
+            yield from tables(f"F and J of {block} at k = {step.k}", system_columns(trail, step))
+            yield Paragraph(text=f"Δ: {changes_text(step, kinds, units)}")

@@ -1,0 +1,115 @@
+"""A report: the sections of a template as a document, written in the format of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwork.export.report import (
+    evidence_sections,
+    force_sections,
+    mechanism_sections,
+    motion_sections,
+)
+from linkwork.export.report.document import Block, Document, Facts, Section
+from linkwork.export.report.docx_writer import docx_bytes
+from linkwork.export.report.findings import Findings
+from linkwork.export.report.html_writer import html_bytes
+from linkwork.export.report.markdown_writer import markdown_files
+from linkwork.export.report.pdf_writer import pdf_bytes
+from linkwork.export.report.template import SECTIONS, Template
+from linkwork.foundation.errors import InputError
+
+__all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
+
+#: Formats of reports by suffix.
+FORMATS = (".html", ".pdf", ".docx", ".md")
+
+_Builder = Callable[[Findings, Template], Iterator[Block]]
+_SECTIONS: Mapping[str, tuple[str, _Builder]] = {
+    "summary": ("Summary", mechanism_sections.summary),
+    "drawing": ("Drawing", mechanism_sections.drawing),
+    "vectors": ("Vector diagram", mechanism_sections.vectors),
+    "dimensions": ("Given dimensions", mechanism_sections.dimensions),
+    "equations": ("Equations", mechanism_sections.equations),
+    "newton": ("Newton-Raphson step by step", mechanism_sections.newton),
+    "motion": ("Motion", motion_sections.motion),
+    "plots": ("Plots", motion_sections.plots),
+    "paths": ("Paths of points", motion_sections.paths),
+    "circuits": ("Circuits and dead points", motion_sections.circuits),
+    "configurations": ("Configurations", motion_sections.configurations),
+    "forces": ("Forces", force_sections.forces),
+    "tolerances": ("Tolerances", force_sections.tolerances),
+    "proof": ("What is proved", evidence_sections.proof),
+    "versions": ("Versions", evidence_sections.versions),
+    "file": ("Mechanism file", evidence_sections.file),
+}
+assert tuple(_SECTIONS) == SECTIONS
+
+
+@dataclass(frozen=True, kw_only=True)
+class WrittenReport:
+    """The content of the file, and of pictures by their paths relative to its folder."""
+
+    content: bytes
+    pictures: Mapping[str, bytes]
+
+
+def check_report_file(path: Path) -> None:
+    """Reject a file of another format before any computation.
+
+    Raises
+    ------
+    InputError
+        If the suffix is not one of :data:`FORMATS`.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(
+            f'cannot write "{path.name}": the suffix of a report must be one of '
+            f"{', '.join(FORMATS)}"
+        )
+
+
+def document_of(found: Findings, template: Template) -> Document:
+    """The sections of a template with their content; the last one names those left out."""
+    sections = []
+    for name in template.sections:
+        if name not in found.absent:
+            title, build = _SECTIONS[name]
+            sections.append(Section(title=title, blocks=tuple(build(found, template))))
+    if found.absent:
+        absent = tuple((_SECTIONS[name][0], why) for name, why in found.absent.items())
+        sections.append(Section(title="Sections left out", blocks=(Facts(pairs=absent),)))
+    title = template.title or found.model.description.name
+    return Document.numbered(title, template.byline, sections)
+
+
+def report_of(
+    found: Findings,
+    template: Template,
+    path: Path,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> WrittenReport:
+    """Write a report in the format of a file; the same results give the same bytes.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, or a key of the template does not fit the motion.
+    MissingPackageError
+        If the package that writes the format is not installed.
+    """
+    check_report_file(path)
+    document = document_of(found, template)
+    pictures: dict[str, bytes] = {}
+    match path.suffix.lower():
+        case ".html":
+            content = html_bytes(document, progress)
+        case ".pdf":
+            content = pdf_bytes(document, progress)
+        case ".docx":
+            content = docx_bytes(document, progress)
+        case _:
+            content, pictures = markdown_files(document, path.stem, progress)
+    return WrittenReport(content=content, pictures=pictures)

@@ -1,0 +1,1 @@
+"""Results as columns and labelled sentences, for terminals and reports."""

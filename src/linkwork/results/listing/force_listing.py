@@ -1,0 +1,60 @@
+"""The evidence of forces as sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
+import numpy as np
+
+from linkwork.foundation.arrays import BoolArray
+from linkwork.results.reactions import ForceStatus, Reactions
+from linkwork.results.stall import Stall
+
+__all__ = ["force_fields", "undefined_fields"]
+
+
+def force_fields(found: Reactions, stalls: Sequence[Stall] = ()) -> Iterator[tuple[str, str]]:
+    """Stalls, how far virtual work and free bodies agree, and what is wrong with joints."""
+    yield from (("stalls", _stall(stall)) for stall in stalls)
+    if "disagreement" in found.values:
+        worst = np.nanmax(found.values["disagreement"], initial=0.0)
+        yield "check", f"virtual work and free bodies agree to {worst:.1e} of the largest term"
+    yield from undefined_fields(found)
+    lost = [name for name, rows in found.undetermined.items() if rows.any()]
+    if lost:
+        yield "undetermined", f"{', '.join(lost)}: {ForceStatus.UNDETERMINED.value}"
+    for name, rows in found.lifted.items():
+        if rows.any():
+            yield "lifts off", f"{name} would have to pull{_where(rows)}"
+    for name, rows in found.slipping.items():
+        if rows.any():
+            yield "slips", f"{name} needs more friction than there is{_where(rows)}"
+    unsure = int(np.sum(~found.proved))
+    if unsure:
+        yield "not proved", f"that friction leaves an equilibrium, or none, in {unsure} rows"
+
+
+def undefined_fields(found: Reactions) -> Iterator[tuple[str, str]]:
+    """Loads without a finite value."""
+    for name, rows in found.undefined.items():
+        if rows.any():
+            yield "no value", f"{name}{_where(rows)}"
+
+
+def _where(rows: BoolArray) -> str:
+    return "" if rows.ndim == 0 else f" in {int(rows.sum())} rows"
+
+
+def _stall(stall: Stall) -> str:
+    """Stalls, how far virtual work and free bodies agree, and what is wrong with joints."""
+    moves, locked = stall.bracket
+    proof = (
+        f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"
+    )
+    others = (name for name in stall.position.unknowns if name != stall.input)
+    places = [
+        f"{name} = {stall.position[name]:.8g} {stall.position.value_units[name]}"
+        for name in (stall.input, *islice(others, 1))
+    ]
+    return f"at {', '.join(places)} ({proof})"

@@ -1,0 +1,132 @@
+"""Whatever is open, a mechanism or a task, and the way from one to the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from linkwork.design.synthesis.task_file import is_task
+from linkwork.foundation.errors import InputError
+from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
+from linkwork.viewer.live.opened_file import Events
+from linkwork.viewer.live.solvable import Read
+from linkwork.viewer.live.task.bench import TaskBench
+from linkwork.viewer.live.task.cycle import SolveTask
+from linkwork.viewer.live.task.templates import task_template
+from linkwork.viewer.live.workbench import Workbench
+
+__all__ = ["Bench"]
+
+
+class Bench:
+    """The opened file: a mechanism or a task; behind a design, its task.
+
+    Parameters
+    ----------
+    file : MechanismFile
+    read : callable
+        Builds a solvable mechanism from a text; ``linkwork.loads``.
+    solve : callable
+        Solves a task.
+    start : bool
+        Offer the start page.
+    """
+
+    def __init__(
+        self, file: MechanismFile, read: Read, solve: SolveTask, *, start: bool = False
+    ) -> None:
+        self._read, self._solve = read, solve
+        self._hurried: Callable[[], bool] = lambda: False
+        self._working: Callable[[float], None] = lambda fraction: None
+        self._behind: TaskBench | None = None
+        self.current: Workbench | TaskBench = self._bench_of(file, start=start)
+
+    @property
+    def text(self) -> str:
+        """The current text."""
+        return self.current.text
+
+    def opened(self) -> Events:
+        """All events that a page needs at its start."""
+        behind = [] if self._behind is None else [tell.DesignOpened(task=self._behind.name)]
+        return [*self.current.opened(), *behind]
+
+    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+        """Let long work end for a newer change, and report its progress."""
+        self._hurried, self._working = hurried, working
+        for bench in (self.current, self._behind):
+            if bench is not None:
+                bench.listen(hurried, working)
+
+    def poll(self) -> Events:
+        """Report changes of the file by other programs."""
+        return self.current.poll()
+
+    def keep_unsaved(self) -> tuple[Path, ...]:
+        """Write unsaved texts to copies next to their files.
+
+        Raises
+        ------
+        InputError
+            If a copy cannot be written.
+        """
+        found = [b.keep_unsaved() for b in (self.current, self._behind) if b is not None]
+        return tuple(path for path in found if path is not None)
+
+    def handle(self, request: ask.Request) -> Events:
+        """Process a request and send its events; invalid requests are answered, not raised."""
+        try:
+            match request:
+                case do.OpenTask():
+                    self._check_saved(request.discard)
+                    return self._open(task_template(request.name))
+                case ask.OpenExample() if self._behind or isinstance(self.current, TaskBench):
+                    self._check_saved(request.discard)
+                    return self._open(new_file(request.name))
+                case do.OpenDesign():
+                    return self._design(request.design)
+                case do.ReturnToTask():
+                    return self._task(request.discard)
+        except InputError as error:
+            return [tell.Refused(message=str(error))]
+        if isinstance(self.current, Workbench) and isinstance(request, do.OF_TASKS):
+            return [tell.Refused(message="no task is open: a mechanism is")]
+        return self.current.handle(request)
+
+    def _check_saved(self, discard: bool) -> None:
+        unsaved = [b.name for b in (self.current, self._behind) if b is not None and b.unsaved]
+        if unsaved and not discard:
+            names = " and of ".join(f'"{name}"' for name in unsaved)
+            raise InputError(f"changes of {names} are not saved: save them first, or discard them")
+
+    def _open(self, file: MechanismFile) -> Events:
+        self.current, self._behind = self._bench_of(file), None
+        return self.opened()
+
+    def _design(self, index: int) -> Events:
+        task = self.current
+        if not isinstance(task, TaskBench):
+            raise InputError("no task is open: a mechanism is")
+        name, text = task.design_text(index)
+        self.current, self._behind = self._bench_of(new_file(name, text)), task
+        return self.opened()
+
+    def _task(self, discard: bool) -> Events:
+        if self._behind is None:
+            raise InputError("this mechanism is not a design of an opened task")
+        if self.current.unsaved and not discard:
+            raise InputError(
+                f'changes of "{self.current.name}" are not saved: save them first, or discard them'
+            )
+        self.current, self._behind = self._behind, None
+        return self.opened()
+
+    def _bench_of(self, file: MechanismFile, *, start: bool = False) -> Workbench | TaskBench:
+        bench: Workbench | TaskBench
+        if is_task(file.text):
+            bench = TaskBench(file, self._solve)
+        else:
+            bench = Workbench(file, self._read, start=start)
+        bench.listen(self._hurried, self._working)
+        return bench

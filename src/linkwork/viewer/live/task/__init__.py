@@ -1,0 +1,1 @@
+"""The page of a task: its text, its edits, its designs."""

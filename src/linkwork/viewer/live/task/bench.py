@@ -1,0 +1,203 @@
+"""A task file under edit: every change is read, solved, reported and kept in the history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import singledispatchmethod
+from pathlib import Path
+
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.textfile.text_edits import TextEdits
+from linkwork.textfile.toml_text import data_of
+from linkwork.textfile.writer import write_text
+from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.drag import same_thing
+from linkwork.viewer.live.link_making import link_made
+from linkwork.viewer.live.mechanism_file import MechanismFile
+from linkwork.viewer.live.opened_file import FILE_REQUESTS, Events, OpenedFile
+from linkwork.viewer.live.task.cycle import SolveTask, TaskCycle
+from linkwork.viewer.live.task.designs import cognates_found, nearest_on
+from linkwork.viewer.live.task.edits import edit_task, task_edit_title
+
+__all__ = ["TaskBench"]
+
+
+class TaskBench(OpenedFile):
+    """One task file, its text, its history and its designs.
+
+    Parameters
+    ----------
+    file : MechanismFile
+    solve : callable
+        Solves a task.
+
+    Attributes
+    ----------
+    cycle : TaskCycle
+        The task and its designs.
+    """
+
+    def __init__(self, file: MechanismFile, solve: SolveTask) -> None:
+        super().__init__(file)
+        self.cycle = TaskCycle(solve, file.name, Path(file.name).parent)
+        self.cycle.take(file.text)
+        self._dragged = ""  # what a drag moves
+        self._latest: tuple[str, str] | None = None  # its last text, and what it is called
+
+    @property
+    def text(self) -> str:
+        """The current text, including an intermediate change."""
+        return self._history.text if self._latest is None else self._latest[0]
+
+    def opened(self) -> Events:
+        """All events that a page needs at its start."""
+        return self._everything()
+
+    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+        """Let long work end for a newer change, and report its progress."""
+        self.cycle.hurried, self.cycle.working = hurried, working
+
+    def handle(self, request: ask.Request) -> Events:
+        """Process a request and send its events; invalid requests are answered, not raised."""
+        owed = self.cycle.owed
+        try:
+            if self._dragged and not _goes_on(request, self._dragged):
+                self._end_drag()
+            events = self._handle(request)
+        except InputError as error:
+            events = [tell.Refused(message=str(error))]
+        return [*events, *(self.cycle.events() if owed and self.cycle.owed else [])]
+
+    def design_text(self, index: int) -> tuple[str, str]:
+        """The text of a design as a mechanism file, and a name for it.
+
+        Raises
+        ------
+        InputError
+            If there is no such design.
+        """
+        design = self.cycle.design(index)
+        refused = "-refused" if design.kinds else ""
+        stem = Path(self._file.name).stem
+        return f"{stem}{refused}-{design.number}", write_text(design.linkage)
+
+    @singledispatchmethod
+    def _handle(self, request: ask.Request) -> Events:
+        if isinstance(request, do.TASK_EDITS):
+            return self._edited(request)  # type: ignore[arg-type]
+        if isinstance(request, FILE_REQUESTS):
+            return self._on_file(request)
+        raise InputError("this is a task: open one of its designs to change a mechanism")
+
+    def _edited(self, edit: do.TaskEdit) -> Events:
+        live = bool(getattr(edit, "live", False))
+        text = self._text_edits()
+        edit_task(edit, text, self._snap)
+        self.cycle.take(text.text)
+        self._keep_on_curve(text)
+        if live:
+            self._dragged, self._latest = same_thing(edit), (text.text, task_edit_title(edit))
+            return self.cycle.events(live=True)
+        self._dragged, self._latest = "", None
+        self._history.add(text.text, task_edit_title(edit))
+        return [self._state(), *self.cycle.events()]
+
+    def _keep_on_curve(self, text: TextEdits) -> None:
+        """Let fixed pivots of four poses follow the centre-point curve of changed poses."""
+        task = self.cycle.sketch.task
+        if task is None:
+            return
+        for k, (x, y) in enumerate(task.given.fixed_pivots):
+            near = nearest_on(task, complex(x, y))
+            text.put((*do.LISTS["fixed pivot"], k, 0), near.real)
+            text.put((*do.LISTS["fixed pivot"], k, 1), near.imag)
+        if text.text != task.text:
+            self.cycle.take(text.text)
+
+    def _text_edits(self) -> TextEdits:
+        try:
+            data_of(self.text, self._file.name)
+        except MechanismError as error:
+            (problem,) = error.problems
+            place = f"line {problem.line} " if problem.line else "it "
+            raise InputError(f"correct the text first: {place}{problem.message}") from None
+        return TextEdits(self.text)
+
+    def _snap(self, point: complex) -> complex:
+        """Where a fixed pivot goes that is dragged to a point."""
+        task = self.cycle.sketch.task
+        return point if task is None else nearest_on(task, point)
+
+    @_handle.register
+    def _(self, request: ask.SetText) -> Events:
+        return self._accepted(request.text, "text")
+
+    @_handle.register
+    def _(self, request: ask.Reload) -> Events:
+        text = self._file.read()
+        events = self._accepted(text, "reload")
+        self._file.accept(text)
+        self._conflict = None
+        return [self._state(), *events[1:]]
+
+    @_handle.register
+    def _(self, request: ask.Cancel) -> Events:
+        return self.cycle.end()
+
+    @_handle.register
+    def _(self, request: do.SolveTask) -> Events:
+        return self.cycle.events()
+
+    @_handle.register
+    def _(self, request: do.ShowDesign) -> Events:
+        return self.cycle.choose(request.design)
+
+    @_handle.register
+    def _(self, request: do.ShowCognates) -> Events:
+        self.cycle.design(request.design)
+        return [cognates_found(self.cycle.found, request.design)]
+
+    @_handle.register
+    def _(self, request: ask.MakeLink) -> Events:
+        return [link_made(self.text, self.name, request.app)]
+
+    def _accepted(self, text: str, what: str) -> Events:
+        self._dragged, self._latest = "", None
+        self._history.add(text, what)
+        return self._went()
+
+    def _end_drag(self) -> None:
+        """Complete a drag that has not ended."""
+        if self._latest is not None:
+            self._history.add(*self._latest)
+        self._dragged, self._latest = "", None
+
+    def _everything(self) -> Events:
+        self._end_drag()
+        conflict = [] if self._conflict is None else [self._conflict]
+        return [self._state(), *self.cycle.events(), *conflict]
+
+    def _went(self) -> Events:
+        self.cycle.take(self._history.text)
+        return [self._state(), *self.cycle.events()]
+
+    def _taken_over(self) -> Events:
+        self._end_drag()
+        changed = f'"{self._file.name}" has been read again'
+        try:
+            events = self._handle(ask.Reload())
+        except InputError as error:
+            return [tell.Refused(message=str(error))]
+        return [self._changed(changed, reloaded=True), *events]
+
+    def _state(self) -> tell.TaskState:
+        return self.cycle.sketch.state(
+            self._file.name, self.text, self._history, unsaved=self.unsaved
+        )
+
+
+def _goes_on(request: ask.Request, dragged: str) -> bool:
+    """Whether a request belongs to a drag, or does not affect it."""
+    if isinstance(request, do.ShowDesign | do.ShowCognates | ask.MakeLink):
+        return True
+    return isinstance(request, do.TASK_EDITS) and same_thing(request) == dragged

@@ -1,0 +1,303 @@
+"""The designs of a synthesis as the page shows them: list, motion, cognates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from linkwork.design.precision.cognates import cognates
+from linkwork.design.synthesis.burmester import CentrePoints, centre_points
+from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.loop_positions import pivots_at
+from linkwork.design.synthesis.motion_synthesis import poses_of
+from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.task import Task
+from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.viewer.live import events as tell
+from linkwork.viewer.live.file_state import Point
+from linkwork.viewer.live.task_events import CognateShown, DesignShown, DyadShown
+
+__all__ = [
+    "alike",
+    "centre_curve",
+    "cognates_found",
+    "design_found",
+    "nearest_on",
+    "task_solved",
+]
+
+_MOST_SOUND, _MOST_REFUSED = 300, 200  # of the list on the page
+_ROWS = 181  # of a motion
+_CURVE = 361  # points of a coupler curve
+_CENTRE_CURVE = 240  # lines through the pole for each arc
+_FAR = 30.0  # sizes of the task: the centre-point curve goes to infinity
+_COGNATE = 1e-6  # relative: the same pivots, found in two ways
+_MOST_DYADS = 200
+
+
+def task_solved(
+    found: Synthesis, chosen: tell.DesignFound | None, *, live: bool
+) -> tell.TaskSolved:
+    """The counts and the list; ``live``: without the list."""
+    sound = found.sound
+    listed = [] if live else [
+        *range(min(sound, _MOST_SOUND)),
+        *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
+    ]  # fmt: skip
+    wish, costs = found.costliest or ("", 0)
+    solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
+    if found.starts:
+        solutions = f"{found.real} local minima from {found.starts} starts"
+    return tell.TaskSolved(
+        live=live,
+        solutions=solutions,
+        linkages=found.linkages,
+        count=len(found.designs),
+        sound=sound,
+        delivered=len(found.delivered),
+        completeness=found.completeness.name,
+        message=found.message,
+        interrupted=found.interrupted,
+        error_unit=found.error_unit,
+        defects={kind.value: count for kind, count in found.defects.items()},
+        costliest=wish,
+        costs=costs,
+        designs=tuple(_shown(found.designs[k], k) for k in listed),
+        left_out=len(found.designs) - len(listed),
+        dyads=tuple(
+            DyadShown(kind=dyad.kind, fixed=dyad.fixed, proved=dyad.proved)
+            for dyad in (() if live else found.dyads[:_MOST_DYADS])
+        ),
+        centre_curve=centre_curve(found.task),
+        chosen=chosen,
+    )
+
+
+def _shown(design: SynthesizedDesign, index: int) -> DesignShown:
+    return DesignShown(
+        index=index,
+        number=design.number,
+        mechanism=design.group.given.kind.value,
+        drive=design.drive.value,
+        sound=not design.kinds,
+        delivered=design.delivered,
+        transmission=_finite(design.transmission),
+        size=_finite(design.size),
+        error=_finite(design.error),
+        score=_finite(design.score),
+        reason=design.defects[0].message if design.kinds else "",
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def design_found(found: Synthesis, index: int) -> tell.DesignFound:
+    """A design at the positions, and moving through its driven range if it is sound."""
+    design = found.designs[index]
+    group, k = design.group, design.index
+    own, drive = group.given.take(slice(k, k + 1)), group.drive
+    one = np.array([k])
+    loops, travel = group.verdicts.loops.take(one), group.verdicts.travel
+    at = (own.moving_a[0], own.moving_b[0], own.guided[0])
+    rows: tuple[tuple[float, ...], ...] = ()
+    marks: tuple[float, ...] = ()
+    if not design.kinds:
+        first, last = float(travel.first[k]), float(travel.last[k])
+        place = np.linspace(first, last, _ROWS)
+        rows = _rows(*(part[0] for part in pivots_at(own, drive, loops, place[None])))
+        span = (last - first) or 1.0
+        marks = tuple(((travel.place[k] - first) / span * (_ROWS - 1)).tolist())
+    return tell.DesignFound(
+        design=_shown(design, index),
+        fixed=tuple(_fixed(own, at)),
+        guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
+        line=_line(own),
+        at=_rows(*at),
+        rows=rows,
+        marks=marks,
+        curve=_curve(own, drive, loops),
+    )
+
+
+def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[Point]:
+    yield _point(own.fixed_a[0])
+    if own.kind is not LoopKind.SLIDER_CRANK:
+        yield _point(own.fixed_b[0])
+        return
+    along = ((at[1] - own.fixed_b[0]) * own.direction[0].conj()).real
+    reach = 0.2 * max(float(np.ptp(along)), float(abs(at[1][0] - at[0][0])))
+    for end in (along.min() - reach, along.max() + reach):
+        yield _point(own.fixed_b[0] + end * own.direction[0])
+
+
+def _line(own: Candidates) -> float | None:
+    """The direction of the line of an inverted slider-crank's coupler from that of AB [rad]."""
+    if own.kind is not LoopKind.INVERTED:
+        return None
+    return float(np.angle(own.lines[0, 0] / (own.moving_b[0, 0] - own.moving_a[0, 0])))
+
+
+def _rows(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:
+    """Rows of x, y of each part (K,); rows without a position are left out."""
+    table = np.stack([number for part in parts for number in (part.real, part.imag)], axis=1)
+    return tuple(map(tuple, table[np.isfinite(table).all(axis=1)].tolist()))
+
+
+def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, ...], ...]:
+    """The guided point on the branch of the first position, in pieces x, y, x, y, …"""
+    if drive is Drive.SLIDER:
+        place = np.linspace(*_slider_range(own), _CURVE)
+    else:
+        place = np.linspace(-np.pi, np.pi, _CURVE)
+    points = pivots_at(own, drive, loops, place[None])[2][0]  # type: ignore[arg-type]
+    return tuple(_pieces(points))
+
+
+def _slider_range(own: Candidates) -> tuple[float, float]:
+    reach = abs(own.moving_a[0, 0] - own.fixed_a[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
+    return -float(reach), float(reach)
+
+
+def _pieces(points: ComplexArray) -> Iterator[tuple[float, ...]]:
+    """Runs of finite points."""
+    whole = np.isfinite(points)
+    ends = np.flatnonzero(np.diff(whole)) + 1
+    for part, ok in zip(np.split(points, ends), np.split(whole, ends), strict=True):
+        if len(part) > 1 and ok[0]:
+            yield tuple(np.stack([part.real, part.imag], axis=1).ravel().tolist())
+
+
+def _point(z: complex) -> Point:
+    return float(z.real), float(z.imag)
+
+
+def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int | None:
+    """The design of a kind whose pivots (4,) are nearest to those of another one, sound ones first;
+    ``None`` without designs.
+    """
+    best: tuple[bool, float, int] | None = None
+    groups = {id(design.group): design.group for design in found.designs}
+    distances: dict[int, Array] = {}
+    for name, group in groups.items():
+        given = group.given
+        own = [given.fixed_a, given.fixed_b, given.moving_a[:, 0], given.moving_b[:, 0]]
+        off = np.abs(np.stack(own, axis=1) - pivots).sum(axis=1)
+        other = (given.kind.value, group.drive.value) != (kind, drive)
+        distances[name] = np.where(other, np.inf, off)
+    for k, design in enumerate(found.designs):
+        off = float(distances[id(design.group)][design.index])
+        rank = (bool(design.kinds), off, k)
+        if best is None or rank < best:
+            best = rank
+    return None if best is None else best[2]
+
+
+def centre_curve(task: Task) -> tuple[tuple[float, ...], ...]:
+    """The centre-point curve of four poses as polylines; none for other tasks."""
+    return tuple(piece for run in _centre_runs(task) for piece in _pieces(run))
+
+
+def nearest_on(task: Task, point: complex) -> complex:
+    """The point of the centre-point curve nearest to a point; the point itself for other tasks."""
+    runs = [run[np.isfinite(run)] for run in _centre_runs(task)]
+    points = np.concatenate(runs) if runs else np.empty(0, dtype=complex)
+    if not points.size:
+        return point
+    curve = _centre_points(task)
+    assert curve is not None
+    near = points[np.abs(points - point).argmin()]
+    # the sample and the lines through its neighbourhood, ever finer
+    angle, width = float(np.angle(near - curve.pole)), np.pi / _CENTRE_CURVE
+    for _ in range(8):
+        angles = angle + np.linspace(-width, width, 33)
+        found = curve.points(angles)
+        off = np.abs(found - point)
+        if np.isnan(off).all():
+            break
+        k, side = np.unravel_index(np.nanargmin(off), off.shape)
+        if off[k, side] <= abs(near - point):
+            near = found[k, side]
+        angle, width = float(angles[k]), width / 8.0
+    return complex(near)
+
+
+def _centre_points(task: Task) -> CentrePoints | None:
+    if task.kind != "motion" or len(task.positions) != 4:
+        return None
+    return centre_points(*poses_of(task))
+
+
+def _centre_runs(task: Task) -> Iterator[ComplexArray]:
+    """Points along the arcs, there on one side and back on the other; NaN where they are far."""
+    curve = _centre_points(task)
+    if curve is None:
+        return
+    points, _ = poses_of(task)
+    middle = points.mean()
+    size = max(float(np.abs(points - middle).max()), abs(curve.pole - middle))
+    for arc in curve.arcs:
+        share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _CENTRE_CURVE))
+        sides = curve.points(arc.start + share * (arc.stop - arc.start))
+        for run in _continuous(sides):
+            yield np.where(np.abs(run - middle) < _FAR * size, run, np.nan)
+
+
+def _continuous(sides: ComplexArray) -> Iterable[ComplexArray]:
+    """Both sides (K, 2), each cut where it jumps through infinity."""
+    for side in sides.T:
+        step = np.abs(np.diff(side))
+        typical = np.nanmedian(step) if np.isfinite(step).any() else 0.0
+        yield np.where(np.append(step, 0.0) > 50.0 * typical, np.nan, side)
+
+
+def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:
+    """A four-bar and its two cognates, each with its verdict if it is among the designs."""
+    design = found.designs[index]
+    own = design.group.given.take(slice(design.index, design.index + 1))
+    curve = design_found(found, index).curve
+    if own.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
+        return tell.CognatesFound(design=index, cognates=(), curve=curve)
+    guided = own.guided[0, 0]
+    legs = [own.moving_a[0, 0], own.fixed_a[0], own.moving_b[0, 0], own.fixed_b[0]]
+    x, a, y, b = (z - guided for z in legs)
+    linkage = np.array([[z for pair in ((w, w.conjugate()) for w in (x, a, y, b)) for z in pair]])
+    rows = [linkage[0], *(part[0] for part in cognates(linkage))]
+    shown = [
+        _cognate(found, {name: _point(row[2 * k] + guided) for k, name in enumerate(_LEGS)}
+                 | {"P": _point(guided)}, index if not place else None)
+        for place, row in enumerate(rows)
+        if np.isfinite(row).all()
+    ]  # fmt: skip
+    return tell.CognatesFound(design=index, cognates=tuple(shown), curve=curve)
+
+
+_LEGS = ("A", "A0", "B", "B0")
+
+
+def _joints(design: SynthesizedDesign) -> tuple[complex, ...]:
+    points = design.design.points
+    return points["A"], points["B"]
+
+
+def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> CognateShown:
+    """A cognate with the best verdict that the list has on it, in the names of its points."""
+    wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
+    size = np.abs(wanted - wanted.mean()).max()
+    for k in range(len(found.designs)) if index is None else (index,):
+        other = found.designs[k]
+        given, j = other.group.given, other.index
+        ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
+        for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
+            if np.abs(np.array(ends)[order] - wanted).max() < _COGNATE * size:
+                shown = _shown(other, k)
+                drive = {"A0": "B0", "B0": "A0"}[shown.drive] if exchanged else shown.drive
+                return CognateShown(
+                    points=points, drive=drive, index=k, sound=shown.sound, reason=shown.reason
+                )
+    return CognateShown(
+        points=points, drive="A0", index=-1, sound=False, reason="not among the designs"
+    )

@@ -1,0 +1,150 @@
+"""Changes of a task as edits of its text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import singledispatch
+from typing import Any
+
+from linkwork.foundation.errors import InputError, choices
+from linkwork.textfile.text_edits import TextEdits
+from linkwork.viewer.live import task_requests as do
+
+__all__ = ["edit_task", "task_edit_title"]
+
+_MOST_POINTS = 200  # of a drawn curve
+
+#: Where a point goes that is moved: the centre-point curve holds a fixed pivot.
+Snap = Callable[[complex], complex]
+
+
+@singledispatch
+def edit_task(edit: do.TaskEdit, text: TextEdits, snap: Snap) -> None:
+    """Apply a change to a text.
+
+    Raises
+    ------
+    InputError
+        If there is no such thing; the text is then invalid.
+    """
+    raise TypeError(f"{type(edit).__name__} is not an edit of a task")
+
+
+@edit_task.register
+def _(edit: do.MoveTaskPoint, text: TextEdits, snap: Snap) -> None:
+    key = _place(text, edit.of, edit.index)
+    point = complex(edit.x, edit.y)
+    if edit.of == "fixed pivot":
+        point = snap(point)
+    if edit.of == "position":
+        key = (*key, "point")
+    if not text.has((*key, 1)):
+        text.put(key, [point.real, point.imag])
+        return
+    text.put((*key, 0), point.real)
+    text.put((*key, 1), point.imag)
+    if edit.of == "obstacle" and edit.radius is not None:
+        text.put((*key, 2), abs(edit.radius))
+
+
+@edit_task.register
+def _(edit: do.TurnPose, text: TextEdits, snap: Snap) -> None:
+    text.put((*_place(text, "position", edit.index), "angle"), edit.angle)
+
+
+@edit_task.register
+def _(edit: do.AddTaskPoint, text: TextEdits, snap: Snap) -> None:
+    key = _list_of(edit.of)
+    point = complex(edit.x, edit.y)
+    if edit.of == "position":
+        rows = [row for _, row in text.entries("positions")]
+        posed = text.has(("task",)) and text.get(("task",)) == "motion"
+        last = rows[-1].get("angle", 0.0 if posed else None) if rows else 0.0 if posed else None
+        angle = {} if last is None else {"angle": last}
+        text.append("positions", {"point": [edit.x, edit.y], **angle})
+        return
+    if edit.of == "fixed pivot":
+        point = snap(point)
+    new = [point.real, point.imag, *([edit.radius] if edit.of == "obstacle" else [])]
+    listed = text.get(key) if text.has(key) else []
+    _put(text, key, [*listed, new])
+
+
+@edit_task.register
+def _(edit: do.RemoveTaskPoint, text: TextEdits, snap: Snap) -> None:
+    text.remove(_place(text, edit.of, edit.index))
+    key = _list_of(edit.of)
+    if text.has(key) and not text.get(key):
+        text.remove(key)
+
+
+@edit_task.register
+def _(edit: do.SetTaskEntry, text: TextEdits, snap: Snap) -> None:
+    key: tuple[str | int, ...] = tuple(
+        int(part) if part.isdigit() else part for part in edit.key.split(".")
+    )
+    if edit.value is not None:
+        _put(text, key, edit.value)
+    elif text.has(key):
+        text.remove(key)
+
+
+@edit_task.register
+def _(edit: do.DrawCurve, text: TextEdits, snap: Snap) -> None:
+    points = _pairs(edit.points)
+    if not 2 <= len(points) <= _MOST_POINTS:
+        raise InputError(f"a drawn curve has 2 to {_MOST_POINTS} points, got {len(points)}")
+    for table in ("curve", "positions"):
+        if text.has((table,)):
+            text.remove((table,))
+    text.put(("task",), "path")
+    for x, y in points:
+        text.append("positions", {"point": [x, y]})
+
+
+@edit_task.register
+def _(edit: do.SetRegion, text: TextEdits, snap: Snap) -> None:
+    _put(text, do.LISTS["corner"], [list(corner) for corner in _pairs(edit.corners)])
+
+
+def _pairs(numbers: tuple[float, ...]) -> list[tuple[float, float]]:
+    if len(numbers) % 2:
+        raise InputError(f"points are x, y, x, y, …: got {len(numbers)} numbers")
+    return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+def _list_of(name: str) -> tuple[str, ...]:
+    if name not in do.LISTS:
+        raise InputError(f'a task has no "{name}" {choices("lists", do.LISTS, name)}')
+    return do.LISTS[name]
+
+
+def _place(text: TextEdits, name: str, index: int) -> tuple[str | int, ...]:
+    key: tuple[str | int, ...] = (*_list_of(name), index)
+    if index < 0 or not text.has(key):
+        raise InputError(f"there is no {name} {index + 1}: it may have been removed")
+    return key
+
+
+def _put(text: TextEdits, key: Iterable[str | int], entry: Any) -> None:
+    """Write an entry; a missing table inside a table is written in one line."""
+    path = tuple(key)
+    while len(path) > 2 and not text.has(path[:-1]):
+        path, entry = path[:-1], {str(path[-1]): entry}
+    text.put(path, entry)
+
+
+_TITLES: dict[type, Callable[[Any], str]] = {
+    do.MoveTaskPoint: lambda edit: f"{edit.of} {edit.index + 1} moved",
+    do.TurnPose: lambda edit: f"position {edit.index + 1} turned",
+    do.AddTaskPoint: lambda edit: f"{edit.of} added",
+    do.RemoveTaskPoint: lambda edit: f"{edit.of} {edit.index + 1} removed",
+    do.SetTaskEntry: lambda edit: f"{edit.key} changed",
+    do.DrawCurve: lambda edit: "curve drawn",
+    do.SetRegion: lambda edit: "region of pivots drawn",
+}
+
+
+def task_edit_title(edit: do.TaskEdit) -> str:
+    """What a change is called in the history."""
+    return _TITLES[type(edit)](edit)

@@ -1,0 +1,31 @@
+"""Tasks to begin with."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+from linkwork.foundation.errors import InputError, choices
+from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
+
+__all__ = ["task_template", "template_names"]
+
+
+def template_names() -> tuple[str, ...]:
+    """The names of the tasks, sorted."""
+    files = resources.files(__name__).iterdir()
+    return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
+
+
+def task_template(name: str) -> MechanismFile:
+    """A task to begin with, under a name that no file has.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    known = template_names()
+    if name not in known:
+        raise InputError(f'there is no task "{name}" to begin with {choices("tasks", known, name)}')
+    text = (resources.files(__name__) / f"{name}.toml").read_text(encoding="utf-8")
+    return new_file(name, text)

@@ -1,0 +1,415 @@
+"""Reports: four formats with the same content, whose numbers are those of the results."""
+
+from __future__ import annotations
+
+import re
+import sys
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+
+import docx
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import linkwork as lw
+from linkwork.api import example_text
+from linkwork.cli.main import linkwork
+from linkwork.export import Findings, template_of
+from linkwork.export.report.document import (
+    Block,
+    Document,
+    Equation,
+    Facts,
+    Figure,
+    Listing,
+    Paragraph,
+    Table,
+    printed,
+    split_columns,
+)
+from linkwork.export.report.report import document_of
+from linkwork.export.report.template import SECTIONS, Template
+from linkwork.results.listing.column import Column
+from tests.export.coarse import coarse
+from tests.library_mechanisms import read_example
+
+_DEAD = "rapier-drive-limited"  # a linkage with dead points
+_SHORT = 'sections = ["summary", "drawing", "equations", "motion", "proof", "file"]\n'
+
+
+@cache
+def _found(name: str, *sections: str) -> Findings:
+    mechanism = coarse(read_example(name), 12)
+    template = Template(sections=sections)
+    found: Findings = mechanism.findings(template, None, None, lambda part: None)
+    return found
+
+
+def _document(name: str, *sections: str) -> Document:
+    return document_of(_found(name, *sections), Template(sections=sections))
+
+
+def _section(document: Document, title: str) -> list[Block]:
+    return next(list(s.blocks) for s in document.sections if s.title == title)
+
+
+def _tables(document: Document) -> dict[str, Table]:
+    return {b.caption: b for s in document.sections for b in s.blocks if isinstance(b, Table)}
+
+
+def _facts(document: Document, title: str) -> dict[str, str]:
+    pairs = [p for b in _section(document, title) if isinstance(b, Facts) for p in b.pairs]
+    return dict(pairs)
+
+
+def _numbers(column: Column) -> list[float]:
+    return [float(cell.replace("\u2212", "-")) for cell in column.cells]
+
+
+# Formats
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("reports")
+    (folder / "short.toml").write_text(_SHORT + 'author = "A. Student"\n')
+    mechanism = coarse(read_example("four-bar"), 4)
+    files = {}
+    for suffix in ("html", "pdf", "docx", "md"):
+        files[suffix] = folder / f"bar.{suffix}"
+        mechanism.to_report(files[suffix], template=folder / "short.toml")
+    return files
+
+
+class _Page(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.counts: dict[str, int] = {}
+        self.links: list[str] = []
+        self.identifiers: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.counts[tag] = self.counts.get(tag, 0) + 1
+        if tag not in ("meta", "link", "img"):
+            self.open.append(tag)
+        given = dict(attrs)
+        self.links += [v or "" for k, v in attrs if k in ("src", "href", "xlink:href")]
+        if given.get("id"):
+            self.identifiers.append(given["id"] or "")
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_starttag(tag, attrs)
+        if tag not in ("meta", "link", "img"):
+            self.open.pop()
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def test_a_page_is_complete_in_itself(written: dict[str, Path]) -> None:
+    text = written["html"].read_text("utf-8")
+    page = _Page()
+    page.feed(text)
+    assert not page.open
+    assert page.counts["figure"] == 1
+    assert page.counts["math"] > 3
+    assert all(link.startswith("#") for link in page.links)
+    assert len(set(page.identifiers)) == len(page.identifiers)
+    assert "A. Student" in text
+
+
+def test_a_word_document_has_its_tables_pictures_and_equations(written: dict[str, Path]) -> None:
+    file = docx.Document(str(written["docx"]))
+    body = file.element.xml
+    assert len(file.inline_shapes) == 1
+    # every equation ends with its number
+    assert re.findall(r"<w:t[^>]*>\s*\((\d)\)</w:t>", body) == ["1", "2", "3"]
+    assert body.count("<m:oMath>") + body.count("<m:oMath ") > 6
+    heads = [[cell.text for cell in table.rows[0].cells] for table in file.tables]
+    assert ["crank [deg]", "coupler [deg]", "rocker [deg]", "μ [deg]"] in heads
+    assert file.core_properties.author == "A. Student"
+
+
+def test_markdown_names_pictures_that_exist(written: dict[str, Path]) -> None:
+    text = written["md"].read_text("utf-8")
+    pictures = re.findall(r"!\[.*\]\((.*)\)", text)
+    assert pictures == ["bar-pictures/figure-1.png"]
+    assert all((written["md"].parent / name).read_bytes()[:4] == b"\x89PNG" for name in pictures)
+    assert text.count("$$") == 6
+
+
+@pytest.mark.parametrize("suffix", ["html", "pdf", "docx", "md"])
+def test_two_runs_write_the_same_bytes(suffix: str, written: dict[str, Path]) -> None:
+    again = written[suffix].with_name(f"again.{suffix}")
+    mechanism = coarse(read_example("four-bar"), 4)
+    mechanism.to_report(again, template=written[suffix].parent / "short.toml")
+    assert again.read_bytes().replace(b"again-pictures", b"bar-pictures") == (
+        written[suffix].read_bytes()
+    )
+    assert suffix != "pdf" or again.read_bytes().startswith(b"%PDF")
+
+
+# Contents
+
+
+def test_the_table_of_the_motion_has_the_values_and_rates_of_the_motion() -> None:
+    motion = _found("four-bar", "motion").motion
+    assert motion is not None
+    tables = _tables(_document("four-bar", "motion"))
+    for caption, suffix in (("Motion", ""), ("Velocities", ".velocity")):
+        crank, coupler, *_ = tables[caption].columns
+        assert _numbers(crank) == motion.inputs["crank"].tolist()
+        # three decimals of angles; rates have at least four
+        np.testing.assert_allclose(_numbers(coupler), motion[f"coupler{suffix}"], atol=5.001e-4)
+    assert [c.header for c in tables["Accelerations"].columns] == [
+        "crank [deg]", "coupler [rad/s²]", "rocker [rad/s²]", "μ [rad/s²]",
+    ]  # fmt: skip
+
+
+def test_rows_at_the_distance_asked_for() -> None:
+    template = Template(sections=("motion",), every=60, quantities=("rocker",))
+    tables = _tables(document_of(_found("four-bar", "motion"), template))
+    crank, rocker = tables["Motion"].columns
+    assert _numbers(crank) == [0, 60, 120, 180, 240, 300, 360]
+    assert rocker.header == "rocker [deg]"
+
+
+def test_a_distance_without_rows_is_refused() -> None:
+    template = Template(sections=("motion",), every=37)
+    with pytest.raises(lw.InputError, match=r"every = 37: .* take a multiple of its step, 30 deg"):
+        document_of(_found("four-bar", "motion"), template)
+
+
+def test_limits_and_missing_positions_are_noted_in_the_table() -> None:
+    motion = _found(_DEAD, "motion").motion
+    assert motion is not None
+    limits = [limit for limit in motion.limit if limit]
+    tables = _tables(_document(_DEAD, "motion"))
+    note = tables["Motion (continued)"].columns[-1]
+    assert note.header == "note"
+    assert [cell for cell in note.cells if cell in limits] == limits
+    assert note.cells.count("out of reach") == motion.counts[lw.Status.OUT_OF_REACH]
+
+
+def test_dimensions_are_those_of_the_file() -> None:
+    found = _found("rapier-drive", "dimensions")
+    names, values = _tables(_document("rapier-drive", "dimensions"))["Dimensions"].columns
+    given = dict(found.model.description.dimensions)
+    assert names.cells == list(given)
+    assert _numbers(values) == list(given.values())
+    assert values.header == "value [mm]"
+
+
+def test_iterations_are_those_of_the_position() -> None:
+    (trail,) = _found("rapier-drive", "newton").position.steps
+    tables = _tables(_document("rapier-drive", "newton"))
+    iterates = next(iter(tables.values()))
+    assert _numbers(iterates.columns[0]) == [step.k for step in trail.steps]
+    angles = [step.unknowns["θ13"] for step in trail.steps]
+    # six decimals, as in the columns of solve --steps
+    np.testing.assert_allclose(_numbers(iterates.columns[1]), angles, atol=5.001e-7)
+    systems = [caption for caption in tables if caption.startswith("F and J")]
+    assert len(systems) == len(trail.steps) - 1
+
+
+def test_vectors_close_the_loop() -> None:
+    tables = _tables(_document("rapier-drive", "vectors"))
+    assert len(tables) == 2
+    for table in tables.values():
+        sides, xs = table.columns[1].cells, _numbers(table.columns[4])
+        total = sum(x if side == "left" else -x for side, x in zip(sides, xs, strict=True))
+        # two decimals of each vector are printed
+        assert abs(total) <= 0.005 * len(xs)
+
+
+def test_forces_are_those_of_the_results() -> None:
+    found = _found("crank-press", "forces")
+    assert found.forces is not None
+    table = _tables(_document("crank-press", "forces"))["Smallest and largest forces"]
+    names, low, _, high, _, units = table.columns
+    row = list(names.cells).index("crank.effort")
+    effort = found.forces.values["crank.effort"]
+    # six digits are printed
+    assert float(low.cells[row]) == pytest.approx(effort.min(), rel=1e-5)
+    assert float(high.cells[row]) == pytest.approx(effort.max(), rel=1e-5)
+    assert units.cells[row] == found.forces.units["crank.effort"]
+
+
+def test_lists_are_those_of_the_results() -> None:
+    sections = ("circuits", "configurations")
+    found, document = _found(_DEAD, *sections), _document(_DEAD, *sections)
+    assert found.circuits is not None
+    assert found.configurations is not None
+    tables = _tables(document)
+    assert [caption for caption in tables if caption.startswith("Branches")] == [
+        f"Branches of {circuit.name}" for circuit in found.circuits
+    ]
+    listed = next(t for caption, t in tables.items() if caption.startswith("Configurations"))
+    assert listed.columns[0].cells == found.configurations.names
+    facts = [b for b in _section(document, "Circuits and dead points") if isinstance(b, Facts)]
+    dead = [p for fact in facts for p in fact.pairs if p[0] == "dead point"]
+    assert len(dead) == sum(len(circuit.dead_points) for circuit in found.circuits) > 0
+
+
+def test_the_paragraph_on_proofs_counts_the_rows() -> None:
+    text = _proof("rapier-drive")
+    assert text.startswith("Of 13 rows, 13 have a position. All of them are proved")
+    assert "Not proved are rates and plots" in text
+
+
+def test_rows_without_a_proof_are_counted_with_their_reason() -> None:
+    assert "None of them is proved by itself. 13 rows: proved for the mech" in _proof("dixon-one")
+    assert "none: plain equations have no known bound" in _proof("newton-convergence")
+    assert _proof("newton-extremum").startswith("No position was found")
+
+
+def _proof(name: str) -> str:
+    paragraph = _section(_document(name, "proof"), "What is proved")[0]
+    assert isinstance(paragraph, Paragraph)
+    return paragraph.text
+
+
+def test_tolerances_are_those_of_the_results() -> None:
+    mechanism = coarse(read_example("slider-crank"), 4).changed(tolerances={"B A": 0.05})
+    template = Template(sections=("tolerances",), tolerances_of=("d",))
+    found = mechanism.findings(template, 60, None, lambda part: None)
+    (contribution,) = _tables(document_of(found, template)).values()
+    share = mechanism.tolerance("d", at=60).contributions[0]
+    assert contribution.columns[0].cells == [share.name]
+    sensitivity = contribution.columns[2].cells[0].partition(" ")[0]
+    assert float(sensitivity) == pytest.approx(share.sensitivity, rel=1e-5)  # six digits
+
+
+def test_the_file_is_shown_as_it_is_written() -> None:
+    text = "# mine\n" + example_text("four-bar")
+    template = Template(sections=("file",))
+    found = lw.loads(text).findings(template, None, None, lambda part: None)
+    assert _section(document_of(found, template), "Mechanism file")[-1] == Listing(text=text)
+
+
+def test_sections_without_content_are_named_with_the_reason() -> None:
+    told = _facts(_document("four-bar", "paths", "forces", "tolerances"), "Sections left out")
+    assert told["Paths of points"] == "the file traces no point"
+    assert told["Forces"].startswith("nothing loads Four-bar linkage, open")
+    assert told["Tolerances"].startswith("nothing deviates")
+
+
+def test_a_mechanism_without_input_has_its_position() -> None:
+    truss = lw.linkage(
+        points={"A": (0, 0), "B": (40, 0), "C": (20, 30)},
+        links={"ground": ["A", "B"], "left": ["A", "C"], "right": ["B", "C"]},
+    )
+    template = Template(sections=("motion", "plots", "proof"))
+    document = document_of(truss.findings(template, None, None, lambda part: None), template)
+    names, values = _tables(document)["Points"].columns
+    assert float(values.cells[list(names.cells).index("C.x")]) == 20
+    assert _facts(document, "Sections left out")["Plots"] == "the mechanism has no input"
+    assert isinstance(proof := _section(document, "What is proved")[0], Paragraph)
+    assert "true position within" in proof.text
+
+
+def test_a_mechanism_that_does_not_close_says_why() -> None:
+    bar = coarse(read_example("four-bar"), 2).with_dimensions({"A B": 30, "O4 B": 20})
+    template = Template(sections=("summary", "drawing", "plots"))
+    document = document_of(bar.findings(template, None, None, lambda part: None), template)
+    (reason, _), *_ = list(bar.solve().failure.sentences())
+    assert reason in _facts(document, "Summary")
+    assert _facts(document, "Sections left out")["Drawing"] == "no position was found"
+
+
+def test_equations_tables_and_figures_are_numbered() -> None:
+    document = _document("rapier-drive", "drawing", "vectors", "equations", "dimensions")
+    blocks = [b for section in document.sections for b in section.blocks]
+    for kind, count in ((Equation, 6), (Table, 4), (Figure, 2)):
+        assert [b.number for b in blocks if isinstance(b, kind)] == list(range(1, count + 1))
+
+
+# Tables
+
+
+def test_wide_tables_are_split_and_repeat_their_first_column() -> None:
+    columns = [Column(header=f"column {k}", cells=["1" * 20]) for k in range(9)]
+    parts = list(split_columns(columns))
+    assert len(parts) == 3
+    assert {part[0].header for part in parts} == {"column 0"}
+    assert [c.header for part in parts for c in part[1:]] == [f"column {k}" for k in range(1, 9)]
+    assert {len(part) for part in parts} <= {3, 4}
+
+
+def test_numbers_have_powers_of_ten_and_their_points_below_each_other() -> None:
+    column = Column(header="x", cells=["-1.5e-07", "12", "-", "here"], align="point")
+    assert [cell.rstrip("\u2007\u2008") for cell in printed(column)] == [
+        "\u22121.5·10⁻⁷", "12", "–", "here",
+    ]  # fmt: skip
+    plain = printed(Column(header="x", cells=["1.25", "12"], align="point"))
+    assert plain == ["1.25", "12\u2008\u2007\u2007"]
+
+
+# Templates
+
+
+@pytest.mark.parametrize("name", ["engineer", "student"])
+def test_the_templates_of_the_package_have_known_sections(name: str) -> None:
+    assert set(template_of(name).sections) <= set(SECTIONS)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('sections = ["motions"]', 'line 1  sections[1]  must be "summary" or'),
+        ('sections = ["motion", "motion"]', 'has "motion" twice: name each section once'),
+        ('sections = ["motion"]\nevery = 0', "line 2  every  must be a positive step"),
+        ('sections = ["motion"]\nauthor = 3', "line 2  author"),
+        ('sections = ["motion"]\nauthors = "A"', "line 2  authors"),
+        ('title = "A"', "sections"),
+    ],
+)
+def test_wrong_templates_are_refused_with_the_line(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(text)
+    with pytest.raises(lw.MechanismFileError) as caught:
+        template_of(tmp_path / "own.toml")
+    assert message in re.sub(r" {2,}", "  ", str(caught.value))
+
+
+def test_unknown_templates_formats_and_packages_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bar = coarse(read_example("four-bar"), 2)
+    with pytest.raises(lw.InputError, match=r'no template "enginer" \(templates: engineer'):
+        bar.to_report(tmp_path / "x.html", template="enginer")
+    with pytest.raises(lw.InputError, match=r"must be one of \.html, \.pdf, \.docx, \.md"):
+        bar.to_report(tmp_path / "x.odt")
+    (tmp_path / "short.toml").write_text('sections = ["versions"]')
+    for suffix, package in (("pdf", "typst"), ("docx", "docx")):
+        monkeypatch.setitem(sys.modules, package, None)
+        with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):
+            bar.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "short.toml")
+        assert not (tmp_path / f"x.{suffix}").exists()
+
+
+def test_the_command_writes_a_report(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text('sections = ["proof"]')
+    args = ["report", "four-bar", "-o", str(tmp_path / "bar.html"), "--author", "B. Engineer"]
+    done = CliRunner().invoke(linkwork, [*args, "--template", str(tmp_path / "short.toml")])
+    assert done.output == f"Wrote {tmp_path / 'bar.html'}.\n"
+    assert "B. Engineer" in (tmp_path / "bar.html").read_text("utf-8")
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("name", sorted(lw.examples()))
+def test_every_mechanism_of_the_library_has_a_report(name: str, tmp_path: Path) -> None:
+    # drawings and lists of all mechanisms are tested elsewhere
+    sections = '"summary", "vectors", "dimensions", "equations", "newton", "motion", "proof"'
+    (tmp_path / "own.toml").write_text(f"sections = [{sections}]")
+    mechanism = coarse(read_example(name), 6)
+    for suffix in ("html", "md"):
+        mechanism.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "own.toml")
+    page = _Page()
+    page.feed((tmp_path / "x.html").read_text("utf-8"))
+    assert not page.open
+    text = (tmp_path / "x.md").read_text("utf-8")
+    assert "nan" not in re.split(r"\W+", text)
+    assert "What is proved" in text

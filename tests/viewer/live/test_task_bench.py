@@ -1,0 +1,302 @@
+"""A task under edit: what it answers, and what stays after a refusal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.synthesis.result import Synthesis
+from linkwork.design.synthesis.solving import solve_task
+from linkwork.design.synthesis.task import Task
+from linkwork.foundation.errors import InputError
+from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.bench import Bench
+from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
+from linkwork.viewer.live.task.bench import TaskBench
+from linkwork.viewer.live.task.cycle import SolveTask
+from linkwork.viewer.live.task.templates import task_template, template_names
+from linkwork.viewer.live.workbench import Workbench
+
+
+def opened(folder: Path, name: str, solve: SolveTask = solve_task) -> Bench:
+    """A bench on a task to begin with, in a file of a folder."""
+    path = folder / f"{name}.toml"
+    path.write_text(task_template(name).text, encoding="utf-8")
+    return Bench(MechanismFile(path), lw.loads, solve)
+
+
+def searching(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+    """A solver that takes long."""
+    assert progress is not None
+    progress(0.5)
+    raise InputError(f"no designs are found for {task.name}")
+
+
+def last(events: list[tell.Event], kind: type) -> tell.Event:
+    """The last event of a kind."""
+    return [event for event in events if isinstance(event, kind)][-1]
+
+
+def solved(events: list[tell.Event]) -> tell.TaskSolved:
+    """The designs that were told."""
+    found = last(events, tell.TaskSolved)
+    assert isinstance(found, tell.TaskSolved)
+    return found
+
+
+def positions(bench: Bench) -> list[tuple[float, float]]:
+    """The points of a task as its text has them."""
+    task = lw.Task.loads(bench.text).described
+    return [position.point for position in task.positions]
+
+
+@pytest.mark.parametrize("name", ["three-poses", "four-poses", "five-poses", "function"])
+def test_a_task_to_begin_with_has_sound_designs(tmp_path: Path, name: str) -> None:
+    found = solved(opened(tmp_path, name).opened())
+    assert found.sound >= 1
+    assert found.chosen is not None
+    assert found.chosen.design.sound
+
+
+def test_every_task_to_begin_with_can_be_read() -> None:
+    assert len(template_names()) == 6
+    for name in template_names():
+        lw.Task.loads(task_template(name).text)
+
+
+def test_a_dragged_point_changes_its_numbers_and_is_one_step_of_the_history(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    before = bench.text
+    bench.opened()
+    for x in (41.0, 43.0, 44.5):
+        events = bench.handle(do.MoveTaskPoint(of="position", index=1, x=x, y=-41, live=True))
+        assert solved(events).live
+    bench.handle(do.MoveTaskPoint(of="position", index=1, x=44.5, y=-41))
+    assert positions(bench)[1] == (44.5, -41)
+    assert "# A body in five poses" in bench.text  # comments stay
+    bench.handle(ask.Undo())
+    assert bench.text == before
+
+
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
+def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanism: str) -> None:
+    bench = opened(tmp_path, "four-poses")
+    events = bench.handle(do.SetTaskEntry(key="mechanism", value=mechanism))
+    found = solved(events).chosen
+    assert found is not None
+    assert found.design.mechanism == mechanism
+    rows, marks, at = np.array(found.rows), np.array(found.marks), np.array(found.at)
+    assert (np.diff(marks) > 0).all() or (np.diff(marks) < 0).all()
+    # a motion in equal steps of the input: between two rows it is nearly straight
+    below = np.clip(np.floor(marks).astype(int), 0, len(rows) - 2)
+    share = (marks - below)[:, None]
+    passed = (1 - share) * rows[below] + share * rows[below + 1]
+    assert np.abs(passed - at).max() < 1e-3 * np.ptp(rows)
+    assert np.abs(at[:, 4:] - positions(bench)).max() < 1e-9 * np.ptp(rows)
+    if found.line is not None:  # the line of the coupler passes B0 in every row
+        a, b = rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3]
+        along = (b - a) / abs(b - a) * np.exp(1j * found.line)
+        off = (complex(*found.fixed[1]) - b) * along.conj()
+        assert np.abs(off.imag).max() < 1e-9 * np.ptp(rows)
+
+
+def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    refused = [design for design in solved(bench.opened()).designs if not design.sound]
+    assert refused
+    assert all(design.reason for design in refused)
+    (shown,) = bench.handle(do.ShowDesign(design=refused[0].index))
+    assert isinstance(shown, tell.DesignFound)
+    assert shown.rows == ()
+    assert len(shown.at) == 5
+
+
+def test_a_pivot_of_four_poses_stays_on_their_curve(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "four-poses")
+    bench.opened()
+    found = solved(bench.handle(do.AddTaskPoint(of="fixed pivot", x=50, y=50)))
+    assert found.chosen is not None
+    (pivot,) = lw.Task.loads(bench.text).described.given.fixed_pivots
+    ends = [math.dist(pivot, fixed) for fixed in found.chosen.fixed[:2]]
+    assert min(ends) < 1e-6
+    # also when a pose is moved, which moves the curve
+    moved = bench.handle(do.MoveTaskPoint(of="position", index=2, x=110, y=-85))
+    assert solved(moved).count > 0
+
+
+def test_two_equal_points_are_told_and_can_be_drawn_apart(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    bench.opened()
+    x, y = positions(bench)[0]
+    bench.handle(do.TurnPose(index=1, angle=0))
+    events = bench.handle(do.MoveTaskPoint(of="position", index=1, x=x, y=y))
+    unsolved = last(events, tell.TaskUnsolved)
+    assert isinstance(unsolved, tell.TaskUnsolved)
+    assert "the same as position 1" in unsolved.problems[0].message
+    assert unsolved.problems[0].line is not None
+    state = last(events, tell.TaskState)
+    assert isinstance(state, tell.TaskState)
+    assert len(state.positions) == 5
+    assert solved(bench.handle(do.MoveTaskPoint(of="position", index=1, x=40, y=-40))).count
+
+
+def test_a_half_drawn_task_is_shown_with_what_it_lacks(tmp_path: Path) -> None:
+    path = tmp_path / "task.toml"
+    path.write_text('format = 1\ntask = "path"\n', encoding="utf-8")
+    bench = Bench(MechanismFile(path), lw.loads, searching)
+    unsolved = last(bench.opened(), tell.TaskUnsolved)
+    assert isinstance(unsolved, tell.TaskUnsolved)
+    assert unsolved.problems[0].key == "positions"
+    for k in range(2):
+        events = bench.handle(do.AddTaskPoint(of="position", x=10.0 * k, y=0))
+    assert positions(bench) == [(0, 0), (10, 0)]
+    assert isinstance(events[0], tell.TaskState)
+
+
+def test_a_text_that_is_not_toml_keeps_the_canvas_and_refuses_drags(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    bench.opened()
+    events = bench.handle(ask.SetText(text=bench.text + "\n[["))
+    state = last(events, tell.TaskState)
+    assert isinstance(state, tell.TaskState)
+    assert len(state.positions) == 5
+    assert state.problems[0].line is not None
+    (refused,) = bench.handle(do.MoveTaskPoint(of="position", index=0, x=1, y=1))
+    assert isinstance(refused, tell.Refused)
+    assert "correct the text first" in refused.message
+
+
+def test_wrong_requests_change_nothing(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    bench.opened()
+    before = bench.text
+    for request in (
+        do.MoveTaskPoint(of="position", index=9, x=0, y=0),
+        do.MoveTaskPoint(of="wheel", index=0, x=0, y=0),
+        do.ShowDesign(design=99),
+        do.OpenDesign(design=-1),
+        do.SetRegion(corners=(1.0, 2.0, 3.0)),
+        do.DrawCurve(points=(1.0, 2.0)),
+        do.OpenTask(name="twelve-poses"),
+        do.ReturnToTask(),
+        ask.SetNumber(name="a", value=1),
+    ):
+        (refused,) = bench.handle(request)
+        assert isinstance(refused, tell.Refused), request
+        assert "error in Linkwork" not in refused.message
+    assert bench.text == before
+
+
+def test_a_drawn_curve_replaces_the_positions(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "nine-points", searching)
+    bench.handle(do.DrawCurve(points=(0.0, 0.0, 10.0, 5.0, 20.0, 0.0)))
+    assert positions(bench) == [(0, 0), (10, 5), (20, 0)]
+    bench.handle(ask.Undo())
+    assert len(positions(bench)) == 9
+
+
+def test_wishes_are_written_in_one_line_and_removed(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    bench.handle(do.SetTaskEntry(key="wanted.transmission.least", value=89.0))
+    found = solved(bench.handle(do.SetTaskEntry(key="wanted.lengths.most", value=5000.0)))
+    assert "lengths = { most = 5000" in bench.text
+    assert found.sound == 0
+    assert (found.costliest, found.costs) == ("the least transmission angle", 7 + 5)
+    assert solved(bench.handle(do.SetTaskEntry(key="wanted.transmission.least"))).sound > 0
+
+
+def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "curve", searching)
+    bench.listen(lambda: True, lambda fraction: None)
+    assert [type(event) for event in bench.opened()] == [tell.TaskState]
+    (ended,) = bench.handle(ask.Cancel())
+    assert isinstance(ended, tell.TaskUnsolved)
+    assert ended.ended
+
+
+def test_a_design_is_opened_as_a_mechanism_and_left_again(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "five-poses")
+    bench.opened()
+    bench.handle(do.TurnPose(index=1, angle=11))
+    kinds = [type(event) for event in bench.handle(do.OpenDesign(design=0))]
+    assert {tell.FileState, tell.MotionFound, tell.DesignOpened} <= set(kinds)
+    assert type(bench.current).__name__ == "Workbench"
+    bench.handle(ask.SetText(text=f"{bench.text}# mine\n"))
+    (refused,) = bench.handle(do.ReturnToTask())
+    assert isinstance(refused, tell.Refused)
+    assert "not saved" in refused.message
+    (refused,) = bench.handle(ask.OpenExample(name="four-bar"))
+    assert isinstance(refused, tell.Refused)
+    assert "five-poses.toml" in refused.message  # the task behind would be lost
+    bench.handle(do.ReturnToTask(discard=True))
+    assert type(bench.current).__name__ == "TaskBench"
+    assert "angle = 11" in bench.text
+    assert [path.name for path in bench.keep_unsaved()] == ["five-poses.unsaved.toml"]
+
+
+def test_cognates_share_their_curve_and_have_their_verdicts(tmp_path: Path) -> None:
+    path = tmp_path / "task.toml"
+    path.write_text(_FIVE_POINTS, encoding="utf-8")
+    bench = Bench(MechanismFile(path), lw.loads, solve_task)
+    found = solved(bench.opened())
+    index = next(design.index for design in found.designs if design.mechanism == "four-bar")
+    (shown,) = bench.handle(do.ShowCognates(design=index))
+    assert isinstance(shown, tell.CognatesFound)
+    assert len(shown.cognates) == 3
+    ends = [{name: complex(*place) for name, place in one.points.items()} for one in shown.cognates]
+    # three linkages on three fixed pivots, which form a triangle similar to each coupler
+    pivots = {(round(z.real, 6), round(z.imag, 6)) for e in ends for z in (e["A0"], e["B0"])}
+    assert len(pivots) == 3
+    first = ends[0]
+    third = next(z for e in ends[1:] for z in (e["A0"], e["B0"])
+                 if min(abs(z - first["A0"]), abs(z - first["B0"])) > 1e-6)  # fmt: skip
+    coupler = (first["P"] - first["A"]) / (first["B"] - first["A"])
+    ground = (third - first["A0"]) / (first["B0"] - first["A0"])
+    assert abs(coupler - ground) < 1e-8 * abs(coupler)
+
+
+def test_a_task_in_a_file_is_opened_as_such(tmp_path: Path) -> None:
+    path = tmp_path / "four-bar.toml"
+    path.write_text(lw.example_text("four-bar"), encoding="utf-8")
+    assert isinstance(Bench(MechanismFile(path), lw.loads, solve_task).current, Workbench)
+    path.write_text('format = 1\n[wanted\ntask = "path"', encoding="utf-8")
+    assert isinstance(Bench(MechanismFile(path), lw.loads, solve_task).current, Workbench)
+    path.write_text('format = 1\ntask = "path"\n[wanted', encoding="utf-8")
+    assert isinstance(Bench(MechanismFile(path), lw.loads, solve_task).current, TaskBench)
+
+
+def test_the_start_page_opens_a_task(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    bench = Bench(new_file(), lw.loads, solve_task, start=True)
+    assert isinstance(bench.opened()[1], tell.StartOffered)
+    assert isinstance(bench.handle(do.OpenTask(name="five-poses"))[0], tell.TaskState)
+    assert isinstance(bench.handle(ask.OpenExample(name="four-bar"))[1], tell.FileState)
+
+
+_FIVE_POINTS = """\
+format = 1
+task = "path"
+
+[given]
+fixed_pivots = [[0, 0]]
+
+[[positions]]
+point = [45.7, 90.2]
+[[positions]]
+point = [50.1, 105.0]
+[[positions]]
+point = [31.6, 109.2]
+[[positions]]
+point = [6.7, 100.5]
+[[positions]]
+point = [-13.4, 82.2]
+[[positions]]
+point = [-23.7, 61.8]
+[[positions]]
+point = [-22.7, 47.1]
+"""

@@ -1,0 +1,148 @@
+"""The page of a task in a browser: from nothing to a task, a design, a mechanism and back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import linkwork as lw
+from linkwork.design.synthesis.solving import solve_task
+from linkwork.viewer.live.bench import Bench
+from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
+from linkwork.viewer.live.server import LiveServer
+from linkwork.viewer.live.task.templates import task_template
+from tests.viewer.accessibility import assert_accessible
+
+Serve = Callable[[Bench], LiveServer]
+Watched = Callable[..., Any]
+
+#: Where a handle is on the screen.
+_CENTRE = "(h) => { const b = h.querySelector('.lw-t-dot').getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }"  # noqa: E501
+
+
+def opened(bench: Bench, serve: Serve, watched: Watched, **options: Any) -> Any:
+    """The page of a bench."""
+    server = serve(bench)
+    page = watched((f"http://127.0.0.1:{server.port}/",), **options)
+    page.set_default_timeout(10_000)
+    page.goto(server.address)
+    return page
+
+
+def task(folder: Path, name: str) -> Bench:
+    """A bench on a task to begin with, in a file of a folder."""
+    path = folder / f"{name}.toml"
+    path.write_text(task_template(name).text, encoding="utf-8")
+    return Bench(MechanismFile(path), lw.loads, solve_task)
+
+
+def points(bench: Bench) -> list[tuple[float, float]]:
+    """The points of a task as its text has them."""
+    return [position.point for position in lw.Task.loads(bench.text).described.positions]
+
+
+def test_from_nothing_to_a_task_to_a_mechanism_and_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, serve: Serve, watched: Watched
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    bench = Bench(new_file(), lw.loads, solve_task, start=True)
+    page = opened(bench, serve, watched)
+    page.locator("[data-task=five-poses]").click()
+    page.locator(".lw-task[data-solved]").wait_for()
+    assert page.locator(".lw-t-designs tbody tr").count() == 12
+    assert page.locator(".lw-t-designs tr.lw-t-refused .lw-t-reason").count() == 5
+    # a point is dragged: its number changes, and one step back restores it
+    handle = page.locator(".lw-t-position[data-index='4'][data-knob=false]")
+    x, y = handle.evaluate(_CENTRE)
+    before = points(bench)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 12, y + 6, steps=3)
+    page.mouse.up()
+    page.locator(".lw-task .lw-bar [aria-label^='Undo: position 5 moved']").wait_for()
+    assert points(bench)[:4] == before[:4]
+    assert points(bench)[4] != before[4]
+    page.keyboard.press("ArrowRight")
+    page.locator(".lw-task[data-live=false]").wait_for()
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    page.locator(".lw-task .lw-bar [aria-label='Undo']").wait_for()
+    assert points(bench) == before
+    # another design moves through its positions
+    page.locator(".lw-t-designs tbody tr").nth(2).click()
+    page.locator(".lw-t-chosen p", has_text="Design 3").wait_for()
+    page.get_by_role("button", name="Position 4", exact=True).click()
+    assert page.locator(".lw-t-here[data-knob=false]").get_attribute("data-index") == "3"
+    assert_accessible(page)
+    page.get_by_role("button", name="Open as mechanism").click()
+    page.locator("#linkwork .lw[data-row]").wait_for()
+    assert lw.loads(bench.text).sweep().found.all()
+    page.get_by_role("button", name="Back to five-poses.toml").click()
+    page.locator(".lw-task").wait_for()
+    assert points(bench) == before
+
+
+@pytest.mark.extended
+def test_a_pivot_is_dragged_along_its_curve_and_the_design_follows(
+    tmp_path: Path, serve: Serve, watched: Watched
+) -> None:
+    bench = task(tmp_path, "four-poses")
+    page = opened(bench, serve, watched)
+    page.locator(".lw-task[data-solved]").wait_for()
+    page.get_by_role("button", name="Pivot", exact=True).click()
+    box = page.locator(".lw-t-canvas").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 3)
+    pivot = page.locator(".lw-t-fixed-pivot")
+    pivot.wait_for()
+    page.locator(".lw-task[data-solved='2']").wait_for()
+    x, y = pivot.evaluate(_CENTRE)
+    first = lw.Task.loads(bench.text).described.given.fixed_pivots[0]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 30, y + 5, steps=5)
+    page.mouse.up()
+    page.locator(".lw-task .lw-bar [aria-label^='Undo: fixed pivot 1 moved']").wait_for()
+    second = lw.Task.loads(bench.text).described.given.fixed_pivots[0]
+    assert second != first
+    found = lw.Task.loads(bench.text).solve()  # refuses a pivot off the curve
+    assert found.designs
+
+
+@pytest.mark.extended
+def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
+    tmp_path: Path, serve: Serve, watched: Watched
+) -> None:
+    bench = task(tmp_path, "five-poses")
+    page = opened(bench, serve, watched)
+    page.locator(".lw-task[data-solved]").wait_for()
+    page.get_by_role("tab", name="Task").click()
+    page.get_by_label("Transmission angle at least").fill("89")
+    page.keyboard.press("Enter")
+    page.get_by_role("tab", name="Designs").click()
+    page.get_by_text("The wish that costs most is the least transmission angle").wait_for()
+    assert page.locator(".lw-t-designs tbody tr:not(.lw-t-refused)").count() == 0
+    page.get_by_role("tab", name="Task").click()
+    for _ in range(4):
+        page.get_by_role("button", name="Remove position 2").click()
+        page.wait_for_timeout(50)
+    page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+    assert page.locator(".lw-t-position[data-knob=false]").count() == 1
+    page.reload()
+    page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("name", ["three-poses", "function", "curve"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_every_task_fits_into_its_page(
+    tmp_path: Path, serve: Serve, watched: Watched, name: str, width: int
+) -> None:
+    page = opened(task(tmp_path, name), serve, watched, viewport={"width": width, "height": 844})
+    page.locator(".lw-task[data-solved]").wait_for(timeout=60_000)
+    for tab in ("Designs", "Trade-off", "Cognates", "Task"):
+        page.get_by_role("tab", name=tab).click()
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert_accessible(page)
