@@ -51,6 +51,7 @@ class Assembly:
     def new_name(self, wanted: str, kind: str) -> str:
         """A name like the wanted one that formulas can use and nothing else has."""
         text = re.sub(r"\W", "_", wanted.strip()[:_LONGEST_NAME]).strip("_")
+        # the nearest spelling first, so that a person recognizes the name
         tried = (wanted, text, f"{kind}{text}", f"{kind}_{text}", kind)
         own = free_name(next(filter(_is_usable, tried)), self._taken)
         if own != wanted and wanted:
@@ -92,6 +93,7 @@ class Assembly:
 
     def guide(self, on: str, point: str, along: complex) -> tuple[str, str]:
         """A line on a link, through a point as drawn: from its place in a direction."""
+        # any length would do: this one is visible in drawings
         size = max((abs(p - self.points[point]) for p in self.points.values()), default=0.0) or 1.0
         first = self.add_point(f"{point}_from", self.points[point])
         second = self.add_point(f"{point}_to", self.points[point] + along / abs(along) * size)
@@ -123,9 +125,11 @@ class Assembly:
             If what the file contains is not a linkage, with every problem found.
         """
         into = {name: name for name in (GROUND, *self.links)}
+        # a merged link may have two points at one place, and points merged may join links
         while self._join_points() or self._join_links(into):
             pass
         self._drop_loose(into)
+        # without these two, the other messages would only be consequences
         if not self.fixed:
             self.source.refuse("has no fixed point: nothing is joined to ground")
         if not self.links:
@@ -153,6 +157,7 @@ class Assembly:
         """Make one point of points of a link at the same place; returns whether there were any."""
         same: dict[str, str] = {}
         for name in (GROUND, *self.links):
+            # equal to the last digit only: points that are merely close may be a short bar
             first: dict[complex, str] = {}
             own = self.carries(name)
             for point in [point for point in self.points if point in own]:
@@ -162,6 +167,7 @@ class Assembly:
                     self.source.leave_out(
                         f'point "{point}"', f'as a point of its own: it is "{kept}" of {name}'
                     )
+        # everything that names a point follows
         for point in same:
             del self.points[point]
         self.fixed = {same.get(point, point) for point in self.fixed}
@@ -205,12 +211,14 @@ class Assembly:
         for name in (GROUND, *self.links):
             for point in self.carries(name):
                 at.setdefault(point, []).append(name)
+        # by points, since most links share no point
         common = Counter(pair for names in at.values() for pair in combinations(names, 2))
         return [pair for pair, count in common.items() if count > 1]
 
     def _drop_loose(self, into: Mapping[str, str]) -> None:
         """Leave out links of one point that are no wheels, and points that nothing carries."""
         used = {name for parts in self.parts.values() for part in parts for name in _names(part)}
+        # wheels and blocks need no second point
         used = {into.get(name, name) for name in used}
         for name, points in list(self.links.items()):
             if len(points) < 2 and name not in used:

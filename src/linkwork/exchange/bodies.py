@@ -51,6 +51,7 @@ def quaternion(w: float, x: float, y: float, z: float) -> Array:
 
 
 def _unit(vector: Array) -> Array:
+    # scaled first, so that squares of large numbers stay finite
     largest = float(np.abs(vector).max())
     scaled = vector / largest if largest > 0.0 else vector
     length = math.sqrt(float(scaled @ scaled))
@@ -107,6 +108,7 @@ class Planar:
 
     def root(self, body: str) -> str:
         """The body that this one is fixed on."""
+        # welds in a circle must end
         seen = set()
         while body not in seen and body != GROUND:
             seen.add(body)
@@ -127,12 +129,14 @@ class Planar:
         hinges = [joint.axis for _, joint in joints if joint.kind == "hinge"]
         if not joints:
             self.source.refuse("has no joint that moves")
+        # slides alone do not fix a plane: that of x and y is taken
         axis = hinges[0] if hinges else np.array([0.0, 0.0, 1.0])
         normal = _unit(axis)
         # the x axis of the world, or y, as far as it lies in the plane
         first = np.array([1.0, 0.0, 0.0]) if abs(normal[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
         self.first = _unit(first - (first @ normal) * normal)
         second = np.cross(normal, self.first)
+        # with z upwards, a mechanism in the plane x-z is not upside down
         flip = -1.0 if second[int(np.abs(second).argmax())] < 0.0 else 1.0
         self.second, self.normal = flip * second, flip * normal
         for body, joint in joints:
@@ -150,6 +154,7 @@ class Planar:
         return complex(float(place @ self.first), float(place @ self.second))
 
     def _join(self, body: Body, joint: BodyJoint) -> None:
+        # a weld elsewhere may have joined both sides
         own, on = self.link(body.name), self.link(body.parent)
         if own == on:
             self.source.leave_out(f"line {body.line}", f'joint "{joint.name[:40]}" inside one link')
@@ -167,6 +172,7 @@ class Planar:
         """A point of bodies: one that a body has there, or a new one, called like a site there."""
         at, links = self.at(place), [self.link(body) for body in bodies]
         near = _NEAR * self.size
+        # two pins at one place are one pin of three links
         known = (p for link in links for p in sorted(self.assembly.carries(link)))
         point = next((p for p in known if abs(self.assembly.points[p] - at) <= near), None)
         if point is None:

@@ -65,6 +65,7 @@ class Drawn:
         for name in linkage.masses:
             self.leave_out(name, "mass")
         for which in linkage.inputs:
+            # the driven pin itself can be written
             given = (which.start, which.stop, which.step)
             if given != (None, None, None) or which.law is not None:
                 self.leave_out(which.column, "range or law of the input")

@@ -86,6 +86,7 @@ def read(source: Source) -> Assembly:
             if entity.layer in _INPUT_LAYERS:
                 driven.append((place, link))
     for place, link in driven:
+        # without a pivot at ground the drawing does not say against what it turns
         pivots = [p for p in assembly.links[link] if p in assembly.fixed]
         drive_joint(assembly, place, [GROUND, link] if pivots else [link])
     if not driven:
@@ -95,6 +96,7 @@ def read(source: Source) -> Assembly:
 
 def _pairs(source: Source) -> Iterator[tuple[int, int, str]]:
     """Line, group code and value of every pair."""
+    # old files have the code page of their country: only names could suffer
     rows = source.data.decode("utf-8-sig", "replace").splitlines()
     while rows and not rows[-1].strip():
         rows.pop()
@@ -144,6 +146,7 @@ def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
     for entity in entities:
         if entity.kind != "CIRCLE":
             continue
+        # its coordinates would be mirrored
         if entity.one(230, "1").startswith("-"):
             source.leave_out(f"line {entity.line}", "circle seen from behind (extrusion)")
             continue
@@ -192,6 +195,7 @@ def _pins_of(path: list[complex], closed: bool, pins: list[_Pin]) -> dict[comple
     """The pins at the corners of a path and on its straight pieces, by their place on it."""
     found: dict[complex, str] = {}
     for k, corner in enumerate(path):
+        # lines may be drawn to the rim of a circle
         nearest = min(pins, key=lambda pin: abs(pin.at - corner), default=None)
         if nearest is not None and abs(nearest.at - corner) <= nearest.radius * (1.0 + _TOLERANCE):
             found[corner] = nearest.name

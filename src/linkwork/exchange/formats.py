@@ -87,6 +87,7 @@ def _recognized(source: Source) -> str:
     if suffix in _CLOSED:
         source.refuse(_CLOSED[suffix])
     head = source.data[:_HEAD].decode("utf-8-sig", "replace")
+    # a suffix such as .json or .xml says little, and content can be damaged
     by_suffix = [name for name, module in FORMATS.items() if suffix in module.SUFFIXES]
     by_content = [name for name, module in FORMATS.items() if module.matches(head)]
     found = [name for name in by_content if name in by_suffix] or by_content or by_suffix

@@ -53,6 +53,7 @@ def _unpacked(source: Source) -> bytes:
             if _ENTRY not in packed.namelist():
                 source.refuse(f"is a ZIP file without {_ENTRY}")
             with packed.open(_ENTRY) as entry:
+                # the stated size may be wrong: what is read is bounded
                 data = entry.read(LARGEST + 1)
     except _BROKEN as error:
         source.refuse(f"is a damaged ZIP file: {str(error)[:80] or type(error).__name__}")
@@ -92,6 +93,7 @@ class _Construction:
         made: set[str] = set()
         for own in self.root.children:
             if own.tag == "command":
+                # elements of commands follow them: a point without a command is free
                 made |= set(self._outputs(own))
         for own in self.root.children:
             if own.tag == "command":
@@ -240,6 +242,7 @@ class _Construction:
             return "a line is on no link"
         for label in out:
             element = elements.get(label)
+            # an intersection that does not exist has an empty element
             if element is None or not element.children:
                 continue
             point = self._add_point(label, element)

@@ -51,6 +51,7 @@ def add_joints(assembly: Assembly, rows: Sequence[JointRow]) -> None:
             assembly.source.leave_out(row.place, f"joint of type {row.kind} with one link")
         else:
             _add_slide(assembly, row, own)
+    # only now do links have all their points
     for row, own in driven:
         drive_joint(assembly, row.place, own, row.speed)
 
@@ -88,6 +89,7 @@ def drive_joint(
 ) -> None:
     """Drive the angle between the two links at a pin; all points must be on their links before."""
     moving = [name for name in links if not assembly.carries(name) <= assembly.fixed]
+    # links whose points are all fixed are part of ground
     fixed = len(moving) < len(links)
     if len(moving) + fixed != 2:
         message = f"input at a pin of {len(moving) + fixed} links: name two of them"

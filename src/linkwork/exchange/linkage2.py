@@ -47,6 +47,7 @@ class _Document:
             self._add_connector(own)
         for own in links:
             self._add_link(own)
+        # links must be complete before gears are fastened and pins driven
         for own in (*connectors, *links):
             self._fasten(own)
         for own in connectors:
@@ -153,6 +154,7 @@ class _Document:
                 for n in self.assembly.carriers(point)
                 if n == GROUND or len(self.assembly.links[n]) > 1
             ]
+            # a gear alone on its pin can be driven too
             pinned = pinned if len(pinned) == 2 else self.assembly.carriers(point)
             rpm = own.get("rpm")
             speed = f"{self.source.number(rpm, 'rpm', own.line)} rpm" if rpm else None
@@ -196,5 +198,6 @@ class _Document:
                 )
             return
         a, b = (self.assembly.points[center] for center in centers)
+        # only the ratio of the sizes is meant, the wheels touch
         radii = tuple(abs(b - a) * size / sum(sizes) for size in sizes)
         self.assembly.add_part("gears", "mesh", "gear", **pair, radii=radii)

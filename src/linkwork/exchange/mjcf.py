@@ -70,6 +70,7 @@ class _World:
         mine = {**above, **({} if joint is None else joint.attributes)}
         name = own.get("class", "main")
         self.defaults[name] = mine
+        # the first class applies to elements without one
         if name == "main":
             self.defaults[""] = mine
         for inner in own.all("default"):
@@ -130,6 +131,7 @@ class _World:
         self._fill(body, own, inherited)
 
     def _add_joint(self, body: Body, own: Element, inherited: str) -> None:
+        # a class of the joint itself comes before that of its body
         defaults = self.defaults.get(own.get("class", inherited), self.defaults[""])
         own = Element(own.tag, {**defaults, **own.attributes}, own.line)
         name = own.get("name") or f"joint{len(self.joints) + 1}"
@@ -152,10 +154,12 @@ class _World:
 
     def planar(self) -> Planar:
         """The links, with loops and inputs."""
+        # a file may have several sections of a kind
         equalities = [own for each in self.root.all("equality") for own in each.children]
         same: dict[str, str] = {}
         names = {body.name for body in self.bodies}
         for own in equalities:
+            # welds first: they decide which bodies are links
             if own.tag == "weld":
                 one, two = (own.get(key) or GROUND for key in ("body1", "body2"))
                 if not {one, two} <= names:
@@ -173,6 +177,7 @@ class _World:
 
     def _weld(self, same: dict[str, str], one: str, two: str) -> None:
         """Make two bodies one: ground stays, otherwise the first."""
+        # chains of welds are no longer than the bodies
         for _ in self.bodies:
             one, two = same.get(one, one), same.get(two, two)
         if one != two:
@@ -209,6 +214,7 @@ class _World:
                 self.source.leave_out(f"line {own.line}", "the input: a slide without a range")
             else:
                 link, on = planar.link(body), planar.link(planar.bodies[body].parent)
+                # a body welded to the world drives the other side
                 link, on = (on, link) if link == GROUND else (link, on)
                 against = None if on == GROUND else on
                 planar.assembly.inputs.append(Input(link=link, relative_to=against))

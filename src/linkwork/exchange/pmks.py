@@ -62,6 +62,7 @@ def _joint_lines(source: Source, text: str) -> Assembly:
         words = [word for word in re.split(r"[\s,]+", row.strip()) if word]
         if not words:
             continue
+        # a link may be called R or P: numbers follow the type
         kinds = [k for k, word in enumerate(words) if k and word.upper() in ("R", "P", "RP", "G")]
         k = next((k for k in kinds if re.match(r"[-+.\d]", "".join(words[k + 1 : k + 2]))), None)
         if k is None:
@@ -115,6 +116,7 @@ def _first_links(source: Source, fields: dict[str, str]) -> Assembly:
         place = f"joint {name[:40]}"
         on = tuple(filter(None, links.split("|")))
         kind = "RP" if kind == "P" else source.chosen(kind, {"R": "R", "RP": "RP"}, place)
+        # the first links had no block: the joint itself slid on ground
         ground = (GROUND,) if fixed == "t" or kind == "RP" else ()
         rows.append(
             JointRow(
@@ -140,6 +142,7 @@ def _first_links(source: Source, fields: dict[str, str]) -> Assembly:
 
 def _assembled(source: Source, rows: list[JointRow]) -> Assembly:
     assembly = Assembly(source)
+    # neither form states it
     assembly.length = "unit"
     if not any(row.input for row in rows):
         source.leave_out("the file", "the input: none is marked")

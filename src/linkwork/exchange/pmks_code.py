@@ -55,6 +55,7 @@ class _Link:
 
 def read_code(source: Source, code: str) -> Assembly:
     """Read a code."""
+    # newer links add a digest of the text, older ones have the length alone
     body = _DIGEST.sub("", code)
     if not body or body[-1] != _CHECKS[(len(body) - 1) % len(_CHECKS)]:
         source.refuse("its check sum is wrong: the link is cut or changed, copy it again")
@@ -67,6 +68,7 @@ def read_code(source: Source, code: str) -> Assembly:
     if len(reader.left) > 1:
         source.leave_out("the end of the link", "locks, colours and designs of synthesis")
     speed = reader.number(sections[2].split(",")[0], "the input speed")
+    # the last digit holds the first flags
     clockwise = _DIGITS.index(sections[0][-1]) & 1
     turning = f"{-speed if clockwise else speed} rpm" if speed else None
     return _assembled(source, _UNITS.get(sections[3][:1], "unit"), joints, links, turning)
@@ -80,6 +82,7 @@ class _Code:
 
     def section(self, what: str) -> list[str]:
         """The records up to the next empty one."""
+        # the oldest links end with their forces
         if "" not in self.left:
             if what == "forces":
                 own, self.left = self.left, []
@@ -124,6 +127,7 @@ class _Code:
         name = words[1]
         if any(self.number(word, f"a mass of link {name[:40]}") for word in words[2:4]):
             self.source.leave_out(f"link {name[:40]}", "mass: the link does not state its unit")
+        # the welded link lists all joints itself
         if words[0][0] in "Namg4567":
             return None
         return _Link(id=words[0][2:], name=name, joints=joints)
@@ -142,6 +146,7 @@ def _assembled(
                 source.refuse(f'link "{link.name[:40]}" has an unknown joint "{own_id[:40]}"')
             carried.setdefault(own_id, []).append(link)
     # a block joins a slide to the pin at the same place
+    # in older links a block joins a slide to its pin
     blocks = {link.id for link in links if any(known[j].flags & _SLIDES for j in link.joints)}
     blocks = {link.id for link in links if link.id in blocks and len(link.joints) == 2}
     names = {link.id: assembly.add_link(link.name) for link in links if link.id not in blocks}
@@ -200,6 +205,7 @@ def _add_slide(
     if line is None:
         along = complex(math.cos(joint.angle), math.sin(joint.angle))
         line = assembly.guide(on, point, along)
+    # a weld between block and pin: the link does not turn
     if pin.flags & _WELDED and pin is not joint and len(own) == 1:
         assembly.add_slider(f"s_{point}", own[0], point, on, line)
     else:
@@ -251,6 +257,7 @@ def code_of(drawn: Drawn) -> str:
         if row.kind != "P":
             own = ids[row.name] = str(len(ids) + 1)
             fixed = GROUND in row.links and row.kind == "R"
+            # the slide, not its pin, is on ground
             flags = _FIXED * fixed + _DRIVEN * (row.name in driven)
             joints.append((flags, own, _plain(row.name), x, y, "0"))
         if row.kind != "R":

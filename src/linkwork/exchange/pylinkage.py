@@ -50,6 +50,7 @@ def read(source: Source) -> Assembly:
 
 def _data(source: Source) -> dict[str, Any]:
     def pairs(entries: list[tuple[str, Any]]) -> dict[str, Any]:
+        # the last of two equal keys would win unseen
         found = dict(entries)
         if len(found) < len(entries):
             source.refuse("gives a key twice in one object")
@@ -128,6 +129,7 @@ class _Parents(_Reading):
             place = f"a coordinate of joints[{k}].{key}"
             at = complex(*(self.source.number(given.get(c), place) for c in "xy"))
             wanted = name if isinstance(name, str) else f"O{k}"
+            # inline joints are written again wherever they are used
             same = self.points.get(wanted)
             if same in self.assembly.fixed and self.assembly.points[str(same)] == at:
                 return str(same)
@@ -166,6 +168,7 @@ class _Parents(_Reading):
 
     def fixed(self, entry: dict[str, Any], k: int, point: str) -> None:
         a, b = (self.parent(entry, f"joint{number}", k) for number in "01")
+        # a place relative to two joints is rigid only on a link with both
         on = self.assembly.carriers(a, b)
         if not on:
             self.source.leave_out(
@@ -218,6 +221,7 @@ class _Mechanism(_Reading):
             if not isinstance(at, list) or len(at) != 2:
                 self.refuse("joints", k, "needs position, a list of two numbers")
             self.add_point(name, k, at[0], at[1], entry.get("type") == "ground")
+        # links first: slides and trackers look for links of their joints
         for k, entry in enumerate(self.links):
             self._add_link(entry, k)
         for k, entry in enumerate(self.joints):

@@ -72,6 +72,7 @@ class _Tree:
                 )
             below.setdefault(parent, []).append(own)
             carried.add(child)
+        # the specification allows one root
         roots = [name for name in self.links if name not in carried]
         if not roots:
             self.source.refuse("has no root: every link is carried by a joint")
@@ -97,6 +98,7 @@ class _Tree:
         kind = own.get("type")
         if kind in _KINDS:
             axis = own.one("axis")
+            # the default of the specification
             given = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
             along = pose.turn @ np.array(self.source.numbers(given, 3, "axis", own.line))
             body.joint = BodyJoint(name=own.get("name"), kind=_KINDS[kind], at=pose.at, axis=along)
@@ -140,6 +142,7 @@ class _Tree:
                     self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
                 factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
                 offset = self.source.number(mimic.get("offset", "0"), "offset", mimic.line)
+                # inputs move in step, so that a straight line is exact
                 low, high = (factor * end + offset for end in ranges[mimic.get("joint")])
             if own.one("coupling") is not None:
                 self.source.leave_out(place, "polynomial of a coupling")
@@ -157,6 +160,7 @@ class _Tree:
         self, planar: Planar, body: Body, joint: BodyJoint, low: float, high: float
     ) -> None:
         link, on = planar.link(body.name), planar.link(body.parent)
+        # the angle of a link with one point is not known
         turning = (link, on) if joint.kind == "hinge" else ()
         known = (name == GROUND or len(planar.assembly.links[name]) > 1 for name in turning)
         if joint.name not in planar.points or not all(known):
@@ -167,6 +171,7 @@ class _Tree:
             start, stop = low, high
         else:
             drives = {"link": link} if on == GROUND else {"link": link, "relative_to": on}
+            # angles count about the normal of the plane
             sign = 1.0 if float(joint.axis @ planar.normal) > 0.0 else -1.0
             zero = planar.angle(link) - planar.angle(on)
             start, stop = (math.degrees(zero + sign * end) for end in (low, high))

@@ -47,6 +47,7 @@ def xml_tree(data: bytes, source: Source, *roots: str) -> Element:
     """
     builder = _Builder(source)
     parser = builder.parser
+    # entities are declared in a document type only: without it none can expand
     parser.StartDoctypeDeclHandler = builder.no_document_type
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
@@ -80,6 +81,7 @@ class _Builder:
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         self.count += 1
+        # readers descend by recursion
         if len(self.open) > _DEEPEST:
             self._refuse(f"has elements nested deeper than {_DEEPEST} levels")
         if self.count > _MOST:
