@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         plain_equations as plain_equations,
     )
     from linkwork.api.foreign import Imported as Imported, imported as imported
+    from linkwork.api.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.batch.family import (
         Family as Family,

@@ -39,6 +39,7 @@ _COMMANDS = (
     "web",
     "link",
     "synthesize",
+    "atlas",
     "code",
     "robot",
     "import",
