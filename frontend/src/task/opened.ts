@@ -6,6 +6,9 @@ import type { LiveEvent } from "../messages";
 import { html } from "../svg";
 import { TaskPage } from "./task_page";
 
+/** Events that both pages show. */
+const SHARED = new Set<LiveEvent["kind"]>(["refused", "problems_found", "file_changed", "link_made", "saved", "working"]);
+
 /** Both pages over one connection; the element is that of mechanisms. */
 export function openPages(element: HTMLElement, connect: Connect): void {
   const aside = html("main", { id: "linkwork-task", hidden: "" });
@@ -24,9 +27,9 @@ export function openPages(element: HTMLElement, connect: Connect): void {
         task ??= new TaskPage(aside, transport);
         show(true);
       } else if (event.kind === "file_state") show(false);
-      const own = shown && event.kind !== "palette_shown" && event.kind !== "start_offered";
-      if (own) task!.told(event);
-      else hooks.event(event);
+      // the other page has no use for it, but may have asked for it
+      if (shown || !SHARED.has(event.kind)) task?.told(event);
+      if (!shown || !SHARED.has(event.kind)) hooks.event(event);
     },
     lost: (message) => (shown ? task! : hooks).lost(message),
   });

@@ -15,6 +15,7 @@ from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.answers import GivenUpError
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.task.bench import TaskBench
@@ -217,6 +218,21 @@ def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:
     (ended,) = bench.handle(ask.Cancel())
     assert isinstance(ended, tell.TaskUnsolved)
     assert ended.ended
+
+
+def test_a_search_of_nine_points_tells_its_progress_and_can_be_ended(tmp_path: Path) -> None:
+    task = lw.Task.loads(task_template("nine-points").text)
+    told: list[float] = []
+
+    def working(fraction: float) -> None:
+        told.append(fraction)
+        if len(told) == 2:
+            raise GivenUpError
+
+    with pytest.raises(GivenUpError):
+        task.solve(progress=working)
+    assert told == sorted(told)
+    assert 0 <= told[-1] <= 1
 
 
 def test_a_design_is_opened_as_a_mechanism_and_left_again(tmp_path: Path) -> None:

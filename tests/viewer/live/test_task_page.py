@@ -23,9 +23,8 @@ Watched = Callable[..., Any]
 _CENTRE = "(h) => { const b = h.querySelector('.lw-t-dot').getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }"  # noqa: E501
 
 
-def opened(bench: Bench, serve: Serve, watched: Watched, **options: Any) -> Any:
-    """The page of a bench."""
-    server = serve(bench)
+def opened(server: LiveServer, watched: Watched, **options: Any) -> Any:
+    """The page of a server."""
     page = watched((f"http://127.0.0.1:{server.port}/",), **options)
     page.set_default_timeout(10_000)
     page.goto(server.address)
@@ -49,7 +48,7 @@ def test_from_nothing_to_a_task_to_a_mechanism_and_back(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     bench = Bench(new_file(), lw.loads, solve_task, start=True)
-    page = opened(bench, serve, watched)
+    page = opened(serve(bench), watched)
     page.locator("[data-task=five-poses]").click()
     page.locator(".lw-task[data-solved]").wait_for()
     assert page.locator(".lw-t-designs tbody tr").count() == 12
@@ -79,6 +78,7 @@ def test_from_nothing_to_a_task_to_a_mechanism_and_back(
     assert_accessible(page)
     page.get_by_role("button", name="Open as mechanism").click()
     page.locator("#linkwork .lw[data-row]").wait_for()
+    assert page.locator(".lw-busy:not([hidden])").count() == 0
     assert lw.loads(bench.text).sweep().found.all()
     page.get_by_role("button", name="Back to five-poses.toml").click()
     page.locator(".lw-task").wait_for()
@@ -90,7 +90,7 @@ def test_a_pivot_is_dragged_along_its_curve_and_the_design_follows(
     tmp_path: Path, serve: Serve, watched: Watched
 ) -> None:
     bench = task(tmp_path, "four-poses")
-    page = opened(bench, serve, watched)
+    page = opened(serve(bench), watched)
     page.locator(".lw-task[data-solved]").wait_for()
     page.get_by_role("button", name="Pivot", exact=True).click()
     box = page.locator(".lw-t-canvas").bounding_box()
@@ -115,8 +115,8 @@ def test_a_pivot_is_dragged_along_its_curve_and_the_design_follows(
 def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     tmp_path: Path, serve: Serve, watched: Watched
 ) -> None:
-    bench = task(tmp_path, "five-poses")
-    page = opened(bench, serve, watched)
+    server = serve(task(tmp_path, "five-poses"))
+    page = opened(server, watched)
     page.locator(".lw-task[data-solved]").wait_for()
     page.get_by_role("tab", name="Task").click()
     page.get_by_label("Transmission angle at least").fill("89")
@@ -132,6 +132,9 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     assert page.locator(".lw-t-position[data-knob=false]").count() == 1
     page.reload()
     page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+    server.stop()
+    page.get_by_text("The connection is lost").wait_for()
+    assert page.locator(".lw-task .lw-save").is_disabled()
 
 
 @pytest.mark.extended
@@ -140,7 +143,7 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
 def test_every_task_fits_into_its_page(
     tmp_path: Path, serve: Serve, watched: Watched, name: str, width: int
 ) -> None:
-    page = opened(task(tmp_path, name), serve, watched, viewport={"width": width, "height": 844})
+    page = opened(serve(task(tmp_path, name)), watched, viewport={"width": width, "height": 844})
     page.locator(".lw-task[data-solved]").wait_for(timeout=60_000)
     for tab in ("Designs", "Trade-off", "Cognates", "Task"):
         page.get_by_role("tab", name=tab).click()

@@ -35,10 +35,15 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
     region = wishes.region if wishes.region.size else None
     rng = np.random.default_rng(_SEED)
     solved: list[PrecisionFourBars] = []
-    for given in positions_with_samples(points, angles, pivots, _SAMPLES, rng, region):
-        solved.append(four_bars_through(given))
+    tasks = list(positions_with_samples(points, angles, pivots, _SAMPLES, rng, region))
+
+    def go_on(fraction: float) -> None:
         if progress is not None:
-            progress(len(solved) / _SAMPLES)
+            progress((len(solved) + fraction) / len(tasks))
+
+    for given in tasks:
+        solved.append(four_bars_through(given, progress=None if progress is None else go_on))
+        go_on(0.0)
     grade, message = _completeness(solved)
     return Found(
         candidates=tuple(_candidates(part) for part in solved if len(part)),

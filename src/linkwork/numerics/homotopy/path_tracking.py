@@ -8,6 +8,7 @@ unknowns on projective patches keep a path to infinity bounded.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -56,10 +57,18 @@ class Paths:
     steps: int
 
 
-def track(homotopy: Homotopy, start: ComplexArray, options: PathOptions | None = None) -> Paths:
-    """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
+def track(
+    homotopy: Homotopy,
+    start: ComplexArray,
+    options: PathOptions | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Paths:
+    """Follow every start (B, n), a solution at σ = 1, to σ = 0.
+
+    ``progress``: told the finished fraction after every round; may raise an error to end the work.
+    """
     with np.errstate(all="ignore"):
-        return _Tracker(homotopy, start, options or PathOptions()).run()
+        return _Tracker(homotopy, start, options or PathOptions()).run(progress)
 
 
 class _Tracker:
@@ -80,12 +89,14 @@ class _Tracker:
         self.path = np.stack([start, slope, start, slope])
         self.gone = np.zeros(count)  # length of the last step, 0 before the first
 
-    def run(self) -> Paths:
+    def run(self, progress: Callable[[float], None] | None = None) -> Paths:
         """Step until every lane has left."""
-        rounds = 0
+        rounds, count = 0, len(self.w)
         while len(self.lane) and rounds < self.options.attempts:
             self._advance()
             rounds += 1
+            if progress is not None:
+                progress(1.0 - float(self.sigma.sum()) / count)
         self.w[self.lane] = self.path[0]
         return Paths(w=self.w, near=self.near, state=self.state, steps=rounds)
 
