@@ -1,4 +1,4 @@
-"""Programs, robots, plates of all library mechanisms, run and compared; see `scripts/exports`."""
+"""Programs, robots, plates, pictures of all library mechanisms; see `scripts/exports`."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ import linkwork as lw
 from linkwork.foundation.errors import InputError
 from scripts.plates import READERS, compared_plates
 from scripts.robots import LOADERS, compared_robot
+from scripts.tex_pictures import compared_picture, has_latex
 from tests.export.running import RUNNERS, columns_of, largest_differences
 
-_SUFFIXES = (".py", ".js", ".c", ".m", ".st", *LOADERS, *READERS)
+_SUFFIXES = (".py", ".js", ".c", ".m", ".st", ".tikz", *LOADERS, *READERS)
 
 
 def _compared(name: str, suffix: str, folder: Path) -> str:
@@ -25,6 +26,8 @@ def _compared(name: str, suffix: str, folder: Path) -> str:
         return compared_robot(name, suffix)
     if suffix in READERS:
         return compared_plates(name, suffix)
+    if suffix == ".tikz":
+        return compared_picture(name, folder)
     mechanism, file = lw.example(name), folder / f"solver{suffix}"
     few = suffix == ".st"  # its parser is slow
     motion = mechanism.sweep(start=60, stop=62, step=1) if few else mechanism.sweep()
@@ -57,6 +60,7 @@ def main() -> None:
     names = [x for x in sys.argv[1:] if x not in _SUFFIXES]
     names = names or [n for n in lw.examples() if lw.example(n).description.inputs]
     parser = {".st"} if find_spec("blark") else set[str]()
+    parser |= {".tikz"} if has_latex() else set[str]()
     parser |= {suffix for suffix, package in (LOADERS | READERS).items() if find_spec(package)}
     for suffix in wanted:
         if suffix not in RUNNERS | parser:

@@ -34,7 +34,10 @@ _PARTS = (
     ("Read and make mechanisms", ("linkwork.api", "linkwork.textfile")),
     ("Parts of a mechanism", ("linkwork.mechanism", "linkwork.foundation.angles")),
     ("Families", ("linkwork.batch",)),
-    ("Synthesis and improvement", ("linkwork.design", "linkwork.api.synthesis")),
+    (
+        "Synthesis and improvement",
+        ("linkwork.design", "linkwork.api.synthesis", "linkwork.api.path_atlas"),
+    ),
     ("Pictures and films", ("linkwork.drawing", "linkwork.viewer")),
     ("Plates", ("linkwork.export.plates",)),
     ("Results", ("linkwork.results", "linkwork.equations", "linkwork.numerics")),

@@ -1,8 +1,8 @@
 """Checks of the built site in Chromium: ``python -m scripts.docsite.site_check SITE [AXE]``.
 
-Every page at the widths of a desktop and of a phone: images that are not drawn, requests that
-fail or go elsewhere, errors of scripts, pages wider than the window; at the first width also what
-axe-core calls serious or critical.
+Every page at the widths of a desktop and of a phone, opened once and then made narrower: images
+that are not drawn, requests that fail or go elsewhere, errors of scripts, pages wider than the
+window; at the first width also what axe-core calls serious or critical.
 """
 
 from __future__ import annotations
@@ -76,15 +76,13 @@ def _check_share(site: Site, pages: list[str]) -> list[str]:
     faults: list[str] = []
     with _served(site.folder) as own, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for width in WIDTHS:
-            window: ViewportSize = {"width": width, "height": 900}
-            context = browser.new_context(viewport=window, reduced_motion="reduce")
-            context.route(lambda address: not _is_own(address, own), lambda route: route.abort())
-            axe = site.axe if width == WIDTHS[0] else ""
-            for page in pages:
-                found = _faults(context.new_page(), own, page, axe)
-                faults += [f"{page} at {width}: {fault}" for fault in found]
-            context.close()
+        context = browser.new_context(reduced_motion="reduce")
+        context.route(lambda address: not _is_own(address, own), lambda route: route.abort())
+        for page in pages:
+            faults += [
+                f"{page}{fault}" for fault in _faults(context.new_page(), own, page, site.axe)
+            ]
+        context.close()
         browser.close()
     return faults
 
@@ -105,23 +103,30 @@ class _Quiet(SimpleHTTPRequestHandler):
 
 
 def _faults(tab: Any, own: str, page: str, axe: str) -> list[str]:
-    """The faults of one page at one width."""
+    """The faults of one page at all widths."""
     faults: list[str] = []
-    tab.on("requestfailed", lambda request: faults.append(f"failed: {request.url}"))
-    tab.on("request", lambda r: None if _is_own(r.url, own) else faults.append(f"foreign: {r.url}"))
-    tab.on("response", lambda r: None if r.ok else faults.append(f"{r.status}: {r.url}"))
-    tab.on("pageerror", lambda error: faults.append(f"error: {error}"))
-    tab.goto(f"{own}/{page}", wait_until="load")
-    # images below the window are loaded when they come near: ask for all of them
-    tab.evaluate("() => { for (const i of document.images) i.loading = 'eager'; }")
-    tab.wait_for_function("() => [...document.images].every((i) => i.complete)")
-    faults += [f"broken image: {source}" for source in tab.evaluate(_BROKEN)]
-    beyond = tab.evaluate(_WIDE)
-    if beyond > 0:
-        faults.append(f"{beyond} px wider than the window")
-    if axe:
-        tab.evaluate(axe)
-        faults += tab.evaluate(_RUN_AXE)
+    tab.on("requestfailed", lambda request: faults.append(f": failed: {request.url}"))
+    tab.on(
+        "request", lambda r: None if _is_own(r.url, own) else faults.append(f": foreign: {r.url}")
+    )
+    tab.on("response", lambda r: None if r.ok else faults.append(f": {r.status}: {r.url}"))
+    tab.on("pageerror", lambda error: faults.append(f": error: {error}"))
+    for width in WIDTHS:
+        window: ViewportSize = {"width": width, "height": 900}
+        tab.set_viewport_size(window)
+        if width == WIDTHS[0]:
+            tab.goto(f"{own}/{page}", wait_until="load")
+            # images below the window are loaded when they come near: ask for all of them
+            tab.evaluate("() => { for (const i of document.images) i.loading = 'eager'; }")
+        tab.wait_for_function("() => [...document.images].every((i) => i.complete)")
+        found = [f"broken image: {source}" for source in tab.evaluate(_BROKEN)]
+        beyond = tab.evaluate(_WIDE)
+        if beyond > 0:
+            found.append(f"{beyond} px wider than the window")
+        if axe and width == WIDTHS[0]:
+            tab.evaluate(axe)
+            found += tab.evaluate(_RUN_AXE)
+        faults += [f" at {width}: {fault}" for fault in found]
     tab.close()
     return faults
 

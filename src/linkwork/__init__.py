@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.batch.family import (
         Family as Family,

@@ -269,6 +269,7 @@ def test_commands_are_listed_in_the_order_of_work(run: Run) -> None:
         "web",
         "link",
         "synthesize",
+        "atlas",
         "code",
         "robot",
         "report",

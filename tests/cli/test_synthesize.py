@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
@@ -109,3 +110,83 @@ def test_a_branch_defect_names_its_dead_point() -> None:
     # the angle is printed to a tenth of a degree
     printed = np.radians(0.05) * abs(crank)
     assert min(abs(reach - coupler - rocker), abs(reach - abs(coupler - rocker))) < printed
+
+
+_POINTS = "".join(
+    f"[[positions]]\npoint = [{x}, {y}]\n" for x, y in ((0, 0), (60, 10), (110, 40), (130, 90))
+)
+_POSES = "".join(
+    f"[[positions]]\npoint = [{x}, {y}]\nangle = {angle}\n"
+    for x, y, angle in ((0, 0, 0), (60, 10, 20), (110, 40, 50))
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (f"task = 'path'\n{_POINTS}[[positions]]\npoint = [60, 10]\n",
+         "1 problem in task.toml\n"
+         "  line 11  positions[5]  is the same as position 2: leave one out"),
+        ("task = 'motion'\n[[positions]]\npoint = [0, 0]\nangle = 0\n",
+         "1 problem in task.toml\n"
+         "  line 3  positions  one position is given: a task needs two or more"),
+        (f"task = 'path'\n{_POINTS}[wanted]\nlengths = {{ most = 30 }}\n",
+         "1 problem in task.toml\n"
+         "  line 10  positions[4].point  is 158.114 from position 1, out of reach of links\n"
+         "                               of at most 30: two arms reach 120"),
+        (f"task = 'motion'\n{_POSES}[wanted]\ninput = 'turns fully'\n"
+         "lengths = { least = 50, most = 20 }\ntransmission = { least = 95 }\n"
+         "clear_of = [[60, 12, 5]]\n",
+         "4 problems in task.toml\n"
+         "  line 10  positions[3].point         is 117.047 from position 1, out of reach\n"
+         "                                      of links of at most 20: two arms reach 80\n"
+         "  line 14  wanted.lengths             least = 50 and most = 20 contradict each\n"
+         "                                      other\n"
+         "  line 15  wanted.transmission.least  must be at least 0 and below 90, got 95\n"
+         "  line 16  wanted.clear_of[1]         contains the point of position 2, so no\n"
+         "                                      design can be clear of it"),
+        (f"task = 'path'\n{_POINTS}[given]\nfixed_pivots = [[500, 0], [40, 30]]\n[wanted]\n"
+         "lengths = { most = 300 }\nclear_of = [[40, 31, 2]]\n"
+         "fixed_pivots = { inside = [[0, 0], [100, 0], [100, 100]] }\n",
+         "3 problems in task.toml\n"
+         "  line 12  given.fixed_pivots[1]  is outside the region that is wanted for it\n"
+         "  line 12  given.fixed_pivots[2]  is in circle 1 of clear_of, so no design can\n"
+         "                                  be clear of it\n"
+         "  line 12  given.fixed_pivots[2]  is 460.977 from the other one, but lengths are\n"
+         "                                  wanted from 0 to 300"),
+    ],
+)  # fmt: skip
+def test_a_bad_task_is_refused_with_its_whole_message(
+    text: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    Path("task.toml").write_text(f"format = 1\n{text}")
+    done = CliRunner().invoke(linkwork, ["synthesize", "task.toml"])
+    assert done.exit_code == 2
+    assert done.stderr == f"Error: {message}\n"
+
+
+def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wish(
+    tmp_path: Path,
+) -> None:
+    task = tmp_path / "task.toml"
+    text = _TASK.read_text().split("[wanted]")[0]
+    task.write_text(text + "[wanted]\ntransmission = { least = 80 }\nlengths = { most = 1050 }\n")
+    shown = _run(str(task), code=1)
+    counts, _, verdict = shown.partition("  dyad")
+    assert counts.endswith(
+        "  transmission angle too small  12\n"
+        "  length out of bounds          6\n"
+        "  without defects               0\n"
+        "  delivered                     0\n\n"
+    )
+    assert verdict.partition("\n\n")[2] == (
+        "No design is free of defects.\n"
+        "The wish that costs most is the least transmission angle: without it 6 would be\n"
+        "sound.\n"
+        "  four-bar driven at A0: transmission angle down to 62.89°, wanted 80°\n"
+        "  and 11 more; --json lists all reasons\n"
+    )
+    found = lw.Task.load(task).solve()
+    assert "the least transmission angle: without it 6 would be sound" in repr(found)

@@ -12,7 +12,8 @@ import linkwork as lw
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.picture_file import write
 from linkwork.drawing.scene import Disc, Text
-from linkwork.drawing.tikz_writer import as_latex, picture_scale, tikz_picture
+from linkwork.drawing.tikz_writer import picture_scale, tikz_picture
+from linkwork.foundation.latex_text import as_latex
 from tests.library_mechanisms import read_example
 
 _ROUNDED = 0.00051  # mm: coordinates have three digits after the point

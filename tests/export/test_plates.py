@@ -136,19 +136,37 @@ def test_the_search_finds_an_order_exactly_where_one_exists() -> None:
             if (a >= 0 or a < 0) and not (b < 0 <= a and a in pins[-1 - b])
         ]  # fmt: skip
         conflicts = [pair for pair in pairs if chance.random() < 0.7]
-        found = find_layers(plates, pins, conflicts)
+        top = plates - 1 if plates > 2 and chance.random() < 0.5 else None
+        found = find_layers(plates, pins, conflicts, top=top)
         orders = itertools.product(range(1, plates), repeat=plates - 1)
-        exists = any(_clear((0, *order), pins, conflicts) for order in orders)
+        exists = any(
+            _clear((0, *order), pins, conflicts)
+            for order in orders
+            if top is None or order[-1] > max(order[:-1])
+        )
         assert (found.layers is not None) == exists
         assert found.complete
         seen.add(exists)
         if found.layers is not None:
             assert _clear(found.layers, pins, conflicts)
-        else:
+        elif top is None:
             for conflict in (needed := obstacles(plates, pins, conflicts)):
                 fewer = [own for own in needed if own != conflict]
                 assert find_layers(plates, pins, fewer).layers is not None
     assert seen == {True, False}
+
+
+def test_a_bridge_holds_pins_that_cranks_would_run_into() -> None:
+    mechanism = read_example("galloway")
+    stack, motion = made(mechanism)
+    assert stack.layer["bridge"] == stack.layers - 1
+    spans = {pin.name: stack.span(pin) for pin in stack.pins}
+    # one crank turns about a pin of the base, the other one about a pin of the bridge
+    assert sorted([spans["O2"][0], spans["O4"][0]])[0] == 0
+    assert max(spans["O2"][1], spans["O4"][1]) == stack.layers - 1
+    assert sum(span == (0, stack.layers - 1) for span in spans.values()) == 4
+    assert stack.proved
+    assert not overlaps(mechanism, stack, motion)
 
 
 def test_an_order_that_does_not_exist_is_refused_with_the_parts_in_the_way() -> None:
@@ -255,7 +273,7 @@ def test_a_suffix_without_a_format_is_refused(tmp_path: Path) -> None:
         "geared-five-bar",
         *(
             pytest.param(name, marks=pytest.mark.extended)
-            for name in ("planetary-gear", "cardan-circles", "sun-and-planet")
+            for name in ("planetary-gear", "sun-and-planet", "rack-and-pinion", "rack-steering")
         ),
     ],
 )

@@ -38,6 +38,7 @@ _COMMANDS = (
     "web",
     "link",
     "synthesize",
+    "atlas",
     "code",
     "robot",
     "report",

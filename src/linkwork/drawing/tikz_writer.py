@@ -9,10 +9,10 @@ from math import floor, log10
 from linkwork.drawing.box import XY
 from linkwork.drawing.scene import Arc, Disc, Hatch, Polygon, Polyline, Primitive, Scene, Text
 from linkwork.drawing.theme import LIGHT, Theme
-from linkwork.foundation.names import GREEK
+from linkwork.foundation.latex_text import as_latex
 from linkwork.foundation.units import LENGTHS
 
-__all__ = ["as_latex", "comment_lines", "picture_scale", "tikz_picture"]
+__all__ = ["comment_lines", "picture_scale", "tikz_picture"]
 
 _WIDEST = 150.0  # of a picture [mm]: a column of text
 _LEAST = 75.0  # a smaller picture is enlarged
@@ -20,22 +20,6 @@ _POINT = 72.27 / 25.4  # TeX's points per millimetre
 _SMALLEST = 6.0  # font size [pt]
 _DIGITS = 3  # of coordinates, after the point [mm]
 _STEPS = (1, 2, 5)
-
-_LATEX = {
-    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#",
-    "%": r"\%", "_": r"\_", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
-    "°": r"$^\circ$", "·": r"$\cdot$", "−": "$-$", "²": "$^2$", "³": "$^3$", "′": "$'$",
-    "µ": r"$\mu$", "≤": r"$\leq$", "≥": r"$\geq$", "±": r"$\pm$", "×": r"$\times$", "→": r"$\to$",
-    "∞": r"$\infty$", "|": r"$|$", "<": "$<$", ">": "$>$", "–": "--", "…": r"\dots{}",
-    "∠": r"$\angle$", "₋": "$_-$", "‖": r"$\|$",
-    **{digit: f"$_{k}$" for k, digit in enumerate("₀₁₂₃₄₅₆₇₈₉")},
-    **{letter: f"$\\{name}$" for letter, name in GREEK.items() if name not in ("omicron",)},
-}  # fmt: skip
-
-
-def as_latex(text: str) -> str:
-    """A text for LaTeX's text mode."""
-    return "".join(_LATEX.get(letter, letter) for letter in text)
 
 
 def comment_lines(*texts: str) -> Iterator[str]:

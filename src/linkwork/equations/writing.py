@@ -137,22 +137,28 @@ class EquationSheet:
                 rows.append(row)
         return rows
 
-    def real_jacobian(self, notation: Notation[str]) -> Matrix:
-        """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations, laws."""
+    def real_jacobian(
+        self, notation: Notation[str], variables: Sequence[Variable] | None = None
+    ) -> Matrix:
+        """∂F/∂x as real numbers: real parts, imaginary parts, linear, plain equations, laws.
+
+        By the unknowns, or by other variables.
+        """
         write = self._writer(notation)
+        by = self.equations.unknowns if variables is None else variables
         rows = []
         for imaginary in (False, True):
             rows += [
-                [self._real_entry(write, loop, u, imaginary) for u in self.equations.unknowns]
+                [self._real_entry(write, loop, u, imaginary) for u in by]
                 for loop in self.equations.loops
             ]
         for line in self.equations.linear:
             weights = dict(line.terms)
-            rows.append([number_text(weights.get(u.symbol, 0.0)) for u in self.equations.unknowns])
+            rows.append([number_text(weights.get(u.symbol, 0.0)) for u in by])
         for equation in self.equations.real:
             whole = _difference(equation.left, equation.right)
             row = []
-            for unknown in self.equations.unknowns:
+            for unknown in by:
                 try:
                     row.append(
                         notation.formula(
@@ -163,12 +169,7 @@ class EquationSheet:
                     row.append("…")
             rows.append(row)
         for law in self.equations.laws:
-            rows.append(
-                [
-                    self._law_entry(law, unknown.symbol, notation)
-                    for unknown in self.equations.unknowns
-                ]
-            )
+            rows.append([self._law_entry(law, unknown.symbol, notation) for unknown in by])
         return rows
 
     def _real_entry(

@@ -13,14 +13,14 @@ from linkwork.foundation.elementwise import as_float, finite, is_fractional
 from linkwork.foundation.errors import ExpressionError, choices
 from linkwork.foundation.lanes import is_batched
 
-__all__ = ["value"]
+__all__ = ["OF_ANGLE", "TO_ANGLE", "value"]
 
 _PLAIN: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt, "exp": math.exp, "ln": math.log, "log10": math.log10,
     "abs": abs, "hypot": math.hypot, "min": min, "max": max,
 }  # fmt: skip
-_OF_ANGLE: dict[str, Callable[[float], float]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
-_TO_ANGLE: dict[str, Callable[..., float]] = {
+OF_ANGLE: dict[str, Callable[[float], float]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
+TO_ANGLE: dict[str, Callable[..., float]] = {
     "asin": math.asin, "acos": math.acos, "atan": math.atan, "atan2": math.atan2,
 }  # fmt: skip
 
@@ -108,11 +108,11 @@ def _applied(node: Call, arguments: list[float], unit: AngleUnit, text: str) -> 
     name = node.function
     lanes = any(map(is_batched, arguments))
     try:
-        if name in _OF_ANGLE:
+        if name in OF_ANGLE:
             angle = arguments[0] * unit.radians
-            return applied(name, [angle]) if lanes else _OF_ANGLE[name](angle)
-        if name in _TO_ANGLE:
-            found = applied(name, arguments) if lanes else _TO_ANGLE[name](*arguments)
+            return applied(name, [angle]) if lanes else OF_ANGLE[name](angle)
+        if name in TO_ANGLE:
+            found = applied(name, arguments) if lanes else TO_ANGLE[name](*arguments)
             return found / unit.radians
         if name in _PLAIN:
             return applied(name, arguments) if lanes else float(_PLAIN[name](*arguments))

@@ -9,6 +9,13 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.improvement.coupler_curves import (
+    CouplerCurves,
+    FourBarCurves,
+    SliderCrankCurves,
+)
+from linkwork.design.improvement.curve_constraints import CurveConstraints
+from linkwork.design.improvement.curve_goal import CurveGoal
 from linkwork.foundation.errors import MechanismError, MechanismFileError
 
 # Kunjur and Krishnamurty's 18 points, as printed by Bulatovic et al. 2016
@@ -97,3 +104,23 @@ def test_unknown_and_contradicting_settings_are_refused() -> None:
         _timed(improve={"bounds": {"A C": [1, 2]}})
     with pytest.raises(MechanismError, match="hold no number"):
         _timed(improve={"bounds": {"A B": [3, 2]}})
+
+
+@pytest.mark.parametrize("kind", [FourBarCurves, SliderCrankCurves])
+def test_bounds_of_lengths_and_arms_have_the_derivatives_of_their_differences(
+    kind: type[CouplerCurves],
+) -> None:
+    goal = CurveGoal(
+        points=np.array([0j, 1.0, 1.0 + 1.0j]), inputs=None, ordered=True, closed=False,
+        turns_fully=False, transmission=0.3, bounds={}, shortest=0.0, longest=0.1, ratio=np.inf,
+    )  # fmt: skip
+    constraints = CurveConstraints(kind, goal, 2)
+    x = np.random.default_rng(1).uniform(0.5, 2.0, (2, len(kind.names)))
+    lanes, step = np.arange(2), 1e-6
+    h, by_x = constraints.residuals(x, lanes)
+    # links, the ground of a four-bar, both arms
+    assert h.shape[1] == len(kind.lengths) + (kind is FourBarCurves) + 2
+    for k in range(x.shape[1]):
+        change = step * np.eye(x.shape[1])[k]
+        ahead, behind = (constraints.residuals(x + s * change, lanes)[0] for s in (1.0, -1.0))
+        assert by_x[:, :, k] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-8)

@@ -119,6 +119,69 @@ def test_the_minimax_fit_has_four_equal_errors_of_alternating_sign() -> None:
     assert largest < squares.delivered[0].error
 
 
+_SLIDE = "cos(x) + sqrt(9 - (0.2 - sin(x))^2)"  # crank 1, rod 3, offset 0.2
+
+
+@pytest.mark.parametrize("how", [{}, {"fit": "least squares"}, {"fit": "minimax"}])
+@pytest.mark.parametrize("spacing", ["chebyshev", "even"])
+def test_a_slider_crank_is_found_again_from_its_own_displacements(
+    how: dict[str, str], spacing: str
+) -> None:
+    """The closed form of its displacement, in radians, is the function."""
+    x = np.array([0.5, 2.0])
+    ends = np.cos(x) + np.sqrt(9.0 - (0.2 - np.sin(x)) ** 2)
+    task = lw.Task.function(
+        _SLIDE, x=x, input=np.degrees(x), output=ends, spacing=spacing, mechanism="slider-crank",
+        **how,
+    )  # fmt: skip
+    found = task.solve()
+    (design,) = found.defect_free
+    points = found.delivered[0].design.points
+    assert abs(points["A"]) == pytest.approx(1.0, abs=1e-9)
+    assert abs(points["B"] - points["A"]) == pytest.approx(3.0, abs=1e-9)
+    assert points["S"].imag == pytest.approx(0.2, abs=1e-9)
+    motion = design.sweep()
+    assert motion.certified.all()
+    assert np.abs(motion["structural_error"]).max() < 1e-9
+    inputs = np.radians(motion["crank"])
+    closed = np.cos(inputs) + np.sqrt(9.0 - (0.2 - np.sin(inputs)) ** 2)
+    assert motion["slide"] == pytest.approx(closed, abs=1e-9)
+
+
+def test_structural_errors_of_the_logarithm_are_those_of_its_closed_form() -> None:
+    """Freudenstein's four-bar: the rocker's angle by the law of cosines, against the formula."""
+    (design,) = _designs(lw.Task.function("log10(x)", **_LOGARITHM))
+    motion = design.sweep()
+    a, c, b = 0.652585741, 1.170609286, 0.528110663
+    crank = a * np.exp(1j * np.radians(motion["crank"]))
+    base = 1.0 - crank
+    along = (np.abs(base) ** 2 + b**2 - c**2) / (2.0 * b * np.abs(base))
+    x = 1.0 + (motion["crank"] - 45.0) / 60.0
+    wanted = 90.0 * np.log10(x) / np.log10(2.0)
+    ways = [np.degrees(np.angle(-base) + side * np.arccos(along)) for side in (1.0, -1.0)]
+    closed = min((way - wanted for way in ways), key=lambda error: np.abs(error).max())
+    # nine digits of the published ratios
+    assert motion["structural_error"] == pytest.approx(closed, abs=1e-6)
+    zeros = np.sign(closed[:-1]) != np.sign(closed[1:])
+    assert zeros.sum() == 3
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+def test_a_rocker_is_found_again_from_its_own_angles(fit: str) -> None:
+    a, c, b = 0.4, 1.2, 0.9
+    u = np.radians(np.linspace(40.0, 130.0, 10))
+    base = 1.0 - a * np.exp(1j * u)
+    along = (np.abs(base) ** 2 + b**2 - c**2) / (2.0 * b * np.abs(base))
+    v = np.angle(-base) - np.arccos(along)
+    pairs = np.degrees(np.column_stack([u, v]))
+    ends = {"input": pairs[[0, -1], 0].tolist(), "output": pairs[[0, -1], 1].tolist()}
+    found = lw.Task.function(pairs.tolist(), fit=fit, mechanism="four-bar", **ends).solve()
+    points = found.delivered[0].design.points
+    lengths = [abs(points["A"]), abs(points["B"] - points["A"]), abs(points["B"] - 1.0)]
+    assert lengths == pytest.approx([a, c, b], abs=1e-7)
+    assert found.delivered[0].error < 1e-8
+
+
 def test_a_fit_without_alternating_errors_is_not_called_minimal() -> None:
     u, v = _logarithm()
     start = np.array([0.1, 5.0, 5.0])

@@ -43,6 +43,24 @@ def test_a_side_that_is_exchanged_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
     assert false
 
 
+@pytest.mark.parametrize("factor", [1e-6, 1e6])
+@pytest.mark.parametrize(("kind", "drive"), _POSSIBLE)
+def test_doubts_are_those_of_the_same_mechanism_in_other_units(
+    kind: LoopKind, drive: Drive, factor: float
+) -> None:
+    given = random_designs(kind, 40, 8)
+    here, there = (judge(g, drive, Wishes()) for g in (given, given.moved(0.0, factor)))
+    for name in ("side", "half"):
+        shares = [
+            v.loops.sign_error[:, None] / np.abs(getattr(v.loops, name)) for v in (here, there)
+        ]
+        # a few roundings more: the designs were multiplied
+        assert (shares[1] < 3.0 * shares[0]).all()
+        assert (shares[1] > shares[0] / 3.0).all()
+    assert all(np.array_equal(here.found[kind], there.found[kind]) for kind in DefectKind)
+    assert there.transmission == pytest.approx(here.transmission, abs=1e-6, nan_ok=True)
+
+
 @pytest.mark.parametrize(("kind", "drive"), _POSSIBLE)
 def test_positions_in_closed_form_are_those_given(kind: LoopKind, drive: Drive) -> None:
     given = random_designs(kind, 60, 4)

@@ -92,6 +92,8 @@ class CurveConstraints:
             add(goal.shortest - lengths, -by_x)
         if np.isfinite(goal.longest):
             add(lengths - goal.longest, by_x)
+            arms, arms_by_x = self._arms(own)
+            add(arms - goal.longest, arms_by_x)
         if np.isfinite(goal.ratio):
             rows = np.arange(len(x))
             longest, shortest = lengths.argmax(axis=1), lengths.argmin(axis=1)
@@ -114,6 +116,18 @@ class CurveConstraints:
             along = np.nan_to_num(ground / length[:, None])
         slope[:, 0, :2], slope[:, 0, 2:4] = -along, along
         return np.column_stack([lengths, length]), np.concatenate([by_x, slope], axis=1)
+
+    def _arms(self, x: Array) -> tuple[Array, Array]:
+        """The distances of the guided point from A and B, (D, 2), and by x."""
+        coupler = self.kind.lengths[1]
+        along = np.stack([x[:, -2], x[:, -2] - x[:, coupler]], axis=1)
+        arms = np.hypot(along, x[:, -1:])
+        by_x = np.zeros((len(x), 2, x.shape[1]))
+        with np.errstate(all="ignore"):
+            by_x[:, :, -2] = np.nan_to_num(along / arms)
+            by_x[:, :, -1] = np.nan_to_num(x[:, -1:] / arms)
+        by_x[:, 1, coupler] = -by_x[:, 1, -2]
+        return arms, by_x
 
     def _transmission(self, x: Array) -> tuple[Array, Array]:
         """|b² + c² - (g ± a)²| - 2 b c cos μ, divided by b + c, or a ± h - c cos μ, for a whole

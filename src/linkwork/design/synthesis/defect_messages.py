@@ -122,7 +122,10 @@ class _Words:
         return f"fixed pivots {places} are not all in their region", None
 
     def _lengths(self) -> tuple[str, None]:
-        shortest, longest = self.verdicts.shortest[self.k], self.verdicts.size[self.k]
+        verdicts, k = self.verdicts, self.k
+        shortest, longest, arm = verdicts.shortest[k], verdicts.size[k], verdicts.arm[k]
+        if arm > self.task.wanted.longest:
+            return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
         return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
 
     def _obstacle(self) -> tuple[str, None]:

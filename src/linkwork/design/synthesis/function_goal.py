@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linkwork.expression.grammar import parse
-from linkwork.expression.tree import Node, names_in
-from linkwork.expression.values import value
+from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
+from linkwork.expression.values import OF_ANGLE, TO_ANGLE, value
 from linkwork.expression.writing import text
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
@@ -149,13 +149,18 @@ class FunctionGoal:
         """Inputs and outputs (K,) over the whole range, or the pairs."""
         return self._of_pairs() if self.pairs else self._outputs(self._x(_DENSE))
 
-    def formula(self, link: str, output: str) -> str:
-        """The structural error as a formula of the input and output links; "" for pairs."""
+    def formula(self, link: str, output: str, angle: AngleUnit) -> str:
+        """The structural error as a formula of the input and output links, in a file with this
+        unit of angles; "" for pairs.
+        """
         if self.pairs or self.x is None or self.input is None or self.output is None:
             return ""
         (x0, x1), (u0, u1), (v0, v1) = self.x, self.input, self.output
         variable = f"({x0!r} + ({link} - {u0!r})*{(x1 - x0) / (u1 - u0)!r})"
-        shown = text(self._tree, lambda node: variable if node.name == _VARIABLE else node.name)
+        shown = text(
+            _in_unit(self._tree, angle),
+            lambda node: variable if node.name == _VARIABLE else node.name,
+        )
         f0, f1 = map(self._evaluated, self.x)
         return f"{output} - ({v0!r} + ({shown} - {f0!r})*{(v1 - v0) / (f1 - f0)!r})"
 
@@ -201,3 +206,23 @@ class FunctionGoal:
     def _evaluated(self, x: float) -> float:
         # functions of x are those of mathematics: radians
         return value(self._tree, {_VARIABLE: float(x)}, AngleUnit.RADIAN, self.of)
+
+
+def _in_unit(node: Node, angle: AngleUnit) -> Node:
+    """A formula in radians as one whose functions of angles take, and give, another unit."""
+    if angle is AngleUnit.RADIAN:
+        return node
+    match node:
+        case Negative():
+            return replace(node, operand=_in_unit(node.operand, angle))
+        case Binary():
+            return Binary(node.operator, _in_unit(node.left, angle), _in_unit(node.right, angle))
+        case Call():
+            own = tuple(_in_unit(argument, angle) for argument in node.arguments)
+            unit = Binary("/", Number(angle.turn / 2), Name("pi"))
+            if node.function in OF_ANGLE:
+                return Call(node.function, (Binary("*", own[0], unit),))
+            call = Call(node.function, own)
+            return Binary("/", call, unit) if node.function in TO_ANGLE else call
+        case _:
+            return node

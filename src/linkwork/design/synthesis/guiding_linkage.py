@@ -152,7 +152,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),)
     formula = ""
     if output and task.function is not None and design.drive is Drive.A0:
-        formula = task.function.formula("crank", _GUIDE if sliders else output)
+        formula = task.function.formula("crank", _GUIDE if sliders else output, task.angle)
     return Linkage(
         name=name,
         purpose=task.purpose,

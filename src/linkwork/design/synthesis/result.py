@@ -306,6 +306,11 @@ class Synthesis:
             ("delivered", f"{len(self.delivered)} of {self.sound} without defects"),
             ("completeness", self.message),
         ]
+        if not self.delivered and self.designs:
+            rows += [(kind.value, str(count)) for kind, count in self.defects.items()]
+            if self.costliest is not None:
+                wish, count = self.costliest
+                rows.append(("costliest wish", f"{wish}: without it {count} would be sound"))
         return str(Summary(f"Synthesis of {self.task.name}", tuple(rows)))
 
     @property

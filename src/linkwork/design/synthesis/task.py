@@ -10,10 +10,13 @@ from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_keys import KINDS
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
@@ -297,6 +300,33 @@ class Task:
                 )
         if wanted.region and _area(wanted.region) == 0:
             yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
+        else:
+            yield from self._pivot_problems()
+
+    def _pivot_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Given fixed pivots that a wish excludes."""
+        pivots, wanted = self.given.fixed_pivots, self.wanted
+        region = np.array([complex(*corner) for corner in wanted.region])
+        inside = Wishes(region=region).within_region(
+            np.array([complex(*pivot) for pivot in pivots]), np.zeros(len(pivots))
+        )
+        for k, pivot in enumerate(pivots):
+            if not inside[k]:
+                yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
+            for j, (x, y, radius) in enumerate(wanted.obstacles):
+                if math.hypot(pivot[0] - x, pivot[1] - y) <= radius:
+                    yield (
+                        ("given", "fixed_pivots", k),
+                        f"is in circle {j + 1} of clear_of, so no design can be clear of it",
+                    )
+        if len(pivots) == 2 and self.kind != "function":
+            apart = math.dist(*pivots)
+            if not wanted.shortest <= apart <= wanted.longest:
+                yield (
+                    ("given", "fixed_pivots", 1),
+                    f"is {apart:g} from the other one, but lengths are wanted from "
+                    f"{wanted.shortest:g} to {wanted.longest:g}",
+                )
 
     @cached_property
     def is_approximate(self) -> bool:

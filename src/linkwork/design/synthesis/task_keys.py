@@ -141,7 +141,11 @@ _WANTED = Key(
                 Table(
                     (
                         Key("least", PlainNumber(), "The shortest link allowed"),
-                        Key("most", PlainNumber(), "The longest link or arm allowed"),
+                        Key(
+                            "most",
+                            PlainNumber(),
+                            "The longest link or coupler arm allowed",
+                        ),
                         Key("ratio", PlainNumber(), "The longest link over the shortest"),
                     )
                 ),

@@ -53,6 +53,8 @@ class Verdicts:
         The longest link or distance of fixed pivots [length].
     shortest : (D,)
         The shortest link [length].
+    arm : (D,)
+        The longest distance of the guided point from a moving pivot [length].
     found : Mapping[DefectKind, (D,) bool]
         Which designs have the defect. Others than circuit and branch are noted of designs on one
         branch only, obstacles of those with at most one defect.
@@ -63,6 +65,7 @@ class Verdicts:
     transmission: Array
     size: Array
     shortest: Array
+    arm: Array
     found: dict[DefectKind, BoolArray]
 
     @property
@@ -107,7 +110,10 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     size, shortest = lengths.max(axis=1), lengths.min(axis=1)
     found[DefectKind.TRANSMISSION] = open_ & ~(transmission >= wishes.transmission)
     found[DefectKind.PIVOTS] = open_ & ~_pivots_inside(given, wishes)
-    found[DefectKind.LENGTHS] = open_ & ~wishes.allows(shortest, size)
+    arm = np.maximum(
+        np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
+    )
+    found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
     # a design with one other defect tells what that wish costs, if nothing else is wrong
     nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
     met = np.zeros(len(given), dtype=bool)
@@ -122,6 +128,7 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         transmission=np.where(open_, transmission, np.nan),
         size=size,
         shortest=shortest,
+        arm=arm,
         found=found,
     )
 

@@ -20,7 +20,8 @@ from linkwork.drawing.charts.chart import (
 )
 from linkwork.drawing.charts.theme import ChartTheme
 from linkwork.drawing.theme import LIGHT, Theme
-from linkwork.drawing.tikz_writer import as_latex, comment_lines
+from linkwork.drawing.tikz_writer import comment_lines
+from linkwork.foundation.latex_text import as_latex
 
 __all__ = ["pgfplots_picture"]
 

@@ -14,7 +14,7 @@ import numpy as np
 from linkwork.export.plates.layer_order import Conflict
 from linkwork.export.plates.motion_boxes import BodyPoses, Boxes, divided
 from linkwork.export.plates.packages import shapely
-from linkwork.export.plates.plate import Pin, Plate
+from linkwork.export.plates.plate import BRIDGE, Pin, Plate
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.motion.model import Model
 
@@ -56,14 +56,29 @@ class Collisions:
     ) -> None:
         self.plates, self.pins, self.meshes, self.spacer = plates, pins, meshes, spacer
 
+    @cached_property
+    def joined(self) -> list[frozenset[int]]:
+        """The numbers of the plates of every pin."""
+        number = {plate.name: k for k, plate in enumerate(self.plates)}
+        return [frozenset(number[name] for name in pin.plates) for pin in self.pins]
+
+    @cached_property
+    def together(self) -> list[frozenset[int]]:
+        """The numbers of plates in contact, which share a layer."""
+        number = {plate.name: k for k, plate in enumerate(self.plates)}
+        return [frozenset(number[name] for name in mesh) for mesh in self.meshes]
+
     def pairs(self) -> Iterator[Conflict]:
-        """All pairs of parts that may collide: plates, pins and plates without their hole, pins."""
-        count = len(self.plates)
-        for a, b in itertools.combinations(range(1, count), 2):
+        """All pairs of parts that may collide: plates, pins and plates without their hole, pins.
+
+        The base plate and a bridge are alone in their layers.
+        """
+        moving = [k for k, plate in enumerate(self.plates) if k and plate.name != BRIDGE]
+        for a, b in itertools.combinations(moving, 2):
             if frozenset((self.plates[a].name, self.plates[b].name)) not in self.meshes:
                 yield a, b
         for p, pin in enumerate(self.pins):
-            others = (k for k in range(1, count) if self.plates[k].name not in pin.plates)
+            others = (k for k in moving if self.plates[k].name not in pin.plates)
             yield from ((-1 - p, k) for k in others)
         yield from ((-1 - p, -1 - q) for p, q in itertools.combinations(range(len(self.pins)), 2))
 

@@ -16,7 +16,8 @@ from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
-from linkwork.export.plates.plate import Opening, Pin, Plate
+from linkwork.export.plates.plate import BASE, Opening, Pin, Plate
+from linkwork.export.plates.racks import RackMesh, rack_meshes, rack_plate
 from linkwork.export.plates.rigid_bodies import (
     Guideway,
     RigidBody,
@@ -40,11 +41,9 @@ from linkwork.mechanism.skeleton import Skeleton
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 
-__all__ = ["BASE", "Construction"]
+__all__ = ["Construction"]
 
 _GEAR = 0.8  # of a gear's radius: bars this wide leave room for a pin and a fastener
-#: The plate of the ground.
-BASE = "base"
 
 
 @dataclass
@@ -103,7 +102,10 @@ class Construction:
         turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
         wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
-        made._gears(wheels, meshes, turns)
+        racks = list(rack_meshes(linkage, wheels, sizes, mm))
+        single = [mesh.pinion for mesh in racks if mesh.pinion not in wheels]
+        names = made._gears([*wheels, *single], meshes, turns)
+        made._racks(racks, dict(zip([*wheels, *single], names, strict=True)), poses, now)
         made._cams(model.skeleton, turns)
         made._main_plates()
         for plate in made.plates:
@@ -113,7 +115,8 @@ class Construction:
 
     def _gears(
         self, wheels: Sequence[Wheel], meshes: Sequence[GearMesh], turns: Mapping[str, float]
-    ) -> None:
+    ) -> list[str]:
+        """Add the gears; returns the names of their plates."""
         names = []
         for wheel in wheels:
             body = self.bodies[wheel.disc.link]
@@ -125,11 +128,27 @@ class Construction:
         for mesh in meshes:
             one, other = (wheels[k] for k in mesh.wheels)
             self.meshes.append(frozenset(names[k] for k in mesh.wheels))
-            self.notes.append(
-                f"{mesh.name}: {one.teeth} and {other.teeth} teeth, module {one.module:.6g} mm, "
-                f"pressure angle {math.degrees(one.pressure):g} deg, backlash "
-                f"{one.backlash:.3g} mm"
-            )
+            self.notes.append(f"{mesh.name}: {one.teeth} and {other.teeth} teeth, {_gearing(one)}")
+        return names
+
+    def _racks(
+        self,
+        racks: Sequence[RackMesh],
+        names: Mapping[Wheel, str],
+        poses: Mapping[str, tuple[complex, complex]],
+        now: Mapping[str, float],
+    ) -> None:
+        for mesh in racks:
+            way = next(way for way in self.ways if way.name == mesh.guide)
+            pinion = mesh.pinion
+            turn = poses[pinion.disc.link][1] * poses[way.on][1].conjugate()
+            center = self.bodies[way.on].places[pinion.disc.center]
+            plate = rack_plate(
+                mesh, way, center, turn * cmath.exp(1j * pinion.phase), self.travel[way.name],
+                now[way.name], self.sizes,
+            )  # fmt: skip
+            self.meshes.append(frozenset((names[pinion], self._add(plate))))
+            self.notes.append(f"{mesh.name}: pinion of {pinion.teeth} teeth, {_gearing(pinion)}")
 
     def _cams(self, skeleton: Skeleton, turns: Mapping[str, float]) -> None:
         """Cams with rollers; these turn freely on their pins."""
@@ -221,26 +240,33 @@ class Construction:
 
     def _main_plate(self, name: str) -> Plate:
         """The plate around the holes and slots of a body."""
+        return self._plate(self._main_name(name), name, self.holes[name], slotted=True)
+
+    def ground_plate(self, name: str, holes: Mapping[str, complex]) -> Plate:
+        """A plate of the ground with some of its holes; slots are in the base plate."""
+        return self._plate(name, GROUND, holes, slotted=name == BASE)
+
+    def _plate(self, name: str, body: str, holes: Mapping[str, complex], *, slotted: bool) -> Plate:
         sizes, core, openings = self.sizes, [], []
-        for point, place in (self.holes[name] | self.more.get(name, {})).items():
+        for point, place in (dict(holes) | (self.more.get(body, {}) if slotted else {})).items():
             core.append(place)
             openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
-        for way in self.ways:
-            if way.runner == name and way.reach:
+        for way in self.ways if slotted else ():
+            if way.runner == body and way.reach:
                 for k, place in enumerate(way.places, start=1):
                     core.append(place)
                     hole = circle(place, sizes.hole / 2.0)
                     openings.append(Opening(name=f"{way.name} {k}", outline=hole))
-            if way.on == name:
+            if way.on == body:
                 ends = self.slot_ends(way)
                 core += ends
                 openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
         if not core:
-            raise InputError(f'nothing is joined to "{name}": it has no plate')
+            raise InputError(f'nothing is joined to "{body}": it has no plate')
         hull = convex_outline(core)
         return Plate(
-            name=self._main_name(name),
-            body=name,
+            name=name,
+            body=body,
             outline=rounded(hull, sizes.width / 2.0),
             openings=tuple(openings),
             core=np.array(hull if hull[0] != hull[-1] else hull[:1]),
@@ -252,6 +278,13 @@ class Construction:
         low, high = self.travel[way.name]
         more = way.reach + self.sizes.play
         return way.origin + (low - more) * way.along, way.origin + (high + more) * way.along
+
+
+def _gearing(wheel: Wheel) -> str:
+    return (
+        f"module {wheel.module:.6g} mm, pressure angle {math.degrees(wheel.pressure):g} deg, "
+        f"backlash {wheel.backlash:.3g} mm"
+    )
 
 
 def check_webs(plate: Plate, sizes: Sizes) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -20,14 +21,19 @@ from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.toothed import ToothedPart
 from linkwork.mechanism.skeleton import Skeleton
 
-__all__ = ["GearMesh", "Wheel", "gear_meshes", "involute_outline", "touches"]
+__all__ = [
+    "FEWEST", "STEPS", "GearMesh", "Wheel", "gear_meshes", "involute_outline", "polygons",
+    "touches",
+]  # fmt: skip
 
-_FEWEST = 18  # teeth of gears given by radii: no undercut at 20 degrees
+#: Teeth of gears given by radii, at least: no undercut at 20 degrees.
+FEWEST = 18
 _LARGEST_RATIO = 1000  # of whole numbers that stand for a ratio of radii
 _WHOLE = 1e-9  # of a ratio
 _FLANK = 16  # points along a flank
 _IN_GAP = 1e-6  # of a pitch
-_STEPS = 4096  # positions within one pitch, at most
+#: Positions within one pitch, at most.
+STEPS = 4096
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +169,7 @@ def _with_teeth(
             continue
         counts = _whole(discs)
         least = min(counts)
-        times = math.ceil(_FEWEST / least)
+        times = math.ceil(FEWEST / least)
         if sizes.module is not None:
             wanted = 2.0 * millimetres * discs[counts.index(least)].radius / sizes.module
             times = max(1, round(wanted / least))
@@ -251,11 +257,11 @@ def touches(first: Wheel, second: Wheel, apart: float) -> bool:
     shapes = [involute_outline(wheel, 0j).polygon() for wheel in pair]
     reach = sum(wheel.radii[1] / wheel.teeth for wheel in pair)
     count = 64
-    while count <= _STEPS:
+    while count <= STEPS:
         turn = math.tau * np.arange(count) / count
         ways = (1.0, 1.0 if inside else -1.0)
         placed = [
-            _polygons(place + np.exp(1j * way * turn / wheel.teeth)[:, None] * shape)
+            polygons(place + np.exp(1j * way * turn / wheel.teeth)[:, None] * shape)
             for place, way, wheel, shape in zip((0j, apart), ways, pair, shapes, strict=True)
         ]
         if inside:
@@ -285,5 +291,6 @@ def _in_mesh(first: Wheel, second: Wheel) -> Iterable[tuple[Wheel, float]]:
     return zip((first, second), (phases[disc] for disc in pair), strict=True)
 
 
-def _polygons(z: ComplexArray) -> object:
+def polygons(z: ComplexArray) -> Any:
+    """Polygons of shapely with corners (B, n)."""
     return shapely().polygons(np.stack([z.real, z.imag], axis=-1))

@@ -28,6 +28,7 @@ def find_layers(
     conflicts: Iterable[Conflict],
     together: Sequence[frozenset[int]] = (),
     most: int = _MOST,
+    top: int | None = None,
 ) -> LayerOrder:
     """An order with as few layers as possible; plate 0 is alone in layer 0.
 
@@ -43,6 +44,8 @@ def find_layers(
         Plates that have to be in one layer: gears in mesh.
     most : int
         Assignments tried for one number of layers, at most.
+    top : int, optional
+        A plate that is alone in the last layer.
 
     Notes
     -----
@@ -50,7 +53,7 @@ def find_layers(
     """
     known, complete = tuple(conflicts), True
     for count in range(2, plates + 1):
-        search = _Search(plates, pins, known, together, count, most)
+        search = _Search(plates, pins, known, together, top, count, most)
         if search.place(0):
             return LayerOrder(layers=tuple(search.layer))
         complete = complete and search.left > 0
@@ -81,12 +84,18 @@ class _Search:
     pins: Sequence[frozenset[int]]
     conflicts: Sequence[Conflict]
     together: Sequence[frozenset[int]]
+    top: int | None
     count: int
     left: int
     layer: list[int] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.layer = [0] + [-1] * (self.plates - 1)
+        placed, last = {0}, self.count
+        if self.top is not None:
+            placed, last = {0, self.top}, self.count - 1
+            self.layer[self.top] = last
+        self.free = range(1, last)
         self.apart: list[set[int]] = [set() for _ in range(self.plates)]
         self.blocked: list[set[int]] = [set() for _ in self.pins]  # plates in the way of a pin
         self.crossed: list[set[int]] = [set() for _ in self.pins]  # pins in the way of a pin
@@ -106,7 +115,7 @@ class _Search:
             [p for p, own in enumerate(self.blocked) if k in own] for k in range(self.plates)
         ]
         # plates next to those placed already, the most constrained first
-        self.order, placed = [], {0}
+        self.order = []
         while len(placed) < self.plates:
             joined = {k for own in self.pins if own & placed for k in own} - placed
             rest = joined or set(range(self.plates)) - placed
@@ -119,7 +128,7 @@ class _Search:
         if depth == len(self.order):
             return True
         plate = self.order[depth]
-        for layer in range(1, self.count):
+        for layer in self.free:
             if self.left <= 0:
                 return False
             self.left -= 1

@@ -17,8 +17,10 @@ from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.internal import internal
 from linkwork.results.table import Table
 
-__all__ = ["Opening", "Pin", "Plate", "PlateStack", "Spacer"]
+__all__ = ["BASE", "BRIDGE", "Opening", "Pin", "Plate", "PlateStack", "Spacer"]
 
+#: The plates of the ground: below all others, and above them where they need it.
+BASE, BRIDGE = "base", "bridge"
 #: Columns of a bill of materials, and their units.
 _UNITS = {
     "kind": "", "name": "", "lowest layer": "", "highest layer": "", "length": "mm",

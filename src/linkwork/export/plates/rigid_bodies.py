@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
-from linkwork.mechanism.figures import Disc, Mesh
+from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.pairs import Pair, PairKind
 from linkwork.mechanism.part.part import Part
@@ -60,12 +60,13 @@ def _pairs(linkage: Linkage) -> Iterator[Pair]:
 
 
 def _is_made(part: Part, linkage: Linkage) -> bool:
-    """Whether plates are known for a part: pins, slides, gears, cams with rollers."""
-    found, figures = part.pairs(linkage), tuple(part.figures(linkage, {}))
+    """Whether plates are known for a part: pins, slides, gears, racks, cams with rollers."""
+    found = part.pairs(linkage)
+    kinds = {figure.kind for figure in part.figures(linkage, {}) if isinstance(figure, Disc)}
     if found is None:
-        return any(isinstance(figure, Disc) and figure.kind == "roller" for figure in figures)
-    meshes = [figure for figure in figures if isinstance(figure, Mesh)]
-    return len(meshes) == len(found.couplings) and all(body.on for body in found.bodies)
+        return kinds == {"roller"}
+    geared = not found.couplings or kinds == {"gear"}
+    return geared and all(body.on for body in found.bodies)
 
 
 def same_place(a: complex, b: complex) -> bool:

@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from linkwork.export.plates.bridge import bridged, columns_around
 from linkwork.export.plates.collisions import Collisions, Proved, prove_clear
-from linkwork.export.plates.construction import Construction
-from linkwork.export.plates.layer_order import Conflict, find_layers, obstacles
+from linkwork.export.plates.construction import Construction, check_webs
+from linkwork.export.plates.layer_order import Conflict, LayerOrder, find_layers, obstacles
 from linkwork.export.plates.motion_boxes import BodyPoses, Boxes, boxes_of
 from linkwork.export.plates.options import PlateOptions
 from linkwork.export.plates.plate import PlateStack
@@ -58,10 +59,11 @@ def stack_of(
     placed = poses.of(boxes.v)
     collisions = Collisions(made.plates, made.pins, made.meshes, made.sizes.spacer / 2.0)
     conflicts = collisions.conflicts(placed, made.sizes.gap, lambda x: tell(_SAMPLED * x))
+    corners = columns_around(made, placed)
     while True:
-        layers = _layers(collisions, conflicts)
+        layered, layers = _layers(collisions, conflicts, made, corners)
         proof = prove_clear(
-            model, poses, collisions, layers, boxes, _in_slots(model, made, millimetres),
+            model, poses, layered, layers, boxes, _in_slots(model, made, millimetres),
             lambda x: tell(_SAMPLED + (1.0 - _SAMPLED) * x),
         )  # fmt: skip
         if not proof.hit:
@@ -69,9 +71,9 @@ def stack_of(
         conflicts |= proof.hit
     return PlateStack(
         mechanism=linkage.name,
-        plates=tuple(made.plates),
-        pins=tuple(made.pins),
-        layer={plate.name: layers[k] for k, plate in enumerate(made.plates)},
+        plates=tuple(layered.plates),
+        pins=tuple(layered.pins),
+        layer={plate.name: layers[k] for k, plate in enumerate(layered.plates)},
         sizes=made.sizes,
         poses={name: (complex(z[0]), complex(turn[0])) for name, (z, turn) in placed.items()},
         checked=len(boxes.v),
@@ -117,30 +119,46 @@ def _notes(linkage: Linkage, motion: Motion, made: Construction, longest: float)
     return notes
 
 
-def _layers(collisions: Collisions, conflicts: frozenset[Conflict]) -> tuple[int, ...]:
-    """The layer of every plate."""
-    plates = collisions.plates
-    number = {plate.name: k for k, plate in enumerate(plates)}
-    pins = [frozenset(number[name] for name in pin.plates) for pin in collisions.pins]
-    ordered = sorted(conflicts)
-    together = [frozenset(number[name] for name in mesh) for mesh in collisions.meshes]
-    found = find_layers(len(plates), pins, ordered, together)
+def _layers(
+    collisions: Collisions,
+    conflicts: frozenset[Conflict],
+    made: Construction,
+    corners: tuple[complex, ...],
+) -> tuple[Collisions, tuple[int, ...]]:
+    """The parts, with a bridge only if they need one, and the layer of every plate."""
+    found, ordered = _order(collisions, conflicts), sorted(conflicts)
     if found.layers is not None:
-        return found.layers
-    if not found.complete:
+        return collisions, found.layers
+    complete = found.complete
+    for plates, pins in bridged(made, corners):
+        with_bridge = Collisions(plates, pins, made.meshes, collisions.spacer)
+        found = _order(with_bridge, conflicts, top=len(plates) - 1)
+        if found.layers is not None:
+            for plate in (plates[0], plates[-1]):
+                check_webs(plate, made.sizes)
+            return with_bridge, found.layers
+        complete = complete and found.complete
+    if not complete:
         raise InputError(
-            f"no order of layers was found for {len(plates)} plates: the search was given up; "
-            "narrower bars collide less, see --width"
+            f"no order of layers was found for {len(made.plates)} plates: the search was given "
+            "up; narrower bars collide less, see --width"
         )
     pairs = (
         f"{collisions.name(a)} and {collisions.name(b)}"
-        for a, b in obstacles(len(plates), pins, ordered, together)
+        for a, b in obstacles(len(made.plates), collisions.joined, ordered, collisions.together)
     )
     raise InputError(
-        "no order of layers lets this mechanism move: these meet and cannot all be in different "
-        f"layers: {'; '.join(pairs)}. Narrower bars, see --width, or a part of the table, see "
-        "--from, collide less"
+        "no order of layers lets this mechanism move, nor with a bridge over it: these meet and "
+        f"cannot all be in different layers: {'; '.join(pairs)}. Narrower bars, see --width, or a "
+        "part of the table, see --from, collide less"
     )
+
+
+def _order(
+    collisions: Collisions, conflicts: frozenset[Conflict], top: int | None = None
+) -> LayerOrder:
+    count = len(collisions.plates)
+    return find_layers(count, collisions.joined, sorted(conflicts), collisions.together, top=top)
 
 
 def _in_slots(model: Model, made: Construction, millimetres: float) -> Callable[[Boxes], BoolArray]:

@@ -16,6 +16,7 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
 _UNUSED = (
     "batch/study",
     "cli",
+    "design/atlas",
     "export/code",
     "kernels/gpu",
     "viewer/web",

@@ -1,0 +1,126 @@
+"""``linkwork atlas``"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from linkwork.api.path_atlas import NearPath, PathAtlas
+from linkwork.cli.options import debug_option, json_option
+from linkwork.cli.terminal import print_json, print_lines, progress, title_lines, wrapped
+from linkwork.cli.text_table import table_lines
+from linkwork.design.synthesis.curve_file import read_curve
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import as_path
+from linkwork.results.listing.column import Column
+from linkwork.results.listing.number_text import significant
+from linkwork.textfile.writer import save
+
+__all__ = ["atlas"]
+
+_SHOWN = 10
+
+
+@click.command
+@click.argument("sources", metavar="CURVE", nargs=-1)
+@click.option("-o", "--output", metavar="PATH", help="Folder for mechanisms; with --index a file.")
+@click.option("--atlas", "file", metavar="FILE", help="Another atlas than the shipped one.")
+@click.option("--count", type=int, default=100, show_default=True, help="Mechanisms to find.")
+@click.option("--index", is_flag=True, help="Make an atlas of the stores of studies.")
+@json_option
+@debug_option
+def atlas(
+    sources: tuple[str, ...],
+    output: str | None,
+    file: str | None,
+    count: int,
+    index: bool,
+    as_json: bool,
+) -> None:
+    """Find mechanisms whose paths resemble a closed curve (CSV: x, y).
+
+    Place, size, direction and timing do not count. With -o the mechanisms are
+    written as files, placed on the curve: starts for improvement. An atlas is
+    made of studies that keep the path of a point over a whole turn.
+
+    \b
+      linkwork atlas curve.csv
+      linkwork atlas curve.csv --count 20 -o near
+      linkwork atlas --index four-bar.zarr stephenson.zarr -o mine.npz
+      linkwork atlas curve.csv --atlas mine.npz
+    """
+    if index:
+        _index(sources, output, as_json)
+        return
+    if len(sources) != 1:
+        raise InputError("give one curve:\n    linkwork atlas curve.csv")
+    curve = read_curve({"file": sources[0]}, None)
+    with progress("comparing paths"):
+        asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
+        found = asked.nearest(curve.points, count)
+    files: list[str] = []
+    if output is not None:
+        files = _write(found, as_path(output))
+    if as_json:
+        print_json({"paths": len(asked), "nearest": [_data(n, files) for n in found]})
+        return
+    lines = [*title_lines(f"{len(found)} of {len(asked)} paths near {sources[0]}"), *_rows(found)]
+    if files:
+        lines += ["", *wrapped(f"Wrote {len(files)} mechanisms in {output}.")]
+    print_lines(lines)
+
+
+def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
+    if not stores or output is None:
+        raise InputError(
+            "--index needs stores and a file:\n    linkwork atlas --index four-bar.zarr -o mine.npz"
+        )
+    with progress("reading paths"):
+        made = PathAtlas.of_stores(stores)
+    made.save(output)
+    if as_json:
+        print_json({"paths": len(made), "file": output})
+    else:
+        print_lines(wrapped(f"Wrote {len(made)} paths of {len(stores)} stores to {output}."))
+
+
+def _write(found: tuple[NearPath, ...], folder: Path) -> list[str]:
+    if folder.exists() and any(folder.iterdir()):
+        raise InputError(f'"{folder}" is not empty: name a new folder')
+    folder.mkdir(parents=True, exist_ok=True)
+    digits, files = len(str(len(found))), []
+    with progress("writing mechanisms") as tell:
+        for near in found:
+            path = folder / f"near-{near.number:0{digits}}.toml"
+            save(near.mechanism.description, path)
+            files.append(str(path))
+            tell(near.number / len(found))
+    return files
+
+
+def _data(near: NearPath, files: list[str]) -> dict[str, object]:
+    return {
+        "distance": near.distance,
+        "mechanism": near.family,
+        "mirrored": near.is_mirrored,
+        "numbers": near.numbers,
+        "file": files[near.number - 1] if files else None,
+    }
+
+
+def _rows(found: tuple[NearPath, ...]) -> list[str]:
+    """The nearest ones."""
+    shown = found[:_SHOWN]
+    lines = table_lines(
+        [
+            Column(header="", cells=[str(near.number) for near in shown], align="right"),
+            Column(
+                header="distance", cells=[significant(n.distance, 3) for n in shown], align="point"
+            ),
+            Column(header="mechanism", cells=[near.family for near in shown]),
+            Column(header="", cells=["mirrored" if n.is_mirrored else "" for n in shown]),
+        ]
+    )
+    more = len(found) - len(shown)
+    return lines + (wrapped(f"and {more} more; --json lists all", "  ") if more else [])

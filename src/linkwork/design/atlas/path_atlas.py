@@ -1,0 +1,242 @@
+"""Families of mechanisms with the shapes of their paths, and the nearest ones to a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+
+from linkwork.batch.study.chunk_manifest import read_entries
+from linkwork.batch.study.store import attributes_of
+from linkwork.batch.study.zarr_files import check_packages, open_arrays
+from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.errors import InputError
+
+__all__ = ["SHIPPED", "AtlasFamily", "Nearest", "PathAtlas", "atlas_of_stores", "read_atlas"]
+
+SHIPPED = Path(__file__).with_name("paths.npz")
+_CLOSED = 1e-6  # of the path's size: the first and last row are one position
+_SINGLE = 1e-5  # of sums of sixteen products in single precision
+_BEGIN = 2048  # shapes compared exactly at first
+_KEPT = ("title", "mechanism", "point", "names", "numbers", "shapes")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AtlasFamily:
+    """D designs of one mechanism.
+
+    Parameters
+    ----------
+    title, mechanism : str
+        Its name, and the text of its file.
+    point : str
+        The point that draws the paths.
+    names : tuple of str
+        Its varied numbers.
+    numbers : (D, P) float32
+        Their values [file units].
+    shapes : (D, 32) float16
+        Real and imaginary parts of the shapes.
+    """
+
+    title: str
+    mechanism: str
+    point: str
+    names: tuple[str, ...]
+    numbers: AnyArray
+    shapes: AnyArray
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def shapes_of(self, index: IndexArray) -> ComplexArray:
+        """Some of the shapes, (K, 16) complex; half precision takes them off the norm 1."""
+        found = np.ascontiguousarray(self.shapes[index], dtype=float).view(complex)
+        return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Nearest:
+    """A design of an atlas whose path is near a curve.
+
+    ``distance``: the root of the mean square of the gaps, relative to the size of the curve;
+    ``way``: the place among the WAYS in which the curve is compared.
+    """
+
+    family: AtlasFamily
+    index: int
+    distance: float
+    way: int
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Its varied numbers [file units of the family]."""
+        values = self.family.numbers[self.index].tolist()
+        return dict(zip(self.family.names, values, strict=True))
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether the mirror image of the mechanism draws the curve."""
+        return WAYS[self.way][1]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PathAtlas:
+    """Several families."""
+
+    families: tuple[AtlasFamily, ...]
+
+    def __len__(self) -> int:
+        return sum(map(len, self.families))
+
+    def nearest(self, curve: ComplexArray, count: int) -> list[Nearest]:
+        """The designs whose paths are nearest to a closed curve (N,), nearest first.
+
+        Lengths of coefficients differ by no more than the coefficients: this lower bound of the
+        distance chooses what is compared exactly, until no other design can be nearer.
+        """
+        shape = coefficients(curve[None])[0][0]
+        if not np.isfinite(shape).all():
+            raise InputError("the curve is one point: draw a curve that encloses an area")
+        wanted = in_ways(shape)
+        found = [
+            Nearest(family=family, index=k, distance=far, way=way)
+            for family in self.families
+            for far, k, way in _nearest(family, wanted, count)
+        ]
+        found.sort(key=lambda near: near.distance)
+        return found[:count]
+
+    def write(self, path: Path) -> None:
+        """Write the atlas to a file (.npz)."""
+        arrays = {
+            f"{k}.{name}": np.asarray(getattr(family, name))
+            for k, family in enumerate(self.families)
+            for name in _KEPT
+        }
+        with path.open("wb") as file:
+            np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # arrays alone
+
+
+def _nearest(family: AtlasFamily, wanted: ComplexArray, count: int) -> list[tuple[float, int, int]]:
+    """Distance, number and way of the nearest designs of one family."""
+    pairs = family.shapes.astype(np.float32)
+    lengths = np.hypot(pairs[:, 0::2], pairs[:, 1::2])
+    lengths /= np.linalg.norm(lengths, axis=1, keepdims=True)
+    # a mirror image with the opposite sense has the same lengths as the curve
+    agreement = (lengths @ np.abs(wanted[:2]).T.astype(np.float32)).max(axis=1)
+    bound = np.sqrt(np.maximum(2.0 - 2.0 * agreement - _SINGLE, 0.0))
+    best: list[tuple[float, int, int]] = []
+    done, many = 0, _BEGIN
+    while True:
+        order = _smallest(bound, many)
+        index = order[done:]
+        shapes = family.shapes_of(index)
+        ways = np.stack([distances(shapes, own)[0] for own in wanted])
+        way = ways.argmin(axis=0)
+        best += zip(ways.min(axis=0).tolist(), index.tolist(), way.tolist(), strict=True)
+        best = sorted(best)[:count]
+        enough = len(best) == count and best[-1][0] <= bound[order[-1]]
+        if enough or len(order) == len(family):
+            return best
+        done, many = many, 4 * many
+
+
+def _smallest(bound: Array, count: int) -> IndexArray:
+    """The places of the smallest bounds, in order."""
+    if count >= len(bound):
+        return np.argsort(bound, kind="stable")
+    some = np.argpartition(bound, count)[:count]
+    return np.asarray(some[np.argsort(bound[some], kind="stable")])
+
+
+def read_atlas(path: Path = SHIPPED) -> PathAtlas:
+    """The atlas in a file.
+
+    Raises
+    ------
+    InputError
+        If it is no atlas.
+    """
+    try:
+        with np.load(BytesIO(path.read_bytes())) as stored:
+            count = 1 + max(int(name.partition(".")[0]) for name in stored.files)
+            parts = [{name: stored[f"{k}.{name}"] for name in _KEPT} for k in range(count)]
+    except FileNotFoundError:
+        raise InputError(f'there is no atlas "{path}"') from None
+    except (OSError, KeyError, ValueError, BadZipFile):
+        told = (
+            f'"{path}" is no atlas of paths: make one with "linkwork atlas --index STORE -o FILE"'
+        )
+        raise InputError(told) from None
+    return PathAtlas(
+        families=tuple(
+            AtlasFamily(
+                title=str(part["title"]),
+                mechanism=str(part["mechanism"]),
+                point=str(part["point"]),
+                names=tuple(map(str, part["names"])),
+                numbers=part["numbers"],
+                shapes=part["shapes"],
+            )
+            for part in parts
+        )
+    )
+
+
+def atlas_of_stores(stores: Sequence[Path]) -> PathAtlas:
+    """The atlas of studies that keep the path of a point over a whole turn.
+
+    Raises
+    ------
+    InputError
+        If a store keeps no path, or has no closed path.
+    """
+    check_packages()
+    return PathAtlas(families=tuple(map(_family_of_store, stores)))
+
+
+def _family_of_store(path: Path) -> AtlasFamily:
+    attributes = attributes_of(path)
+    known = attributes["linkwork_identity"]
+    arrays = open_arrays(path)
+    kept = known["keep"]
+    points = [name[:-2] for name in kept if name.endswith(".x") and f"{name[:-2]}.y" in kept]
+    if len(points) != 1:
+        raise InputError(
+            f'"{path}" keeps the paths of {len(points)} points: an atlas needs one, e.g. '
+            'keep = ["P.x", "P.y"] in the plan'
+        )
+    names = tuple(name for name, _ in known["dimensions"] if arrays[name].ndim == 1)
+    numbers, shapes = [np.zeros((0, len(names)))], [np.zeros((0, 32))]
+    for _, entry in sorted(read_entries(path)[0].items()):
+        part = slice(entry.start, entry.stop)
+        z = arrays[f"{points[0]}.x"][part] + 1j * arrays[f"{points[0]}.y"][part]
+        good = arrays["passed"][part] & _are_closed(z)
+        own = coefficients(z[good][:, :-1])[0]
+        values = np.stack([arrays[name][part][good] for name in names], axis=1)
+        there = np.isfinite(own).all(axis=1)
+        numbers.append(values[there])
+        shapes.append(np.ascontiguousarray(own[there]).view(float))
+    found = np.concatenate(numbers).astype(np.float32)
+    if not len(found):
+        raise InputError(f'"{path}" has no closed path: keep it over a whole turn of the crank')
+    return AtlasFamily(
+        title=attributes["mechanism_name"],
+        mechanism=known["mechanism"],
+        point=points[0],
+        names=names,
+        numbers=found,
+        shapes=np.concatenate(shapes).astype(np.float16),
+    )
+
+
+def _are_closed(z: ComplexArray) -> BoolArray:
+    """Whether paths (D, N) end where they begin; false where rows are missing."""
+    size = np.abs(z - z[:, :1]).max(axis=1)
+    return np.asarray(np.abs(z[:, -1] - z[:, 0]) <= _CLOSED * size)

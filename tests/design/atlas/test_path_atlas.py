@@ -1,0 +1,142 @@
+"""The atlas of paths: shapes that keep only the form, and the nearest ones without exception."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import linkwork as lw
+from linkwork.batch.study import read_plan_text, run_study
+from linkwork.cli.main import linkwork
+from linkwork.design.atlas.path_atlas import (
+    SHIPPED,
+    AtlasFamily,
+    PathAtlas,
+    atlas_of_stores,
+    read_atlas,
+)
+from linkwork.design.atlas.path_shape import coefficients, distances, in_ways
+from linkwork.foundation.arrays import Array, ComplexArray
+
+_PLANS = Path(__file__).parents[3] / "examples" / "atlas"
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+
+
+def _curve(seed: int) -> ComplexArray:
+    rng = np.random.default_rng(seed)
+    k = np.array([1, 2, 3, -1, -2, -3])
+    c = rng.normal(size=(6, 2)) @ np.array([1.0, 1.0j]) / np.abs(k) ** 1.7
+    return np.asarray(c @ np.exp(1j * np.outer(k, _ANGLES)))
+
+
+def _least(shapes: ComplexArray, curve: ComplexArray) -> Array:
+    wanted = in_ways(coefficients(curve[None])[0][0])
+    return np.asarray(np.min([distances(shapes, own)[0] for own in wanted], axis=0))
+
+
+def test_place_size_direction_sense_and_mirroring_leave_the_shape() -> None:
+    z = _curve(3)
+    (shape,), _, _ = coefficients(z[None])
+    for other in (z * 3j + 5.0, z[::-1], z.conj(), (z[::-1] * (2.0 - 1j)).conj(), np.roll(z, 41)):
+        # a shifted first point samples other points of the polygon
+        assert _least(coefficients(other[None])[0], z)[0] < 2e-3
+    assert _least(shape[None], _curve(4))[0] > 0.1
+
+
+def test_the_nearest_paths_are_those_of_all_comparisons() -> None:
+    families = tuple(
+        replace(family, numbers=family.numbers[:900], shapes=family.shapes[:900])
+        for family in read_atlas().families
+    )
+    # more than are compared at first
+    joined = replace(
+        families[0],
+        shapes=np.concatenate([family.shapes for family in families]),
+        numbers=np.zeros((2700, 5)),
+    )
+    for seed in range(2):
+        found = PathAtlas(families=(joined,)).nearest(_curve(seed), 40)
+        every = np.concatenate([_least(f.shapes_of(np.arange(len(f))), _curve(seed))
+                                for f in families])  # fmt: skip
+        assert [near.distance for near in found] == pytest.approx(np.sort(every)[:40], abs=1e-12)
+
+
+@pytest.mark.parametrize("place", [1, 2])
+def test_a_path_of_the_atlas_is_found_again_and_drawn(place: int) -> None:
+    family = read_atlas().families[place]
+    numbers = dict(zip(family.names, family.numbers[7].tolist(), strict=True))
+    original = lw.loads(family.mechanism)
+    path = original.family({k: np.array([v]) for k, v in numbers.items()}).sweep().trace("P")[0]
+    wanted = np.roll(((2.0 - 1.0j) * path[:-1] + 300.0).conj(), 20)
+    near = lw.PathAtlas.shipped().nearest(wanted, 2)[0]
+    assert near.is_mirrored
+    assert near.numbers == numbers
+    assert near.distance < 2e-3
+    motion = near.mechanism.sweep()
+    assert motion.certified.all()
+    gaps = np.abs(motion.trace("P")[:, None] - wanted).min(axis=0)
+    # the shape has eight harmonics and half precision
+    assert gaps.max() < 0.02 * np.abs(wanted - wanted.mean()).max()
+
+
+def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
+    plan = (_PLANS / "slider-crank.toml").read_text()
+    few = plan.replace("1_000_000", "60")
+    store, file = tmp_path / "few.zarr", tmp_path / "few.npz"
+    run_study(read_plan_text(few, folder=_PLANS), store, workers=1)
+    done = CliRunner().invoke(linkwork, ["atlas", "--index", str(store), "-o", str(file)])
+    assert done.exit_code == 0, done.output
+    (made,), shipped = read_atlas(file).families, read_atlas().families[1]
+    assert 40 < len(made) < 60
+    assert made.mechanism == shipped.mechanism
+    assert np.array_equal(made.numbers, shipped.numbers[: len(made)])
+    assert made.shapes == pytest.approx(shipped.shapes[: len(made)], abs=1e-2)
+    lost = tmp_path / "lost.zarr"
+    run_study(read_plan_text(few.replace(', "P.y"', ""), folder=_PLANS), lost, workers=1)
+    with pytest.raises(lw.InputError, match="keeps the paths of 0 points: an atlas needs one"):
+        atlas_of_stores([lost])
+    half = tmp_path / "half.zarr"
+    run_study(read_plan_text(few.replace("360", "180"), folder=_PLANS), half, workers=1)
+    with pytest.raises(lw.InputError, match="has no closed path"):
+        atlas_of_stores([half])
+
+
+def test_the_command_writes_mechanisms_placed_on_the_curve(tmp_path: Path) -> None:
+    curve, folder = tmp_path / "curve.csv", tmp_path / "near"
+    z = 50.0 * np.cos(_ANGLES) + 1j * (20.0 * np.sin(_ANGLES) + 8.0 * np.cos(2.0 * _ANGLES))
+    curve.write_text("x,y\n" + "".join(f"{p.real},{p.imag}\n" for p in z))
+    arguments = ["atlas", str(curve), "--count", "3", "-o", str(folder), "--json"]
+    done = CliRunner().invoke(linkwork, arguments)
+    assert done.exit_code == 0, done.output
+    data = json.loads(done.stdout)
+    assert data["paths"] == len(read_atlas())
+    assert [near["distance"] for near in data["nearest"]] == sorted(
+        near["distance"] for near in data["nearest"]
+    )
+    for near in data["nearest"]:
+        path = lw.load(near["file"]).sweep(certify=False).trace("P")
+        assert np.abs(path[:, None] - z).min(axis=1).max() < 5.0
+    again = CliRunner().invoke(linkwork, arguments)
+    assert again.exit_code == 2
+    assert "not empty: name a new folder" in again.stderr
+
+
+def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
+    atlas = lw.PathAtlas.shipped()
+    with pytest.raises(lw.InputError, match="needs 5 points or more"):
+        atlas.nearest([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
+    with pytest.raises(lw.InputError, match="the curve is one point"):
+        atlas.nearest([(1, 1)] * 8)
+    broken = tmp_path / "broken.npz"
+    broken.write_bytes(SHIPPED.read_bytes()[:1000])
+    with pytest.raises(lw.InputError, match="is no atlas of paths"):
+        lw.PathAtlas.load(broken)
+    with pytest.raises(lw.InputError, match="there is no atlas"):
+        lw.PathAtlas.load(tmp_path / "missing.npz")
+    assert isinstance(read_atlas().families[0], AtlasFamily)
+    assert SHIPPED.stat().st_size < 5e6
