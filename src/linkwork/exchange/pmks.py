@@ -41,7 +41,7 @@ def read(source: Source) -> Assembly:
     query = query.partition("#")[0]
     if query.startswith("pmks2:"):
         source.refuse(
-            "is a document of the newest PMKS+, whose form is not published: share a link that "
+            "is a document of the newest PMKS+, which is not read yet: share a link that "
             "begins with https://app.pmksplus.com/? and has joints between points"
         )
     # a code may contain %-signs only for the letters of names
