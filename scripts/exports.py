@@ -1,4 +1,4 @@
-"""Programs and robots of all library mechanisms, run and compared; see ``scripts/exports``."""
+"""Programs, robots, reports of all library mechanisms, compared; see ``scripts/exports``."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ import click
 
 import linkwork as lw
 from linkwork.foundation.errors import InputError
+from scripts.reports import READERS, read_report
 from scripts.robots import LOADERS, compared_robot
 from tests.export.running import RUNNERS, columns_of, largest_differences
 
-_SUFFIXES = (".py", ".js", ".c", ".m", ".st", *LOADERS)
+_SUFFIXES = (".py", ".js", ".c", ".m", ".st", *LOADERS, *READERS)
 
 
 def _compared(name: str, suffix: str, folder: Path) -> str:
     """The largest differences of values and derivatives, or why there is no program."""
+    if suffix in READERS:
+        return read_report(name, suffix, folder)
     if suffix in LOADERS:
         return compared_robot(name, suffix)
     mechanism, file = lw.example(name), folder / f"solver{suffix}"
@@ -54,7 +57,7 @@ def main() -> None:
     names = [x for x in sys.argv[1:] if x not in _SUFFIXES]
     names = names or [n for n in lw.examples() if lw.example(n).description.inputs]
     parser = {".st"} if find_spec("blark") else set[str]()
-    parser |= {suffix for suffix, package in LOADERS.items() if find_spec(package)}
+    parser |= {suffix for suffix, package in {**LOADERS, **READERS}.items() if find_spec(package)}
     for suffix in wanted:
         if suffix not in RUNNERS | parser:
             click.echo(f"{suffix}: SKIPPED, nothing here runs it")
