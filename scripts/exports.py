@@ -12,10 +12,8 @@ import click
 
 import linkwork as lw
 from linkwork.foundation.errors import InputError
-from scripts.plates import READERS as PLATES
-from scripts.plates import compared_plates
-from scripts.reports import READERS as REPORTS
-from scripts.reports import read_report
+from scripts.plates import READERS as PLATES, compared_plates
+from scripts.reports import READERS as REPORTS, read_report
 from scripts.robots import LOADERS, compared_robot
 from scripts.tex_pictures import compared_picture, has_latex
 from tests.exchange.round_trips import robot_round_trip, round_trip
