@@ -37,8 +37,9 @@ class LoadedMechanism(SolvableMechanism):
     ) -> Reactions:
         """Efforts of the inputs and reactions of the joints, from masses, loads and springs.
 
-        Without ``at`` over the input's table; of a structure in its position. With a speed of the input, masses have inertia;
-        without one the mechanism is at rest. See :mod:`linkwork.forces`.
+        Without ``at`` over the input's table; of a structure in its position. With a speed of
+        the input, masses have inertia; without one the mechanism is at rest. See
+        :mod:`linkwork.forces`.
 
         Parameters
         ----------
