@@ -1,4 +1,4 @@
-"""Programs, robots, plates, pictures of all library mechanisms; see `scripts/exports`."""
+"""Programs, robots, plates, pictures, reports of all library mechanisms; see `scripts/exports`."""
 
 from __future__ import annotations
 
@@ -12,19 +12,28 @@ import click
 
 import linkwork as lw
 from linkwork.foundation.errors import InputError
-from scripts.plates import READERS, compared_plates
+from scripts.plates import READERS as PLATES, compared_plates
+from scripts.reports import READERS as REPORTS, read_report
 from scripts.robots import LOADERS, compared_robot
 from scripts.tex_pictures import compared_picture, has_latex
+from tests.exchange.round_trips import robot_round_trip, round_trip
 from tests.export.running import RUNNERS, columns_of, largest_differences
 
-_SUFFIXES = (".py", ".js", ".c", ".m", ".st", ".tikz", *LOADERS, *READERS)
+_SUFFIXES = (".py", ".js", ".c", ".m", ".st", ".tikz", *LOADERS, *PLATES, *REPORTS)
+#: Formats that are read back: no other program is needed.
+_BACK = ("pmks", "pylinkage", "pyslvs", "back.mjcf")
 
 
 def _compared(name: str, suffix: str, folder: Path) -> str:
     """The largest differences of values and derivatives, or why there is no program."""
+    if suffix in _BACK:
+        back = robot_round_trip(name) if suffix == "back.mjcf" else round_trip(name, suffix)
+        return back if isinstance(back, str) else f"{back.rows} rows, points {back.difference:.1e}"
+    if suffix in REPORTS:
+        return read_report(name, suffix, folder)
     if suffix in LOADERS:
         return compared_robot(name, suffix)
-    if suffix in READERS:
+    if suffix in PLATES:
         return compared_plates(name, suffix)
     if suffix == ".tikz":
         return compared_picture(name, folder)
@@ -56,14 +65,16 @@ def _parsed(file: Path) -> str:
 
 def main() -> None:
     """Compare programs in the languages that this machine can run."""
-    wanted = [x for x in sys.argv[1:] if x in _SUFFIXES] or _SUFFIXES
-    names = [x for x in sys.argv[1:] if x not in _SUFFIXES]
+    wanted = [x for x in sys.argv[1:] if x in _SUFFIXES + _BACK] or _SUFFIXES + _BACK
+    names = [x for x in sys.argv[1:] if x not in _SUFFIXES + _BACK]
     names = names or [n for n in lw.examples() if lw.example(n).description.inputs]
     parser = {".st"} if find_spec("blark") else set[str]()
     parser |= {".tikz"} if has_latex() else set[str]()
-    parser |= {suffix for suffix, package in (LOADERS | READERS).items() if find_spec(package)}
+    parser |= {
+        suffix for suffix, package in (LOADERS | PLATES | REPORTS).items() if find_spec(package)
+    }
     for suffix in wanted:
-        if suffix not in RUNNERS | parser:
+        if suffix not in RUNNERS | parser | set(_BACK):
             click.echo(f"{suffix}: SKIPPED, nothing here runs it")
             continue
         with tempfile.TemporaryDirectory() as folder:

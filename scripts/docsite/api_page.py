@@ -31,7 +31,7 @@ ALIASES = {
 _PROPERTIES = (property, cached_property)
 #: The parts of the page: their titles, and the packages of the names in them.
 _PARTS = (
-    ("Read and make mechanisms", ("linkwork.api", "linkwork.textfile")),
+    ("Read and make mechanisms", ("linkwork.api", "linkwork.textfile", "linkwork.exchange")),
     ("Parts of a mechanism", ("linkwork.mechanism", "linkwork.foundation.angles")),
     ("Families", ("linkwork.batch",)),
     (

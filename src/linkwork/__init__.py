@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         loops as loops,
         plain_equations as plain_equations,
     )
+    from linkwork.api.foreign import Imported as Imported, imported as imported
     from linkwork.api.path_atlas import NearPath as NearPath, PathAtlas as PathAtlas
     from linkwork.api.synthesis import Synthesis as Synthesis, Task as Task
     from linkwork.batch.family import (
@@ -55,6 +56,8 @@ if TYPE_CHECKING:
     from linkwork.equations.writing import (
         EquationSheet as EquationSheet,
     )
+    from linkwork.exchange.drawn import Exported as Exported
+    from linkwork.exchange.source import LeftOut as LeftOut
     from linkwork.export.plates.options import PlateOptions as PlateOptions
     from linkwork.export.plates.plate import PlateStack as PlateStack
     from linkwork.foundation.angles import AngleUnit as AngleUnit

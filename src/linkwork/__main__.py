@@ -5,7 +5,13 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
-from linkwork.cli.interrupts import INTERRUPTED, ignore_interrupts, watch_interrupts
+from linkwork.cli.interrupts import (
+    INTERRUPTED,
+    ignore_interrupts,
+    leave,
+    was_interrupted,
+    watch_interrupts,
+)
 
 __all__ = ["main"]
 
@@ -18,7 +24,11 @@ def main() -> None:
         import_module("linkwork.cli.main").main()
     except KeyboardInterrupt:
         sys.stderr.write("\nInterrupted.\n")
-        sys.exit(INTERRUPTED)
+        leave(INTERRUPTED)
+    except SystemExit as end:
+        if was_interrupted() and isinstance(end.code, int):
+            leave(end.code)
+        raise
     finally:
         ignore_interrupts()
 

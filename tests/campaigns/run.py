@@ -24,6 +24,7 @@ from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
 from tests.campaigns.gradients import EVERY, gradient_campaign
+from tests.campaigns.imports import import_campaign
 from tests.campaigns.improvement import PARTS as IMPROVEMENTS, improvement_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
@@ -119,6 +120,10 @@ def _links(part: int) -> tuple[Counter[str], list[str]]:
     return link_campaign(part, _PART)
 
 
+def _imports(part: int) -> tuple[Counter[str], list[str]]:
+    return import_campaign(part, _PART)
+
+
 def _precision_points(part: int) -> tuple[Counter[str], list[str]]:
     return precision_campaign(part, _OWN_PART["precision-points"])
 
@@ -148,6 +153,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "parallel-trains": (_parallel_trains, 40),
     "kinds": (_kinds, 100_000),
     "links": (_links, 100_000),
+    "imports": (_imports, 80_000),
     "forces": (_forces, 2_000),
     "precision-points": (_precision_points, 200),
     "nine-points": (nine_point_campaign, 100),

@@ -19,6 +19,22 @@ def test_forces_at_one_position_fit_into_a_terminal(run: Run) -> None:
     assert "check  virtual work and free bodies agree" in done.stdout
 
 
+def test_forces_of_a_structure_have_a_position_and_no_plot(run: Run, tmp_path: Path) -> None:
+    truss = tmp_path / "truss.toml"
+    truss.write_text(
+        "format = 1\n[points]\nA = [0, 0]\nB = [10, 0]\nC = [5, 5]\n[links]\n"
+        'ground = ["A", "B"]\nl = ["A", "C"]\nr = ["B", "C"]\n'
+        '[[loads]]\npoint = "C"\nforce = [0, -10]\n',
+        encoding="utf-8",
+    )
+    done = run("forces", str(truss), "--draw", str(tmp_path / "f.svg"))
+    assert done.exit_code == 0
+    assert "  C.load    0        -10.0000   10.0000   -90.00  C\n" in done.stdout
+    refused = run("forces", str(truss), "--plot", str(tmp_path / "p.svg"))
+    assert refused.exit_code == 2
+    assert 'Error: "mechanism" has no input, so that --plot has no motion to show' in refused.stderr
+
+
 def test_forces_of_a_motion_are_written_and_plotted(run: Run, tmp_path: Path) -> None:
     table, plot = tmp_path / "f.csv", tmp_path / "f.svg"
     done = run("forces", "crank-press", "--csv", str(table), "--plot", str(plot))

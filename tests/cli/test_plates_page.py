@@ -19,5 +19,5 @@ def test_the_command_writes_plates_with_their_bill(run: Run, tmp_path: Path) -> 
     data = json.loads(run("plates", "four-bar", "-o", str(out), "--json").stdout)
     assert data["proved"]
     assert {row["name"]: row["lowest layer"] for row in data["bill"] if row["kind"] == "plate"} == {
-        "base": 0, "crank": 1, "coupler": 2, "rocker": 1,
+        "ground": 0, "crank": 1, "coupler": 2, "rocker": 1,
     }  # fmt: skip

@@ -106,6 +106,32 @@ def test_an_interrupt_of_executed_text_has_the_exit_code_too(
     assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
 
 
+def test_an_interrupted_program_does_what_is_registered_for_its_end_and_deletes_nothing(
+    environment: dict[str, str],
+) -> None:
+    """Deleting everything takes longer than most interrupted work once compiled code is loaded."""
+    program = (
+        "import atexit, sys, types\n"
+        "from linkwork.cli import interrupts\n"
+        "class Deleted:\n"
+        "    def __del__(self): print('deleted')\n"
+        "kept = Deleted()\n"
+        "atexit.register(print, 'registered')\n"
+        "def command():\n"
+        "    if sys.argv[1] == 'quiet': sys.exit(130)\n"
+        "    try: interrupts._interrupt(2, None)\n"
+        "    except KeyboardInterrupt: sys.exit(130)\n"
+        "sys.modules['linkwork.cli.main'] = types.SimpleNamespace(main=command)\n"
+        "from linkwork.__main__ import main\n"
+        "main()\n"
+    )
+    words = [sys.executable, "-c", program]
+    ended = subprocess.run([*words, "interrupted"], env=environment, capture_output=True)
+    assert (ended.returncode, ended.stdout.split()) == (130, [b"registered"])
+    ended = subprocess.run([*words, "quiet"], env=environment, capture_output=True)
+    assert (ended.returncode, ended.stdout.split()) == (130, [b"registered", b"deleted"])
+
+
 def test_an_interrupt_of_a_deletion_is_not_lost(environment: dict[str, str]) -> None:
     program = (
         "import os, signal, sys, time, types\n"

@@ -159,7 +159,7 @@ def test_the_search_finds_an_order_exactly_where_one_exists() -> None:
 def test_a_bridge_holds_pins_that_cranks_would_run_into() -> None:
     mechanism = read_example("galloway")
     stack, motion = made(mechanism)
-    assert stack.layer["bridge"] == stack.layers - 1
+    assert stack.layer["ground bridge"] == stack.layers - 1
     spans = {pin.name: stack.span(pin) for pin in stack.pins}
     # one crank turns about a pin of the base, the other one about a pin of the bridge
     assert sorted([spans["O2"][0], spans["O4"][0]])[0] == 0
@@ -181,7 +181,7 @@ def test_an_order_that_does_not_exist_is_refused_with_the_parts_in_the_way() -> 
         ("curved-slot", r'"slot" \(curve\) cannot be made of plates'),
         ("excavator", r'"boom_ram" \(cylinder\) cannot be made of plates'),
         ("klann-leg", '"stride" cannot be converted to millimetres'),
-        ("scott-russell", r"the openings O and s of plate \"base\" overlap"),
+        ("scott-russell", r"the openings O and s of plate \"ground\" overlap"),
     ],
 )
 def test_what_cannot_be_made_is_refused_by_name(name: str, message: str) -> None:
@@ -250,12 +250,12 @@ def test_files_are_read_by_other_programs(tmp_path: Path) -> None:
     assert sorted(solid.volume for solid in solids) == pytest.approx(wanted, rel=1e-3)
     model = zipfile.ZipFile(tmp_path / "plates.3mf").read("3D/3dmodel.model")
     names = {own.get("name") for own in Tree.fromstring(model).iter() if own.tag.endswith("object")}
-    assert names == {"0 base", "1 crank", "2 coupler", "1 rocker"}
+    assert names == {"0 ground", "1 crank", "2 coupler", "1 rocker"}
     document = import_module("ezdxf").readfile(tmp_path / "plates.dxf")
     assert not document.audit().errors
     assert document.header["$INSUNITS"] == 4
     texts = {text.dxf.text for text in document.modelspace().query("TEXT")}
-    assert texts == {"base", "crank", "coupler", "rocker"}
+    assert texts == {"ground", "crank", "coupler", "rocker"}
     root = Tree.parse(tmp_path / "plates.svg").getroot()
     low, width = root.attrib["viewBox"].split()[0::2]
     assert root.attrib["width"] == f"{width}mm"

@@ -35,6 +35,20 @@ def test_a_rod_without_mass_carries_force_along_itself_only() -> None:
     assert found["shaking.x"] == pytest.approx(-100)
 
 
+def test_bars_of_a_truss_carry_its_load() -> None:
+    """A structure has no input: the bars are at 45 degrees under half the load each."""
+    truss = lw.linkage(
+        points={"A": (0, 0), "B": (10, 0), "C": (5, 5)},
+        links={"ground": ["A", "B"], "left": ["A", "C"], "right": ["B", "C"]},
+        loads=[lw.Load(point="C", force=(0, -10))],
+    )
+    found = truss.forces()
+    for name, force in {"A": (5, 5), "B": (-5, 5)}.items():
+        assert found[f"{name}.force.x"] == pytest.approx(force[0], abs=1e-14)
+        assert found[f"{name}.force.y"] == pytest.approx(force[1], abs=1e-14)
+    assert found.efforts == ()
+
+
 def test_a_block_pushed_beside_its_line_needs_a_moment() -> None:
     table = lw.linkage(
         points={"S": (0, 0), "T": (10, 0), "B": (3, 0), "C": (3, 2)},

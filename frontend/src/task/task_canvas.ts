@@ -406,8 +406,9 @@ export class TaskCanvas {
     const { design, row } = this;
     if (!design) return;
     this.middle.setAttribute("class", `${design.design.sound ? "" : "lw-t-refused"} ${design.at.length > MANY ? "lw-t-many" : ""}`);
-    for (const piece of design.curve) this.path(this.middle, piece, "lw-t-curve");
-    if (design.at.length <= 12) for (const one of design.at) drawGhost(this.middle, one, this.project);
+    const guided = this.task!.task !== "function"; // no point of the coupler is wanted there
+    if (guided) for (const piece of design.curve) this.path(this.middle, piece, "lw-t-curve");
+    if (guided && design.at.length <= 12) for (const one of design.at) drawGhost(this.middle, one, this.project);
     if (row) drawLinkage(this.middle, design, row, this.project, true);
   }
 }

@@ -265,7 +265,7 @@ export class TaskPage {
     const word = KINDS[task.task];
     const count = task.positions.length;
     const given = word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";
-    say(this.summary, solved ? `${given} · ${solved.count} designs, ${solved.sound} without defects` : given);
+    say(this.summary, solved ? `${given} · ${solved.count} design${solved.count === 1 ? "" : "s"}, ${solved.sound} without defects` : given);
     this.summary.title = solved ? `${solved.solutions}; ${solved.message}` : "";
   }
 

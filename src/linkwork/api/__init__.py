@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.api.foreign import Imported as Imported, imported as imported
     from linkwork.api.making import (
         example as example,
         linkage as linkage,

@@ -6,11 +6,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwork import export, textfile
+from linkwork import exchange, export, textfile
 from linkwork.api.designed import DesignedMechanism
+from linkwork.exchange.drawn import Exported
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import check_flags, given_or
+from linkwork.mechanism.linkage import Linkage
 
 if TYPE_CHECKING:
     from linkwork.results.motion import Motion
@@ -81,6 +83,53 @@ class ExportedMechanism(DesignedMechanism):
         cycle = self.sweep() if motion is None else motion
         text = export.code_of(self.model, cycle, as_path(path))
         textfile.save_text(text, path)
+
+    def exported(
+        self,
+        format: str,
+        at: float | Mapping[str, float] | None = None,
+        *,
+        configuration: str | None = None,
+    ) -> Exported:
+        """The mechanism as a text of another program: pins, and slots or sliders.
+
+        Parameters
+        ----------
+        format : str
+            ``pmks`` (a link of PMKS+, coordinates in thousandths), ``pylinkage`` (JSON) or
+            ``pyslvs`` (an expression).
+        at : float or mapping, optional
+            The input of the position that is written; by default that of :meth:`solve`.
+        configuration : str, optional
+            The configuration of that position.
+
+        Returns
+        -------
+        Exported
+            The text, and what it leaves out; :func:`imported` reads it back.
+
+        Raises
+        ------
+        InputError
+            If the format is not written, or has no equivalent of a part.
+        NotConvergedError
+            If there is no position at this input value.
+
+        Examples
+        --------
+        >>> import linkwork as lw
+        >>> lw.example("hoeken").exported("pmks").text.partition("?")[0]
+        'https://app.pmksplus.com/'
+        """
+        linkage = self.description
+        if not isinstance(linkage, Linkage):
+            raise InputError(
+                f'mechanism "{self.name}" is given by equations: other programs need points and '
+                "links"
+            )
+        start = self.solve(at, configuration=configuration, throw=True)
+        places = {name: complex(*start.points[name]) for name in linkage.points}
+        return exchange.write_foreign(linkage, places, format)
 
     def to_robot(
         self,

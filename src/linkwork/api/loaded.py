@@ -37,8 +37,9 @@ class LoadedMechanism(SolvableMechanism):
     ) -> Reactions:
         """Efforts of the inputs and reactions of the joints, from masses, loads and springs.
 
-        Without ``at`` over the input's table. With a speed of the input, masses have inertia;
-        without one the mechanism is at rest. See :mod:`linkwork.forces`.
+        Without ``at`` over the input's table; of a structure in its position. With a speed of
+        the input, masses have inertia; without one the mechanism is at rest. See
+        :mod:`linkwork.forces`.
 
         Parameters
         ----------
@@ -66,7 +67,7 @@ class LoadedMechanism(SolvableMechanism):
         >>> round(press.forces(at=60)["crank.effort"])
         3644
         """
-        if at is not None:
+        if at is not None or not self.model.equations.inputs:
             return forces.forces_of_position(
                 self.model, self.solve(at, configuration=configuration), self._place
             )

@@ -143,7 +143,7 @@ class _Gathering:
         self.found |= {"position": position, "motion": swept}
         self._leave_out(position, swept)
         self._list(position)
-        self._load(position, swept)
+        self._load(swept)
         self._vary(position)
         self.progress(1.0)
 
@@ -180,7 +180,7 @@ class _Gathering:
         elif not position.steps:
             self._without(("newton",), "a chosen configuration has no iterations from the guess")
         if swept is None:
-            self._without(("plots", "paths", "circuits"), _NO_INPUT)
+            self._without(("plots", "paths", "circuits", "forces"), _NO_INPUT)
         elif not swept.found.any():
             self._without(("plots", "paths", "forces", "tolerances"), _NOT_FOUND)
         elif not swept.skeleton.traced:
@@ -202,20 +202,14 @@ class _Gathering:
             asked = position.input or None
             self._try("configurations", lambda: self.mechanism.configurations(asked))
 
-    def _load(self, position: Position, swept: Motion | None) -> None:
-        if not self._wanted("forces"):
+    def _load(self, swept: Motion | None) -> None:
+        """The forces in the rows of the motion, and where friction stops it."""
+        if swept is None or not self._wanted("forces"):
             return
         mechanism = self.mechanism
-        self._try(
-            "forces",
-            lambda: (
-                mechanism.forces(position.input)
-                if swept is None
-                else mechanism.forces(motion=swept)
-            ),
-        )
+        self._try("forces", lambda: mechanism.forces(motion=swept))
         acting = self.found.get("forces")
-        if swept is not None and acting is not None and ForceStatus.SELF_LOCKING in acting.statuses:
+        if acting is not None and ForceStatus.SELF_LOCKING in acting.statuses:
             self.found["stalls"] = mechanism.stalls(motion=swept, configuration=self.configuration)
 
     def _vary(self, position: Position) -> None:

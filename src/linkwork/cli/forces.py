@@ -74,9 +74,12 @@ def forces(
     check_outputs(file, csv, draw, plot, as_json=as_json)
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
+    moves = bool(mechanism.description.inputs)
+    if plot is not None and not moves:
+        raise InputError(f'"{mechanism.name}" has no input, so that --plot has no motion to show')
     motion = None
     stalls: tuple[Stall, ...] = ()
-    if values is None:
+    if values is None and moves:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
         found = mechanism.forces(motion=motion)

@@ -59,7 +59,8 @@ def position_forces_lines(found: Reactions, names: Sequence[str] = ()) -> list[s
     if vectors:
         lines += ["", *_vectors(found, vectors)]
     lines += ["", *_numbers("total", found, totals)]
-    return [*lines, "", *fields(list(force_fields(found)))]
+    checks = list(force_fields(found))
+    return [*lines, "", *fields(checks)] if checks else lines  # a structure has no efforts
 
 
 def motion_forces_lines(

@@ -8,15 +8,20 @@ into their own. So the interrupt is remembered too.
 from __future__ import annotations
 
 import _thread
+import atexit
+import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from types import FrameType
+from typing import NoReturn
 
 __all__ = [
     "INTERRUPTED",
     "check_interrupt",
     "ignore_interrupts",
+    "leave",
     "was_interrupted",
     "watch_interrupts",
 ]
@@ -52,6 +57,19 @@ def ignore_interrupts() -> None:
     # An interrupt of text that is executed, as in the making of a dataclass, has CPython end the
     # process by the signal even if it is caught; the next text that is executed revokes that.
     exec("")
+
+
+def leave(code: int) -> NoReturn:
+    """End the process at once: what is registered for its end is done, objects are not deleted.
+
+    Deleting them takes a third of a second once compiled code is loaded.
+    """
+    ignore_interrupts()
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # the reader may be gone
+            stream.flush()
+    os._exit(code)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from importlib import import_module
+from keyword import iskeyword
 
 import click
 
@@ -41,6 +42,8 @@ _COMMANDS = (
     "atlas",
     "code",
     "robot",
+    "import",
+    "export",
     "report",
     "plates",
     "study",
@@ -65,7 +68,9 @@ class _Program(click.Group):
         """A command, imported only when it is called: imports take most of a short run."""
         if cmd_name not in _COMMANDS:
             return None
-        command: click.Command = getattr(import_module(f"linkwork.cli.{cmd_name}"), cmd_name)
+        # a module cannot be called like a keyword of Python
+        own = f"{cmd_name}_" if iskeyword(cmd_name) else cmd_name
+        command: click.Command = getattr(import_module(f"linkwork.cli.{own}"), own)
         return command
 
     def invoke(self, ctx: click.Context) -> object:

@@ -33,9 +33,17 @@ class ParametrizedTable:
         The common motion of the inputs.
     parameter : int
         Index of the input that parametrises the path (0 … p-1).
+    solver : BlockSolver, optional
+        Of the table; a single input in the lead needs no other one.
     """
 
-    def __init__(self, table: LoopTable, path: InputPath, parameter: int) -> None:
+    def __init__(
+        self,
+        table: LoopTable,
+        path: InputPath,
+        parameter: int,
+        solver: BlockSolver | None = None,
+    ) -> None:
         self.parameter = table.unknowns + parameter
         self.table = _lock_inputs(table, path, parameter)
         self.scale = self.table.variable_scale
@@ -44,6 +52,10 @@ class ParametrizedTable:
         self._splitter = TableSplitter(self.table)
         self._pattern = self.table.pattern()
         self._leads: dict[int, Parametrization | None] = {}
+        if solver is not None and len(path.rate) == 1:
+            self._leads[self.parameter] = Parametrization(
+                lead=self.parameter, solver=solver, order=np.arange(table.variables)
+            )
 
     def with_parameter(self, lead: int) -> Parametrization | None:
         """The equations with one variable known; ``None`` if it does not determine the others."""

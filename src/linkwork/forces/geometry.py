@@ -70,6 +70,8 @@ class Geometry:
     @cached_property
     def input_rates(self) -> Array:
         """The rate of every input with respect to the leading one, or to time, (p,) or (p, B)."""
+        if not self.model.equations.inputs and self.model.untimed is None:
+            return np.zeros(0)  # a structure
         if self.model.untimed is None:
             return leading_input(self.model.rows)[1]
         return np.stack([self.own(each.name).d1 for each in self.driven.equations.inputs])
@@ -159,9 +161,12 @@ class Geometry:
         """Derivatives with respect to each input: points (p, B, P), variables (p, B, N)."""
         compiled, v = self.driven.compiled, self.variables
         units = np.eye(len(self.driven.equations.inputs))
-        rates = np.stack([compiled.solver.rates(v, unit).first for unit in units])
-        places = [compiled.points.jet(v, rate, np.zeros_like(v))[1] for rate in rates]
-        return np.stack(places), rates
+        rates = np.zeros((len(units), *v.shape))  # none for a structure
+        places = np.zeros((len(units), len(v), len(compiled.points.names)), dtype=complex)
+        for k, unit in enumerate(units):
+            rates[k] = compiled.solver.rates(v, unit).first
+            places[k] = compiled.points.jet(v, rates[k], np.zeros_like(v))[1]
+        return places, rates
 
     @property
     def alone(self) -> bool:
@@ -218,7 +223,9 @@ class Geometry:
 
     @property
     def table_direction(self) -> float:
-        """1 or -1: which way the table of the leading input goes; 1 for a table of one row."""
+        """1 or -1: which way the leading input goes in the table; 1 for one row or no input."""
+        if not self.model.equations.inputs:
+            return 1.0
         names = self.model.motion_quantities.names
         values = self.model.rows[:, list(names.inputs).index(names.lead)]
         return -1.0 if values[-1] < values[0] else 1.0

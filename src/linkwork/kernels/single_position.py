@@ -66,6 +66,10 @@ class SinglePosition:
         for t, k, w in zip(*(x.tolist() for x in entries), strict=True):
             if t in shown:
                 self.phases[shown[t]].append((k, w))
+        #: The same, if every phase is the multiple of one variable.
+        self._plain = [own[0] for own in self.phases if len(own) == 1]
+        if len(self._plain) < len(self.phases):
+            self._plain = []
         fixed: dict[tuple[int, int], complex] = {}
         self._sliding: list[tuple[int, int, complex, int]] = []
         terms = (loops.row, loops.coefficient, loops.length)
@@ -117,6 +121,9 @@ class SinglePosition:
 
     def _phasors(self, v: Sequence[float]) -> list[complex]:
         """e^{iψ} of every phase."""
+        total = sum(v)
+        if self._plain and total - total == 0.0:  # all angles are finite
+            return [rect(1.0, w * v[k]) for k, w in self._plain]  # eq. (1)
         found = []
         for phase in self.phases:
             psi = 0.0
@@ -149,33 +156,31 @@ class SinglePosition:
 
     def residual_and_jacobian(self, v: Sequence[float]) -> tuple[Row, list[Row]]:
         """F, (m,), and dF/dv, (m, N), rows of which are not to be changed."""
-        e, phases = self._phasors(v), self.phases
+        e, phases, columns = self._phasors(v), self.phases, self.variables
         value = [0j] * self.loops
-        slope = [[0j] * self.variables for _ in value]
+        real, imag = ([[0.0] * columns for _ in value] for _ in range(2))
         for row, g, c in self._fixed:
             term = c * e[g]
             value[row] += term
-            turned = complex(-term.imag, term.real)
-            own = slope[row]
-            for k, w in phases[g]:
-                own[k] += w * turned  # eq. (2): turning
+            x, y, above, below = term.real, term.imag, real[row], imag[row]
+            for k, w in phases[g]:  # eq. (2): turning
+                above[k] -= w * y
+                below[k] += w * x
         for row, g, c, length in self._sliding:
             bare = c * e[g]
             term = bare * v[length]
             value[row] += term
-            turned = complex(-term.imag, term.real)
-            own = slope[row]
-            own[length] += bare  # eq. (2): sliding
+            x, y, above, below = term.real, term.imag, real[row], imag[row]
+            above[length] += bare.real  # eq. (2): sliding
+            below[length] += bare.imag
             for k, w in phases[g]:
-                own[k] += w * turned
+                above[k] -= w * y
+                below[k] += w * x
         found = [z.real for z in value]
         found += [z.imag for z in value]
-        jacobian = [[z.real for z in row] for row in slope]
-        jacobian += [[z.imag for z in row] for row in slope]
         if self._lines:
-            found += self._line_values(v)
-            jacobian += self._line_slopes
-        return found, jacobian
+            return found + self._line_values(v), real + imag + self._line_slopes
+        return found, real + imag
 
     def second_directional_derivative(self, v: Sequence[float], d: Sequence[float]) -> Row:
         """D²F[d, d], (m,)."""

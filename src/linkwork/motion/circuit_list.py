@@ -85,7 +85,7 @@ class _Circuits:
         self.model, self.certify = model, certify
         self.drive = Drive.through(model, model.start_inputs, rate, lead)
         self.leads = self.drive.leads
-        self.explorer = Explorer(Walks(self.leads, certify), _FINE)
+        self.explorer = Explorer(Walks(self.drive, certify), _FINE)
         self.seeding = Seeding(self.drive, self.explorer)
 
     def result(self) -> Circuits:

@@ -39,7 +39,7 @@ class Drive:
     @cached_property
     def leads(self) -> ParametrizedTable:
         """The equations along the path, solvable with any variable in the lead."""
-        return ParametrizedTable(self.model.compiled.table, self.path, self.lead)
+        return ParametrizedTable(self.model.compiled.table, self.path, self.lead, self.solver)
 
     @cached_property
     def free(self) -> bool:

@@ -50,7 +50,7 @@ def first_position(
     v = model.equations.start.copy()
     v[solver.unknowns :] = inputs
     watchers = [_Watcher(model, k) for k in range(len(solver.blocks))]
-    watches: list[Watch | None] = list(watchers) if with_steps else [None] * len(watchers)
+    watches: list[Watch | None] | None = list(watchers) if with_steps else None
     done = solver.solve(v[None, :], options, watches)
     status = Status.of_code(int(done.status[0]))
     failure = None

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,9 +22,12 @@ __all__ = [
     "LARGE",
     "SingleBlock",
     "SingleLinear",
+    "SingleSolution",
     "dot",
     "linearise_singly",
+    "rates_of_row",
     "rates_singly",
+    "solve_row",
     "solve_singly",
 ]
 
@@ -154,6 +157,33 @@ def linearise_singly(block: SingleBlock, v: Row) -> SingleLinear:
     return SingleLinear(jacobian, *inverse_and_sign(jacobian))
 
 
+@dataclass(slots=True)
+class SingleRates:
+    """Derivatives of all variables at one position (N,), and what is known of its Jacobians."""
+
+    first: Row
+    second: Row
+    condition: float = 1.0
+    nearness: float = 1.0
+    orientation: list[int] = field(default_factory=list)
+
+
+def rates_of_row(
+    blocks: Sequence[SingleBlock], v: Row, rate: Row, bend: Row | None = None
+) -> SingleRates:
+    """``BlockSolver.rates`` at one position (N,), for u' and u'' of the inputs (p,)."""
+    still = [0.0] * (len(v) - len(rate))
+    found = SingleRates(still + rate, still + (bend or [0.0] * len(rate)))
+    for block in blocks:
+        here = [v[k] for k in block.variables]
+        part = _block_rates(block, here, found.first, found.second)
+        own = _condition(block, part)
+        found.condition = max(found.condition, own)
+        found.nearness = max(found.nearness, own if own <= LARGE else _nearness(block, part, own))
+        found.orientation.append(part.sign)
+    return found
+
+
 def rates_singly(
     blocks: Sequence[SingleBlock],
     v: Array,
@@ -161,34 +191,17 @@ def rates_singly(
     input_bend: Array | float = 0.0,
 ) -> SolvedRows:
     """``BlockSolver.rates`` for a few rows (B, N)."""
-    inputs = input_rate.shape[-1]
-    still = [0.0] * (v.shape[1] - inputs)
-    rates = (input_rate if input_rate.ndim > 1 else np.tile(input_rate, (len(v), 1))).tolist()
-    bends = np.broadcast_to(input_bend, (len(v), inputs)).tolist() if np.any(input_bend) else None
-    firsts, seconds, conditions, nearnesses, orientations = [], [], [], [], []
-    for number, row in enumerate(v.tolist()):
-        first = still + rates[number]
-        second = still + ([0.0] * inputs if bends is None else bends[number])
-        condition = nearness = 1.0
-        orientation = []
-        for block in blocks:
-            part = _block_rates(block, [row[k] for k in block.variables], first, second)
-            own = _condition(block, part)
-            condition = max(condition, own)
-            nearness = max(nearness, own if own <= LARGE else _nearness(block, part, own))
-            orientation.append(part.sign)
-        firsts.append(first)
-        seconds.append(second)
-        conditions.append(condition)
-        nearnesses.append(nearness)
-        orientations.append(orientation)
+    each = len(v), input_rate.shape[-1]
+    rates = np.broadcast_to(input_rate, each).tolist()
+    bends = np.broadcast_to(input_bend, each).tolist()
+    rows = [rates_of_row(blocks, *row) for row in zip(v.tolist(), rates, bends, strict=True)]
     return SolvedRows(
         v=v,
-        first=np.array(firsts),
-        second=np.array(seconds),
-        condition=np.array(conditions),
-        nearness=np.array(nearnesses),
-        orientation=np.array(orientations, dtype=np.int8),
+        first=np.array([row.first for row in rows]),
+        second=np.array([row.second for row in rows]),
+        condition=np.array([row.condition for row in rows]),
+        nearness=np.array([row.nearness for row in rows]),
+        orientation=np.array([row.orientation for row in rows], dtype=np.int8),
     )
 
 

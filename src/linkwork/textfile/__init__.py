@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         schema_text as schema_text,
     )
     from linkwork.textfile.text_edits import TextEdits as TextEdits
+    from linkwork.textfile.toml_text import bytes_of as bytes_of
     from linkwork.textfile.writer import (
         part_lines as part_lines,
         save as save,

@@ -29,8 +29,8 @@ def _refuse(name: str, message: str, line: int | None = None) -> NoReturn:
     raise MechanismFileError([Problem(key=(), message=message, line=line)], name)
 
 
-def bytes_of(path: Path, name: str) -> bytes:
-    """The bytes of a file.
+def bytes_of(path: Path, name: str, most: int = LARGEST) -> bytes:
+    """The bytes of a file, at most so many.
 
     Raises
     ------
@@ -40,9 +40,9 @@ def bytes_of(path: Path, name: str) -> bytes:
     try:
         with path.open("rb") as file:
             # one byte more than allowed shows that the file is too large without reading all of it
-            data = file.read(LARGEST + 1)
-            if len(data) > LARGEST:
-                _refuse(name, _too_large(max(path.stat().st_size, len(data))))
+            data = file.read(most + 1)
+            if len(data) > most:
+                _refuse(name, _too_large(max(path.stat().st_size, len(data)), most))
             return data
     except FileNotFoundError:
         _refuse(name, f"there is no such file {_files_beside(path)}")
@@ -63,8 +63,8 @@ def _files_beside(path: Path) -> str:
     return choices("TOML files there", found, path.name)
 
 
-def _too_large(size: int) -> str:
-    return f"has {size / 1e6:.1f} MB: at most {LARGEST / 1e6:.0f} MB is read"
+def _too_large(size: int, most: int = LARGEST) -> str:
+    return f"has {size / 1e6:.1f} MB: at most {most / 1e6:.0f} MB is read"
 
 
 def text_of(data: bytes, name: str) -> str:

@@ -81,7 +81,10 @@ def _line(entry: Any) -> str:
     """An entry in one line: ``link = crank, from = 0, to = 360``."""
     match entry:
         case dict():
-            return ", ".join(f"{key} = {_line(each)}" for key, each in entry.items())
+            return ", ".join(
+                f"{key} ({_line(each)})" if isinstance(each, dict) else f"{key} = {_line(each)}"
+                for key, each in entry.items()
+            )
         case list() | tuple():
             return f"[{', '.join(map(_line, entry))}]"
         case bool():

@@ -73,6 +73,17 @@ def test_a_page_begins_with_the_file_and_its_cycle(page: Page) -> None:
     assert not page.told[1]["unsaved"]
 
 
+def test_an_address_names_a_task_which_is_solved_here(page: Page) -> None:
+    page.told.clear()
+    page.desk.begin("#task=five-poses")
+    assert page.kinds == ["task_state", "task_solved"]
+    assert page.told[0]["file"] == "five-poses.toml"
+    answers = page.ask("show_design", design=5, id=3)
+    assert [(event["kind"], event["answers"]) for event in answers] == [("design_found", 3)]
+    page.desk.begin("#task=nothing")
+    assert "refused" in page.kinds
+
+
 def test_answers_repeat_the_id_of_the_request(page: Page) -> None:
     answers = page.ask("set_number", name="a", value=41, id=7)
     assert [event["answers"] for event in answers] == [7, 7]

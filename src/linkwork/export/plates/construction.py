@@ -190,7 +190,7 @@ class Construction:
         self.plates.append(wheel.plate)
         self.more.setdefault(body, {}).update(wheel.fastened)
         for own, place in wheel.fastened.items():
-            plates = frozenset((name, self._main_name(body)))
+            plates = frozenset((name, body))
             self.pins.append(Pin(name=own, body=body, place=place, plates=plates, fixed=True))
         return name
 
@@ -199,9 +199,6 @@ class Construction:
         whole = {plate.name for plate in self.plates}
         main = [self._main_plate(own) for own, _ in _distinct(self.bodies) if own not in whole]
         self.plates = main + self.plates
-
-    def _main_name(self, body: str) -> str:
-        return BASE if body == GROUND else body
 
     def _join(self) -> None:
         """The pins of all joints and guides."""
@@ -240,7 +237,7 @@ class Construction:
 
     def _main_plate(self, name: str) -> Plate:
         """The plate around the holes and slots of a body."""
-        return self._plate(self._main_name(name), name, self.holes[name], slotted=True)
+        return self._plate(name, name, self.holes[name], slotted=True)
 
     def ground_plate(self, name: str, holes: Mapping[str, complex]) -> Plate:
         """A plate of the ground with some of its holes; slots are in the base plate."""

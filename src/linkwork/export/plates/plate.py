@@ -15,12 +15,13 @@ from linkwork.export.plates.options import Sizes
 from linkwork.export.plates.outline import Outline
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.internal import internal
+from linkwork.foundation.names import GROUND
 from linkwork.results.table import Table
 
 __all__ = ["BASE", "BRIDGE", "Opening", "Pin", "Plate", "PlateStack", "Spacer"]
 
 #: The plates of the ground: below all others, and above them where they need it.
-BASE, BRIDGE = "base", "bridge"
+BASE, BRIDGE = GROUND, f"{GROUND} bridge"
 #: Columns of a bill of materials, and their units.
 _UNITS = {
     "kind": "", "name": "", "lowest layer": "", "highest layer": "", "length": "mm",
@@ -121,7 +122,7 @@ class PlateStack:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     stack = lw.example("four-bar").to_plates(f"{folder}/plates.svg")
     >>> sorted(stack.layer.items())
-    [('base', 0), ('coupler', 2), ('crank', 1), ('rocker', 1)]
+    [('coupler', 2), ('crank', 1), ('ground', 0), ('rocker', 1)]
     >>> stack.proved
     True
     """

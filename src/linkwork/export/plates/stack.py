@@ -19,6 +19,7 @@ from linkwork.foundation.units import LENGTHS
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.pairs import KinematicPairs
 from linkwork.motion.model import Model
+from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 
 __all__ = ["stack_of"]
@@ -48,6 +49,7 @@ def stack_of(
     InputError
         If the mechanism cannot be made of plates, or there is no order of layers.
     """
+    check_own_motion(model, motion)
     linkage = _checked(model, motion)
     millimetres = 1000.0 * float(LENGTHS[linkage.length])
     made = Construction.of(model, motion, options, millimetres)

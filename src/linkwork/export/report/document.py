@@ -16,7 +16,7 @@ __all__ = [
     "Table", "printed", "shown_name", "split_columns",
 ]  # fmt: skip
 
-_WIDTH = 92  # characters of a table in the type of the page
+_WIDTH = 88  # characters of a table in the type of the page
 # after a digit, so that words such as "here" stay
 _DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 # of a number, not in a word or a range
@@ -118,8 +118,10 @@ class Document:
                 return Facts(pairs=tuple(pairs))
             if not isinstance(block, Equation | Table | Figure):
                 return block
-            counts[type(block)] = counts.get(type(block), 0) + 1
-            return replace(block, number=counts[type(block)])
+            own = counts[type(block)] = counts.get(type(block), 0) + 1
+            if isinstance(block, Equation):
+                return replace(block, number=own)
+            return replace(block, number=own, caption=_sentence(block.caption))
 
         listed = tuple(
             replace(section, blocks=tuple(map(number, section.blocks))) for section in sections

@@ -28,8 +28,18 @@ def mathml_terms(mathml: str) -> list[str]:
 
 
 def office_terms(mathml: str) -> list[str]:
-    """The terms as runs of Office MathML, each the content of an ``m:oMath`` element."""
-    return ["".join(map(_office, parts)) for parts in _terms(mathml)]
+    """The terms as runs of Office MathML, each the content of an ``m:oMath`` element.
+
+    No term begins with an equals sign, which LibreOffice shows as an error.
+    """
+    found: list[str] = []
+    for parts in _terms(mathml):
+        shown = "".join(map(_office, parts))
+        if found and parts[0].tag == "mo" and parts[0].text == "=":
+            found[-1] += shown
+        else:
+            found.append(shown)
+    return found
 
 
 def typst_terms(mathml: str) -> list[str]:

@@ -69,19 +69,21 @@ def _largest(motion: Motion, rows: np.ndarray) -> str:
 
 
 def _lists(found: Findings) -> Iterator[str]:
-    """How complete the lists of circuits and configurations are."""
+    """How many circuits and configurations are proved, and whether their lists are complete."""
     if found.circuits is not None:
         certified = sum(circuit.certified for circuit in found.circuits)
-        yield (
-            f"{certified} of {len(found.circuits)} circuits are proved to be one curve. "
-            f"Their list: {found.circuits.message}."
-        )
+        if len(found.circuits):
+            yield f"{certified} of {len(found.circuits)} circuits are proved to be one curve."
+        yield _sentence(found.circuits.message)
     if found.configurations is not None:
         certified = sum(p.certificate.certified for p in found.configurations)
-        yield (
-            f"{certified} of {len(found.configurations)} configurations are proved. "
-            f"Their list: {found.configurations.message}."
-        )
+        if len(found.configurations):
+            yield f"{certified} of {len(found.configurations)} configurations are proved."
+        yield _sentence(f"configurations: {found.configurations.message}")
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def _unproved(found: Findings) -> Iterator[str]:

@@ -14,9 +14,7 @@ from linkwork.export.report.mechanism_sections import tables
 from linkwork.export.report.motion_sections import figures_of, ranges_of
 from linkwork.export.report.template import Template
 from linkwork.foundation.names import pretty
-from linkwork.results.listing.column import Column
 from linkwork.results.listing.force_listing import force_fields
-from linkwork.results.listing.number_text import significant
 from linkwork.results.listing.tolerance_listing import (
     contribution_columns,
     sampled_fields,
@@ -27,27 +25,12 @@ from linkwork.results.sensitivity import SensitivityStatus
 
 __all__ = ["forces", "tolerances"]
 
-_DIGITS = 5
-
 
 def forces(found: Findings, template: Template) -> Iterator[Block]:
     """Efforts of the inputs and reactions of the joints."""
     acting = found.forces
     assert acting is not None
-    if found.motion is None:
-        names = [name for name in acting.values if name != "disagreement"]
-        columns = [
-            Column(header="quantity", cells=list(map(pretty, names))),
-            Column(
-                header="value",
-                cells=[significant(float(acting.values[name]), _DIGITS) for name in names],
-                align="point",
-                units=[acting.units[name] for name in names],
-            ),
-        ]
-        yield from tables("Forces", columns)
-        yield Facts(pairs=tuple(force_fields(acting)))
-        return
+    assert found.motion is not None
     counts = Counter(status for status in acting.statuses if status is not ForceStatus.FOUND)
     told = [(s.name.lower().replace("_", " "), f"{n}: {s.value}") for s, n in counts.items()]
     rest = "at rest" if found.motion.speed is None else "with the inertia of its masses"

@@ -96,8 +96,14 @@ def ranges_of(swept: Motion, names: Sequence[str]) -> list[Column]:
         cells = ["0" if abs(float(c)) <= _NOISE * sizes[unit] else c for c, unit in pairs]
         return replace(column, cells=cells)
 
-    names_shown = replace(first, cells=list(map(shown_name, first.cells)))
-    return [names_shown, clean(low), low_at, clean(high), high_at, units]
+    shown = replace(first, cells=list(map(shown_name, first.cells)))
+    return [shown, clean(low), _shortened(low_at), clean(high), _shortened(high_at), units]
+
+
+def _shortened(inputs: Column) -> Column:
+    """Input values with fewer digits."""
+    cells = [short(float(c), _DIGITS) if c != "-" else c for c in inputs.cells]
+    return replace(inputs, cells=cells)
 
 
 def _position(found: Findings) -> Iterator[Block]:
@@ -200,7 +206,7 @@ def number_cells(values: Array, unit: str, size: float) -> list[str]:
 def _inputs(swept: Motion, rows: CountArray) -> Iterator[Column]:
     for name, values in swept.inputs.items():
         unit = swept.input_units[name]
-        cells = [short(float(f"{value:.8g}")) for value in values[rows]]
+        cells = [short(value, _DIGITS) for value in values[rows]]
         header = f"{pretty(name)} [{unit}]" if unit else pretty(name)
         yield Column(header=header, cells=cells, align="point")
 

@@ -83,7 +83,8 @@ class Explorer:
 
     def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
         """The branches of an arc, all their positions solved."""
-        return tuple(_branches(self.leads, arc.up, arc.down, self.fine, solved=True))
+        up = self.walks.stepwise(arc.up)
+        return tuple(_branches(self.leads, up, arc.down, self.fine, solved=True))
 
     def settle(self) -> bool:
         """Prove all arcs; false if one was replaced, so that others may follow from it."""

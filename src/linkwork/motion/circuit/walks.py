@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.foundation.arrays import Array
-from linkwork.motion.curve_branches import TracedCurve, confirmed, trace_boldly
+from linkwork.motion.circuit.full_turn import full_turn
+from linkwork.motion.curve_branches import TracedCurve, confirmed, trace_boldly, trace_with_proof
+from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.curve_proof import prove_curve, prove_curves
-from linkwork.numerics.continuation.local_parametrization import Parametrizations
 
 __all__ = ["Walks"]
 
@@ -18,19 +19,27 @@ class Walks:
     """The curve from each place and heading, traced once.
 
     Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
-    far less time than many small ones. From then on each is proved at once.
+    far less time than many small ones. From then on each is proved at once. Where compiled code
+    proves a whole turn of the input, nothing remains to be done.
     """
 
-    def __init__(self, leads: Parametrizations, certify: bool) -> None:
-        self.leads, self.certify = leads, certify
+    def __init__(self, drive: Drive, certify: bool) -> None:
+        self.drive, self.leads, self.certify = drive, drive.leads, certify
         self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
         self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
         self._proved: dict[int, TracedCurve] = {}
+        self._turned: dict[int, Array] = {}
         self._settled = not certify
 
     def walk(self, start: Array, heading: float | Array) -> TracedCurve:
         """The curve from a position (N,) on; its proof may still have to be made."""
         key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
+        forwards = isinstance(heading, float) and heading > 0.0
+        if key not in self._known and self.certify and forwards:
+            turned = full_turn(self.drive, start)
+            if turned is not None:
+                self._known[key] = turned
+                self._turned[id(turned.curve)] = start
         if key not in self._known:
             found = trace_boldly(self.leads, start, heading, self.certify)
             if self.certify and found.curve.legs:
@@ -58,3 +67,14 @@ class Walks:
     def with_proof(self, walk: TracedCurve) -> TracedCurve:
         """A curve that remained, as it was settled."""
         return self._proved.get(id(walk.curve), walk)
+
+    def stepwise(self, walk: TracedCurve) -> TracedCurve:
+        """A curve followed in plain numbers even if compiled code has proved it.
+
+        So the positions that are shown do not depend on what this process has loaded.
+        """
+        start = self._turned.get(id(walk.curve))
+        if start is None:
+            return walk
+        found = trace_with_proof(self.leads, start, 1.0, self.certify)
+        return found if found.curve.end.closed and not found.turns else walk

@@ -21,6 +21,7 @@ from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
+from linkwork.numerics.single_rows import SingleSolution, rates_of_row, solve_row
 
 __all__ = [
     "BOLD",
@@ -160,10 +161,31 @@ class Track:
 Watch = Callable[[Node, Node], bool]
 
 
-def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array) -> Node:
+def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0) -> Node:
     """The node of a converged position."""
+    if solver.goes_singly(1):
+        one = rates_of_row(solver.singles, v.tolist(), path.rate.tolist())
+        return Node(
+            t=t,
+            v=v,
+            first=np.array(one.first),
+            second=np.array(one.second),
+            orientation=np.array(one.orientation, dtype=np.int8),
+            condition=one.condition,
+            nearness=one.nearness,
+            iterations=iterations,
+        )
     rates = solver.rates(v[None, :], path.rate)
-    return _node(t, v, rates)
+    return Node(
+        t=t,
+        v=v,
+        first=rates.first[0],
+        second=rates.second[0],
+        orientation=rates.orientation[0],
+        condition=float(rates.condition[0]),
+        nearness=float(rates.nearness[0]),
+        iterations=iterations,
+    )
 
 
 def rows_of_nodes(nodes: Sequence[Node]) -> SolvedRows:
@@ -181,19 +203,6 @@ def predict(here: Node, t: float) -> Array:
     h = t - here.t
     value: Array = here.v + h * here.first + (0.5 * h * h) * here.second  # eq. (17)
     return value
-
-
-def _node(t: float, v: Array, rates: SolvedRows, iterations: int = 0) -> Node:
-    return Node(
-        t=t,
-        v=v,
-        first=rates.first[0],
-        second=rates.second[0],
-        orientation=rates.orientation[0],
-        condition=float(rates.condition[0]),
-        nearness=float(rates.nearness[0]),
-        iterations=iterations,
-    )
 
 
 def follow(
@@ -250,25 +259,25 @@ class _Trial:
         """Predict, correct and judge."""
         solver, path, opt, h = self.solver, self.path, self.options, t - here.t
         guess = predict(here, t)
-        guess[solver.unknowns :] = path.at(t)
-        found = solver.solve(guess[None, :], self.quick)
-        correction = float(found.first_step[0])
+        guess[solver.unknowns :] = path.origin + t * path.rate
+        v, found = self._solve(guess)
+        correction = found.first_step
         # eq. (22): Taylor's error of second order grows like h³
         factor = by_error(correction, opt.aim, 3)
-        if found.status[0] != CONVERGED or found.contraction[0] > opt.contraction:
+        if found.status != CONVERGED or found.contraction > opt.contraction:
             # a first correction says how long the step should have been only if Newton did not
             # merely stall
             too_far = correction > opt.largest_correction
             return Attempt(None, factor if too_far else None)
         if correction > opt.largest_correction:
             return Attempt(None, factor)
-        rates = solver.rates(found.v, path.rate)
+        node = node_at(solver, path, t, v, found.iterations)
         # det J changes its sign at a dead point and at a change point: another branch
-        if not (rates.orientation[0] == here.orientation).all():
+        if not (node.orientation == here.orientation).all():
             return Attempt(None)
-        if not rates.nearness[0] <= opt.largest_condition:
+        if not node.nearness <= opt.largest_condition:
             return Attempt(None)
-        drift = (rates.first[0] - here.first - h * here.second) / solver.variable_scale  # eq. (23)
+        drift = (node.first - here.first - h * here.second) / solver.variable_scale  # eq. (23)
         turn = float(np.abs(drift * h).max())
         if not turn <= opt.rate_error:
             return Attempt(None)
@@ -277,12 +286,25 @@ class _Trial:
         if turn > max(_OTHER_RATES * correction, _LEVEL_RATES):
             return Attempt(None)
         factor = min(factor, by_error(turn, 0.5 * opt.rate_error, 3))
-        v = found.v
         # so that rounding leaves it on the branch
-        if opt.sharp and rates.nearness[0] > REGULAR_CONDITION:
-            v = solver.sharpen(v)
-            rates = solver.rates(v, path.rate)
-        return Attempt(_node(t, v[0], rates, int(found.iterations[0])), factor)
+        if opt.sharp and node.nearness > REGULAR_CONDITION:
+            node = node_at(solver, path, t, solver.sharpen(v[None, :])[0], found.iterations)
+        return Attempt(node, factor)
+
+    def _solve(self, guess: Array) -> tuple[Array, SingleSolution]:
+        """Newton-Raphson from a guess (N,): where it ended, and how."""
+        solver = self.solver
+        if solver.goes_singly(1):
+            row = guess.tolist()
+            found = solve_row(solver.singles, row, self.quick)
+            return np.array(row), found
+        done = solver.solve(guess[None, :], self.quick)
+        return done.v[0], SingleSolution(
+            status=int(done.status[0]),
+            iterations=int(done.iterations[0]),
+            first_step=float(done.first_step[0]),
+            contraction=float(done.contraction[0]),
+        )
 
 
 def _kind_of_end(solver: BlockSolver, start: Node, here: Node, scale: float) -> Status:

@@ -20,7 +20,7 @@ from linkwork.numerics.continuation.local_parametrization import (
 from linkwork.numerics.continuation.path_proof import ProvenPath, prove_path, prove_paths
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 
-__all__ = ["ProvenCurve", "leg_is_proved", "prove_curve", "prove_curves", "same_solution"]
+__all__ = ["ProvenCurve", "legs_are_proved", "prove_curve", "prove_curves", "same_solution"]
 
 _MOST_STEPS = 20_000  # of a proof: a length on its way to infinity takes steps without end
 _MOST_EXACT = 400  # of those with residuals that are rounded once, which take far longer
@@ -107,9 +107,10 @@ def _goes_on(leads: Parametrizations, leg: Leg, following: Leg) -> bool:
     return bool(arrival @ departure > 0.0)
 
 
-def leg_is_proved(leg: Leg) -> bool:
-    """Whether every position and every step of a leg is proved."""
-    return bool(_joined(leg, _prove_legs([leg], _MOST_STEPS)[0]).all())
+def legs_are_proved(legs: Sequence[Leg]) -> list[bool]:
+    """Whether every position and every step of legs is proved."""
+    proofs = _prove_legs(legs, _MOST_STEPS)
+    return [bool(_joined(leg, proof).all()) for leg, proof in zip(legs, proofs, strict=True)]
 
 
 def _joined(leg: Leg, proof: ProvenPath) -> BoolArray:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -65,17 +66,17 @@ class Leg:
     led: Parametrization
     nodes: tuple[Node, ...]
 
-    @property
+    @cached_property
     def v(self) -> Array:
         """Positions (K, N), all variables in their order."""
         return self.led.whole(np.stack([node.v for node in self.nodes]))
 
-    @property
+    @cached_property
     def first(self) -> Array:
         """First derivatives with respect to the leader, (K, N), all variables in their order."""
         return self.led.whole(np.stack([node.first for node in self.nodes]))
 
-    @property
+    @cached_property
     def second(self) -> Array:
         """Second derivatives with respect to the leader, (K, N)."""
         return self.led.whole(np.stack([node.second for node in self.nodes]))

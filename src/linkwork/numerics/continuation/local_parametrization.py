@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -25,6 +25,7 @@ __all__ = [
     "whole_turns",
 ]
 
+_KEPT = 64  # nodes: a place where curves begin is looked at several times
 _COINCIDE = 1e-6  # weighted: rounding of places that are ill-conditioned
 _NEAR = 1e-3  # weighted: positions further apart are not looked at
 _ON_VALUE = 1e-9  # of the parameter, weighted: positions at different values are different
@@ -41,6 +42,7 @@ class Parametrization:
     lead: int
     solver: BlockSolver
     order: IndexArray
+    _nodes: dict[bytes, Node] = field(default_factory=dict, repr=False)
 
     @property
     def path(self) -> InputPath:
@@ -55,7 +57,14 @@ class Parametrization:
 
     def node(self, v: Array) -> Node:
         """The node of a position (N,) given in the whole's order."""
-        return node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
+        key = v.tobytes()
+        found = self._nodes.get(key)
+        if found is None:
+            found = node_at(self.solver, self.path, float(v[self.lead]), v[self.order])
+            if len(self._nodes) >= _KEPT:
+                self._nodes.clear()
+            self._nodes[key] = found
+        return found
 
     def place(self, variable: int) -> int:
         """The index of a variable of the whole in the solver's order."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.foundation.arrays import BoolArray, CountArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.step_halving import (
@@ -16,6 +16,7 @@ from linkwork.numerics.continuation.step_halving import (
     OpenSteps,
     Prover,
     Strand,
+    prove_backwards,
     prove_steps,
     take_expansions,
 )
@@ -211,21 +212,26 @@ def _piece(
     hold = position.holds[1:] & position.holds[:-1] & own
     connected &= hold
     open_ = np.flatnonzero(~connected & hold)
+    parts = np.ones(0, dtype=np.int64)
     if len(open_):
         # a step towards a change point is often proved from its far end only
-        back = take_expansions(places, open_ + 1)
-        backwards = prove_steps(solver, right.take(open_), left.take(open_), near[open_], back)
-        connected[open_], apart[open_] = backwards[0], apart[open_] | backwards[1]
-        open_ = open_[~connected[open_]]
+        whole = _open_steps(left, right, near, open_)
+        connected[open_], disproved, parts = prove_backwards(solver, whole, places)
+        apart[open_] |= disproved
+        left_over = ~connected[open_]
+        open_, parts = open_[left_over], parts[left_over]
     if not len(open_):
         return ProvenPath(position=position, connected=connected, pieces=pieces, given_up=nothing)
     work = Halving(prover, strands, position.holds)
     work.lose(np.flatnonzero(apart & own))
-    queue = OpenSteps(left=left.take(open_), right=right.take(open_), near=near[open_], owner=open_)
-    queue = work.of_use(queue)
-    ends = (take_expansions(places, queue.owner), take_expansions(places, queue.owner + 1))
-    work.run(work.divide(queue, ends, allowance), allowance)
+    queue = work.of_use(_open_steps(left, right, near, open_))
+    parts = parts[np.searchsorted(open_, queue.owner)]
+    work.run(work.divide(queue, parts, allowance), allowance)
     connected[open_] = work.proved[open_]
     return ProvenPath(
         position=position, connected=connected, pieces=pieces + work.pieces, given_up=work.given_up
     )
+
+
+def _open_steps(left: SolvedRows, right: SolvedRows, near: Array, steps: IndexArray) -> OpenSteps:
+    return OpenSteps(left=left.take(steps), right=right.take(steps), near=near[steps], owner=steps)

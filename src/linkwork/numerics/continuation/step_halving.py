@@ -29,6 +29,7 @@ __all__ = [
     "OpenSteps",
     "Prover",
     "Strand",
+    "prove_backwards",
     "prove_steps",
     "take_expansions",
 ]
@@ -93,29 +94,34 @@ def prove_steps(
     return steps_connected(*ends), steps_disproved(*ends)
 
 
-def _parts(solver: BlockSolver, queue: OpenSteps, ends: tuple[Sequence[Place], ...]) -> CountArray:
-    """Into how many parts steps have to be divided at least, so that each half of a part is as
-    short as what is proved from the ends, (L,).
+def prove_backwards(
+    solver: BlockSolver, steps: OpenSteps, places: Sequence[Place]
+) -> tuple[BoolArray, BoolArray, CountArray]:
+    """Whole steps of a path from their far ends, as :func:`prove_steps`; and into how many parts
+    each has to be divided at least, so that each half of a part is as short as what is proved from
+    both ends, (L,).
+
+    ``places``: of the path's points. All this at once: a proof takes as long for one step as for
+    many.
     """
-    count, tried = len(queue.owner), len(_SHORTER)
-    lanes = np.repeat(np.arange(count), tried)
-    shorter = np.tile(_SHORTER, count)
-    widest = np.zeros(count)
-    for here, there, places, sign in (
-        (queue.left, queue.right, ends[0], 1.0),
-        (queue.right, queue.left, ends[1], -1.0),
-    ):
-        h = sign * (queue.right.t - queue.left.t)[lanes] * shorter
-        first, second = here.first[lanes] * h[:, None], here.second[lanes] * (h * h)[:, None]
-        change = np.abs(first + 0.5 * second)  # eq. (17)
-        input_radius = np.abs(there.v - here.v)[lanes, solver.unknowns :] * shorter[:, None]
-        reached = reach(solver, here.v[lanes], input_radius, take_expansions(places, lanes))
-        inside = change[:, : solver.unknowns] < reached.isolation_radius  # eq. (33)
-        held = (reached.holds & inside.all(axis=1)).reshape(count, tried)
-        share = np.where(held, _SHORTER, 0.0).max(axis=1)
-        widest = share if sign > 0.0 else np.minimum(widest, share)
-    found: CountArray = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 1.0).astype(np.int64)
-    return found
+    count, n = len(steps.owner), solver.unknowns
+    lanes, shorter = np.repeat(np.arange(count), len(_SHORTER)), np.tile(_SHORTER, count)
+    whole, h = np.abs(steps.right.v - steps.left.v)[:, n:], steps.right.t - steps.left.t
+    # the factor covers the rounding of the difference
+    far = whole * (1.0 + 8.0 * UNIT_ROUNDOFF) + steps.left.input_radius + steps.right.input_radius
+    few = whole[lanes] * shorter[:, None]
+    points = SolvedRows.concatenate([steps.right, steps.left.take(lanes), steps.right.take(lanes)])
+    at = np.concatenate([steps.owner + 1, steps.owner[lanes], steps.owner[lanes] + 1])
+    reached = reach(solver, points.v, np.concatenate([far, few, few]), take_expansions(places, at))
+    ends = steps.right.v, steps.left.v, reached.take(slice(None, count)), steps.near
+    change = np.concatenate([h[lanes] * shorter, -h[lanes] * shorter])[:, None]
+    rest = slice(count, None)
+    moved = np.abs(change * points.first[rest] + 0.5 * change**2 * points.second[rest])  # eq. (17)
+    inside = moved[:, :n] < reached.isolation_radius[rest]  # eq. (33)
+    held = (reached.holds[rest] & inside.all(axis=1)).reshape(2, count, len(_SHORTER))
+    widest = np.where(held, _SHORTER, 0.0).max(axis=2).min(axis=0)
+    parts = np.where(widest > 0.0, 0.5 / np.maximum(widest, 1e-9), 0.0)
+    return steps_connected(*ends), steps_disproved(*ends), parts.astype(np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -195,16 +201,13 @@ class Halving:
                 return
             queue = self._halve(queue.take(slice(None, now))).with_(queue.take(slice(now, None)))
 
-    def divide(
-        self, queue: OpenSteps, ends: tuple[Sequence[Place], ...], allowance: Allowance
-    ) -> OpenSteps:
-        """Divide steps into several parts at once; return what is not proved of them.
+    def divide(self, queue: OpenSteps, parts: CountArray, allowance: Allowance) -> OpenSteps:
+        """Divide steps into parts (L,) at once; return what is not proved of them.
 
         Every second of the positions in between proves the way to both its neighbours. A step
         stays as it is where one of them is not found, or not proved.
         """
-        parts = _parts(self.prover.solver, queue, ends)
-        whole = parts < 2
+        whole = parts < 1
         if whole.all():
             return queue
         lanes = queue.take(np.flatnonzero(~whole))
@@ -286,16 +289,20 @@ class Halving:
             return lanes.take(keep)
         lanes, middle, places = lanes.take(keep), middle.take(keep), take_expansions(places, keep)
         near = np.maximum(lanes.near, proof.error_bound[keep])
-        halves = [
-            OpenSteps(left=lanes.left, right=middle, near=near, owner=lanes.owner),
-            OpenSteps(left=middle, right=lanes.right, near=near, owner=lanes.owner),
-        ]
         # both halves from the middle, where everything is computed
-        for k, ends in enumerate((lanes.left, lanes.right)):
-            held, apart = prove_steps(solver, middle, ends, near, places)
-            self.lose(lanes.owner[apart])
-            halves[k] = halves[k].take(np.flatnonzero(~held))
-        return halves[0].with_(halves[1])
+        both = np.tile(np.arange(len(keep)), 2)
+        halves = OpenSteps(
+            left=SolvedRows.concatenate([lanes.left, middle]),
+            right=SolvedRows.concatenate([middle, lanes.right]),
+            near=near[both],
+            owner=lanes.owner[both],
+        )
+        ends = SolvedRows.concatenate([lanes.left, lanes.right])
+        held, apart = prove_steps(
+            solver, middle.take(both), ends, halves.near, take_expansions(places, both)
+        )
+        self.lose(halves.owner[apart])
+        return halves.take(np.flatnonzero(~held))
 
 
 def _between(

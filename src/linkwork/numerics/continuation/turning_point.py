@@ -28,7 +28,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     node_at,
     predict,
 )
-from linkwork.numerics.continuation.curve_proof import leg_is_proved, prove_curve
+from linkwork.numerics.continuation.curve_proof import legs_are_proved, prove_curve
 from linkwork.numerics.continuation.curve_tracing import Curve, CurveOptions, Leg, trace
 from linkwork.numerics.continuation.dead_point_proof import FoldProof, prove_dead_point
 from linkwork.numerics.continuation.local_parametrization import (
@@ -75,12 +75,36 @@ class TurningPoint:
         return self.proof is not None
 
 
-def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoint]:
+def turning_points(leads: Parametrizations, curve: Curve) -> list[TurningPoint]:
     """The dead points on a curve, in its order.
 
     Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
     the sign change, finds the place. Steps in which the rate may change sign twice are divided.
+    Where a place is not proved to lie between both ends at once, proved steps lead to it.
     """
+    steps = list(_turning_steps(leads, curve))
+    turns = [_refine_turn(leads, *step) for step in steps]
+    legs = {
+        k: Leg(led=led, nodes=_distinct(low, turns[k].node, high))
+        for k, (led, low, high, _) in enumerate(steps)
+        if led.provable and turns[k].located
+    }
+    # together: a proof takes about as long for one leg as for several
+    proofs = dict(zip(legs, legs_are_proved([*legs.values()]), strict=True))
+    return [
+        turn
+        if proofs.get(k, False) or not step[0].provable
+        else _by_proved_steps(leads, *step, turn)
+        for k, (step, turn) in enumerate(zip(steps, turns, strict=True))
+    ]
+
+
+#: The leader, both ends, the numbers of the leg and of the node before it.
+_Step = tuple[Parametrization, Node, Node, tuple[int, int]]
+
+
+def _turning_steps(leads: Parametrizations, curve: Curve) -> Iterator[_Step]:
+    """The steps, or parts of steps, in which the parameter turns back."""
     for number, leg in enumerate(curve.legs):
         if leg.led.lead == leads.parameter:
             continue
@@ -98,27 +122,24 @@ def turning_points(leads: Parametrizations, curve: Curve) -> Iterator[TurningPoi
             for low, high in itertools.pairwise(chain):
                 if _rises(low, place) is not _rises(high, place):
                     # one sign change per piece: divide_step has separated them
-                    yield _within(leads, leg.led, low, high, (number, k))
+                    yield leg.led, low, high, (number, k)
 
 
-def _within(
-    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+def _by_proved_steps(
+    leads: Parametrizations,
+    led: Parametrization,
+    low: Node,
+    high: Node,
+    where: tuple[int, int],
+    turn: TurningPoint,
 ) -> TurningPoint:
-    """The dead point between two nodes; where it is not proved at once, by proved steps to it."""
-    turn = _refine_turn(leads, led, low, high, where)
-    if not led.provable or (turn.located and _is_between(led, low, turn.node, high)):
-        return turn
+    """The dead point between two nodes, to which proved steps lead; not located without them."""
     ahead = _first_turn(leads, led, low, math.copysign(1.0, high.t - low.t), follow_with_proof)
     if ahead is None or not ahead.located:
         place = led.place(leads.parameter)
         edges = sorted((float(low.v[place]), float(high.v[place]), turn.t))
         return replace(turn, proof=None, bracket=(edges[0], edges[-1]))
     return replace(ahead.turn, leg=where[0], after=where[1])
-
-
-def _is_between(led: Parametrization, low: Node, here: Node, high: Node) -> bool:
-    """Whether a node is proved to lie on the branch that leads from one node to another."""
-    return leg_is_proved(Leg(led=led, nodes=_distinct(low, here, high)))
 
 
 def _distinct(*nodes: Node) -> tuple[Node, ...]:
@@ -192,7 +213,7 @@ def _turn_on_curve(leads: Parametrizations, v: Array, side: float) -> TurnAhead 
     curve = trace(
         leads, v, side, CurveOptions(track=TrackOptions(sharp=True), most_legs=_MOST_LEGS)
     )
-    turn = next(turning_points(leads, curve), None)
+    turn = next(iter(turning_points(leads, curve)), None)
     if turn is None:
         return None
     last = curve.legs[turn.leg]
@@ -234,7 +255,7 @@ def _first_turn(
         return None
     turn = _refine_turn(leads, led, *turned[0], (0, len(nodes) - 1))
     leg = Leg(led=led, nodes=_distinct(node, *nodes[:-1], turn.node))
-    return TurnAhead(legs=(leg,), turn=turn, proved=led.provable and leg_is_proved(leg))
+    return TurnAhead(legs=(leg,), turn=turn, proved=led.provable and legs_are_proved([leg])[0])
 
 
 def _refine_turn(

@@ -30,6 +30,7 @@ __all__ = ["dead_points_of_one_loop", "roots_of_two_loops"]
 
 _INFINITE = 1e-7  # an eigenvalue this small belongs to an infinite t
 _CLEAR = 1e6  # condition, and size: beyond them it is left to paths whether one is regular, finite
+_FAR = 1e9  # size of what rounding makes of a solution at infinity
 
 
 def roots_of_two_loops(system: BilinearSystem) -> ComplexArray:
@@ -107,7 +108,7 @@ def _affine(whole: ComplexArray) -> ComplexArray:
 
 def _regular(system: PolynomialSystem, x: ComplexArray) -> ComplexArray:
     """Different solutions near x (K, n) that are clearly regular and finite."""
-    x = x[np.isfinite(x).all(axis=1)]
+    x = x[np.abs(x).max(axis=1) < _FAR]
     if not len(x):
         return x
     with np.errstate(all="ignore"):

@@ -169,64 +169,72 @@ class Majorant:
 
     def __init__(self, at: Expansion, known: Array) -> None:
         n = at.residual.shape[1]
-        self.phase, self.defect = at.phase, at.defect
-        self.turning = at.weights[:n]
+        self.defect, self.turning = at.defect, at.weights[:n]
         self.turned = known @ at.weights[n:]  # (B, G): how far the known angles turn each phase
         # terms with a variable length, split into those with an unknown and with a known length
         mine = np.flatnonzero(at.pair_length < n)
         given = np.flatnonzero(at.pair_length >= n)
-        self.free, self.free_group = at.slide[:, :, mine], at.pair_group[mine]
-        self.lengths = at.pair_length[mine]
-        self.held, self.held_group = at.slide[:, :, given], at.pair_group[given]
+        self.lengths, self.free_group = at.pair_length[mine], at.pair_group[mine]
+        self.held_group = at.pair_group[given]
         self.spread = known[:, at.pair_length[given] - n]
+        #: |A D²F| of every phase, of pairs with an unknown length, of those with a known one.
+        self.bent = at.phase
+        if len(at.pair_length):
+            self.bent = np.concatenate([at.phase, at.slide[:, :, [*mine, *given]]], axis=2)
+        self.y = at.residual
+        if known.any():
+            self.y = at.residual + self._shift(at, known)
+
+    def _shift(self, at: Expansion, known: Array) -> Array:
+        """How far the known variables move the residual, (B, n)."""
         # eq. (31)
-        by_slope = matrix_vector(at.slope, known) + 0.5 * matrix_vector(at.phase, self.turned**2)
+        square = 0.5 * self.turned**2
+        none = np.zeros((len(known), len(self.lengths)))
+        by_slope = [square, none, self.spread * self.turned[:, self.held_group]]
         # a law's phase is a second derivative, no bound of the change itself
-        loops, bent = slice(None, at.loop_phases), slice(at.loop_phases, None)
-        as_a_whole = matrix_vector(at.phase[:, :, loops], self.turned[:, loops])
-        as_a_whole += 0.5 * matrix_vector(at.phase[:, :, bent], self.turned[:, bent] ** 2)
-        as_a_whole += matrix_vector(at.lines, known)
-        if given.size:
-            by_slope += matrix_vector(self.held, self.spread * self.turned[:, self.held_group])
-            as_a_whole += matrix_vector(self.held, self.spread)
-        self.y = at.residual + np.minimum(by_slope, as_a_whole)  # eq. (31)
+        loops = at.loop_phases
+        as_a_whole = [self.turned[:, :loops], square[:, loops:], none, self.spread]
+        return np.minimum(
+            matrix_vector(at.slope, known) + matrix_vector(self.bent, np.hstack(by_slope)),
+            matrix_vector(at.lines, known) + matrix_vector(self.bent, np.hstack(as_a_whole)),
+        )
 
-    def linear(self, x: Array) -> Array:
-        """Z x, (B, n), for x (B or 1, n)."""
-        own = x @ self.turning  # how far unknowns that move by x turn each phase
-        rows = matrix_vector(self.defect, x) + matrix_vector(self.phase, own * self.turned)
-        if self.lengths.size:
-            rows += matrix_vector(self.free, x[:, self.lengths] * self.turned[:, self.free_group])
-        if self.held_group.size:
-            rows += matrix_vector(self.held, self.spread * own[:, self.held_group])
-        return rows
+    def _linear(self, x: Array, own: Array) -> Array:
+        """What Z x takes of every phase and pair; ``own`` (B, G): how far x (B, n) turns phases."""
+        found: Array = own * self.turned
+        if self.lengths.size or self.held_group.size:
+            free = x[:, self.lengths] * self.turned[:, self.free_group]
+            found = np.concatenate([found, free, self.spread * own[:, self.held_group]], axis=1)
+        return found
 
-    def quadratic(self, x: Array) -> Array:
-        """M(x, x), (B, n), for x (B or 1, n)."""
-        own = x @ self.turning
-        rows = matrix_vector(self.phase, own**2)  # eq. (30)
-        if self.lengths.size:
-            rows += matrix_vector(self.free, 2.0 * x[:, self.lengths] * own[:, self.free_group])
-        if self.held_group.size:
-            rows += matrix_vector(self.held, self.spread * own[:, self.held_group] ** 2)
-        return rows
+    def _quadratic(self, x: Array, own: Array) -> Array:
+        """What M(x, x) takes of every phase and pair."""
+        square = own * own
+        found: Array = square  # eq. (30)
+        if self.lengths.size or self.held_group.size:
+            free = 2.0 * x[:, self.lengths] * own[:, self.free_group]
+            found = np.concatenate([found, free, self.spread * square[:, self.held_group]], axis=1)
+        return found
 
-    def cubic(self, x: Array) -> Array:
-        """The growth of M(x, x) where unknown lengths have changed by x (B or 1, n), (B, n)."""
+    def _cubic(self, x: Array, own: Array) -> Array:
+        """The growth of M(x, x) where unknown lengths have changed by x (B, n), (B, n)."""
         if not self.lengths.size:
             return np.zeros_like(self.y)
-        own = x @ self.turning
+        begin = own.shape[1]
+        free = self.bent[:, :, begin : begin + len(self.lengths)]
         # eq. (30): the part that grows with ρ
-        return matrix_vector(self.free, x[:, self.lengths] * own[:, self.free_group] ** 2)
+        return matrix_vector(free, x[:, self.lengths] * own[:, self.free_group] ** 2)
 
     def bounds(self, weights: Array) -> Bounds:
         """The constants in weights (n,) or (B, n)."""
-        w = np.atleast_2d(weights)
+        w = np.broadcast_to(weights, self.y.shape)
+        own, share = w @ self.turning, PROOF_SLACK / w
+        linear = matrix_vector(self.defect, w) + matrix_vector(self.bent, self._linear(w, own))
         return Bounds(
-            y=PROOF_SLACK * self.y / w,
-            z=PROOF_SLACK * self.linear(w) / w,
-            omega=PROOF_SLACK * self.quadratic(w) / w,
-            omega_slope=PROOF_SLACK * self.cubic(w) / w,
+            y=self.y * share,
+            z=linear * share,
+            omega=matrix_vector(self.bent, self._quadratic(w, own)) * share,
+            omega_slope=self._cubic(w, own) * share,
         )
 
     def fit_weights(self, scale: Array) -> Array:
@@ -243,11 +251,13 @@ class Majorant:
         """
         largest = (self.y / scale).max(axis=1, keepdims=True)
         start: Array = np.maximum(self.y, np.maximum(LEAST * largest, TINY) * scale)
-        w = start
+        w, most, defect = start, MOST * scale, SHIFTING * self.defect
         for _ in range(FITTINGS):
-            grown = BENDING * self.quadratic(w) + SHIFTING * self.linear(w)  # eq. (32)
+            own = w @ self.turning
+            both = BENDING * self._quadratic(w, own) + SHIFTING * self._linear(w, own)
+            grown = matrix_vector(defect, w) + matrix_vector(self.bent, both)  # eq. (32)
             # where the proof fails weights would grow without end
-            w = np.maximum(start, np.minimum(grown, MOST * scale))
+            w = np.maximum(start, np.minimum(grown, most))
         return w
 
 

@@ -253,6 +253,14 @@ class Reach:
     error_bound: Array
     isolation_radius: Array
 
+    def take(self, rows: slice) -> Reach:
+        """Around some of the positions."""
+        return Reach(
+            holds=self.holds[rows],
+            error_bound=self.error_bound[rows],
+            isolation_radius=self.isolation_radius[rows],
+        )
+
 
 def reach(
     solver: BlockSolver,

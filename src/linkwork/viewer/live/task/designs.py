@@ -32,6 +32,7 @@ _MOST_SOUND, _MOST_REFUSED = 300, 200  # of the list on the page
 _ROWS = 181  # of a motion
 _CURVE = 361  # points of a coupler curve
 _CENTRE_CURVE = 240  # lines through the pole for each arc
+_INSIDE = 1e-9  # of an arc: at its very ends rounding may leave no point
 _FAR = 30.0  # sizes of the task: the centre-point curve goes to infinity
 _COGNATE = 1e-6  # relative: the same pivots, found in two ways
 _MOST_DYADS = 200
@@ -240,18 +241,22 @@ def _centre_runs(task: Task) -> Iterator[ComplexArray]:
     middle = points.mean()
     size = max(float(np.abs(points - middle).max()), abs(curve.pole - middle))
     for arc in curve.arcs:
-        share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _CENTRE_CURVE))
+        share = 0.5 - (0.5 - _INSIDE) * np.cos(np.linspace(0.0, np.pi, _CENTRE_CURVE))
         sides = curve.points(arc.start + share * (arc.stop - arc.start))
-        for run in _continuous(sides):
+        for run in _continuous(sides, size):
             yield np.where(np.abs(run - middle) < _FAR * size, run, np.nan)
 
 
-def _continuous(sides: ComplexArray) -> Iterable[ComplexArray]:
-    """Both sides (K, 2), each cut where it jumps through infinity."""
-    for side in sides.T:
-        step = np.abs(np.diff(side))
-        typical = np.nanmedian(step) if np.isfinite(step).any() else 0.0
-        yield np.where(np.append(step, 0.0) > 50.0 * typical, np.nan, side)
+def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
+    """Both sides (K, 2), which change places where their equation changes its sign, each cut where
+    it jumps through infinity.
+    """
+    one, other = sides.T
+    stay = np.abs(np.diff(one)) + np.abs(np.diff(other))
+    change = np.abs(other[1:] - one[:-1]) + np.abs(one[1:] - other[:-1])
+    changed = np.append(False, np.cumsum(change < stay) % 2 == 1)
+    for side in (np.where(changed, other, one), np.where(changed, one, other)):
+        yield np.where(np.append(np.abs(np.diff(side)), 0.0) > size, np.nan, side)
 
 
 def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:

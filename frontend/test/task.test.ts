@@ -1,0 +1,34 @@
+import { describe, expect, it } from "vitest";
+import { distance, front, resampled, roundedTo, type Place } from "../src/task/geometry";
+
+describe("a drawn curve", () => {
+  const circle = Array.from({ length: 50 }, (_, k): Place => [Math.cos(k / 8), Math.sin(k / 8)]);
+  it("is closed where it returns, and its points have equal distances", () => {
+    const found = resampled(circle, 12);
+    const gaps = found.map((place, k) => distance(place, found[(k + 1) % 12]!));
+    expect(found).toHaveLength(12);
+    expect(Math.max(...gaps) - Math.min(...gaps)).toBeLessThan(0.02);
+  });
+  it("keeps its ends where it is open", () => {
+    const found = resampled([[0, 0], [3, 0], [10, 0]], 5);
+    expect(found.map(([x]) => x)).toEqual([0, 2.5, 5, 7.5, 10]);
+  });
+  it("of one place is that place", () => {
+    expect(resampled([[1, 2], [1, 2]], 5)).toEqual([[1, 2]]);
+  });
+});
+
+describe("the front of a trade-off", () => {
+  it("has the designs that no other one beats in both numbers", () => {
+    const sizes: Place[] = [[3, 50], [1, 20], [2, 40], [2, 30], [4, 45], [5, 50], [6, 60]];
+    expect(front(sizes)).toEqual([1, 2, 0, 6]);
+  });
+});
+
+describe("numbers of a drag", () => {
+  it("have the decimals that the screen shows, and no negative zero", () => {
+    expect(roundedTo(12.3456, 0.1)).toBe(12.3);
+    expect(roundedTo(1234.6, 10)).toBe(1235);
+    expect(Object.is(roundedTo(-0.0004, 0.1), 0)).toBe(true);
+  });
+});

@@ -1,0 +1,159 @@
+"""Mechanisms from the files of other programs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from linkwork import exchange, textfile
+from linkwork.api.mechanism import Mechanism
+from linkwork.exchange.source import LARGEST, LeftOut
+from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.internal import internal
+from linkwork.foundation.paths import as_path
+from linkwork.foundation.plain_numbers import as_told
+from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
+
+__all__ = ["Imported", "imported"]
+
+
+@internal("description")
+@dataclass(frozen=True, kw_only=True)
+class Imported:
+    """A mechanism from a file of another program.
+
+    Parameters
+    ----------
+    description : Linkage
+        Points, links and parts; :meth:`save` writes them as a mechanism file.
+    format : str
+        The format of the file.
+    left_out : tuple of LeftOut
+        What was not carried over, with its places.
+    renamed : Mapping[str, str]
+        Names that could not be kept, and what they became.
+
+    Examples
+    --------
+    >>> import linkwork as lw, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "bar.json")
+    ...     _ = path.write_text(lw.example("hoeken").exported("pylinkage").text)
+    ...     found = lw.imported(path)
+    >>> print(found)
+    pylinkage JSON: 5 points, 4 links, 1 input
+    >>> found.mechanism.check().mobility_count
+    1
+    """
+
+    description: Linkage
+    format: str
+    left_out: tuple[LeftOut, ...]
+    renamed: Mapping[str, str]
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, ready to be solved.
+
+        Raises
+        ------
+        MechanismError
+            If something is missing that the file did not contain, such as an input.
+        """
+        return Mechanism(self.description)
+
+    def missing(self) -> str:
+        """Why the mechanism cannot be solved yet; empty if it can."""
+        try:
+            self.mechanism  # noqa: B018 - made for its errors
+        except MechanismError as error:
+            return "; ".join(problem.message for problem in error.problems)
+        return ""
+
+    def save(self, path: str | Path) -> None:
+        """Write a mechanism file, completely or not at all.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        textfile.save(self.description, path)
+
+    @property
+    def carried(self) -> dict[str, int]:
+        """The numbers of points, links, parts by their table, and inputs."""
+        tables = ("points", "links", *PARTS)
+        counts = {table: len(getattr(self.description, table)) for table in tables}
+        found = {what: count for what, count in counts.items() if count}
+        return found | {"inputs": len(self.description.inputs)}
+
+    def __str__(self) -> str:
+        counted = [
+            f"{count} {what.removesuffix('s') if count == 1 else what}"
+            for what, count in self.carried.items()
+        ]
+        lines = [f"{exchange.FORMATS[self.format].TITLE}: {', '.join(counted)}"]
+        lines += [f"renamed: {old} is now {new}" for old, new in self.renamed.items()]
+        return "\n".join([*lines, *(f"left out: {each}" for each in self.left_out)])
+
+
+def imported(source: str | Path, format: str | None = None) -> Imported:
+    """Read a mechanism from a file of another program, or from a link of PMKS+.
+
+    Files are data: nothing in them is executed, no other file and no network is read.
+
+    Parameters
+    ----------
+    source : str or Path
+        A file; if there is none of this name, a link of PMKS or PMKS+.
+    format : str, optional
+        ``pmks``, ``pylinkage``, ``linkage2``, ``pyslvs``, ``geogebra``, ``dxf``, ``mjcf`` or
+        ``urdf``; by default as suffix and content say.
+
+    Returns
+    -------
+    Imported
+        With the description, and what was left out.
+
+    Raises
+    ------
+    MechanismFileError
+        If the file is damaged, too large or no linkage: the reason and its place.
+    UnknownNameError
+        If there is no such format.
+
+    Examples
+    --------
+    >>> import linkwork as lw, pathlib, tempfile
+    >>> bar = "M[J[R, P[0, 0], L[ground, a]], J[R, P[3, 4], L[a]]]"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "bar.txt")
+    ...     _ = path.write_text(bar)
+    ...     found = lw.imported(path)
+    >>> found.format, found.left_out[0].what
+    ('pyslvs', 'the input: an expression does not state it')
+    """
+    # a path would make one stroke of the two in a link
+    given = source if isinstance(source, str) else str(as_path(source))
+    if format is not None and not isinstance(format, str):
+        raise InputError(f"format must be a text, got {as_told(format)}")
+    data, name = _bytes_of(given)
+    reading = exchange.read_foreign(data, name, format)
+    return Imported(
+        description=reading.linkage,
+        format=reading.format,
+        left_out=reading.left_out,
+        renamed=reading.renamed,
+    )
+
+
+def _bytes_of(given: str) -> tuple[bytes, str]:
+    """The content of a file, or a link itself."""
+    if exchange.FORMATS["pmks"].matches(given) and not os.path.exists(given):
+        return given.encode("utf-8", "replace"), "the link"
+    return textfile.bytes_of(Path(given), given, LARGEST), given

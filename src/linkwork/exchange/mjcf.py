@@ -1,0 +1,222 @@
+"""MJCF of MuJoCo: trees of bodies whose hinges are parallel, loops closed by equalities.
+
+After the XML reference of MuJoCo (mujoco.readthedocs.io/en/stable/XMLreference.html).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwork.exchange.assembly import Assembly
+from linkwork.exchange.bodies import Body, BodyJoint, Planar, Pose, quaternion, turn_about
+from linkwork.exchange.source import Source
+from linkwork.exchange.xml_tree import Element, xml_tree
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.driven_input import Input
+
+__all__ = ["SUFFIXES", "TITLE", "matches", "read"]
+
+TITLE, SUFFIXES = "MJCF (MuJoCo)", (".mjcf", ".xml")
+_DRAWN = ("geom", "camera", "light", "inertial", "site", "joint", "body")
+
+
+def matches(head: str) -> bool:
+    """Whether a text begins like this format."""
+    return re.search(r"<mujoco\b", head) is not None
+
+
+def read(source: Source) -> Assembly:
+    """Read the bodies of a world, and the equalities and actuators between them."""
+    reader = _World(source, xml_tree(source.data, source, "mujoco"))
+    return reader.planar().assembly
+
+
+@dataclass
+class _World:
+    source: Source
+    root: Element
+    bodies: list[Body] = field(default_factory=list)
+    joints: dict[str, str] = field(default_factory=dict)  # the body of each joint
+
+    def __post_init__(self) -> None:
+        compiler = self.root.one("compiler")
+        given = {} if compiler is None else compiler.attributes
+        self.radians = 1.0 if given.get("angle") == "radian" else math.pi / 180.0
+        self.sequence = given.get("eulerseq", "xyz")
+        if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
+            self.source.refuse("eulerseq must be three of x, y, z")
+        self.defaults: dict[str, dict[str, str]] = {"": {}}
+        for own in self.root.all("default"):
+            self._add_defaults(own, {})
+        for own in self.root.children:
+            if own.tag == "include":
+                self.source.leave_out(f"line {own.line}", "include: other files are not read")
+        world = self.root.one("worldbody")
+        if world is None:
+            self.source.refuse("has no <worldbody>", self.root.line)
+        ground = Body(
+            name=GROUND, parent=GROUND, pose=Pose(np.eye(3), np.zeros(3)), line=world.line
+        )
+        self.bodies.append(ground)
+        self._fill(ground, world, "")
+
+    def _add_defaults(self, own: Element, above: dict[str, str]) -> None:
+        joint = own.one("joint")
+        mine = {**above, **({} if joint is None else joint.attributes)}
+        name = own.get("class", "main")
+        self.defaults[name] = mine
+        # the first class applies to elements without one
+        if name == "main":
+            self.defaults[""] = mine
+        for inner in own.all("default"):
+            self._add_defaults(inner, mine)
+
+    def _numbers(self, own: Element, key: str, count: int, default: str) -> list[float]:
+        return self.source.numbers(own.get(key, default), count, key, own.line)
+
+    def _turn(self, own: Element) -> Array:
+        if own.get("quat"):
+            w, x, y, z = self._numbers(own, "quat", 4, "")
+            return quaternion(w, x, y, z)
+        if own.get("axisangle"):
+            *axis, angle = self._numbers(own, "axisangle", 4, "")
+            return turn_about(axis, angle * self.radians)
+        if own.get("euler"):
+            turn = np.eye(3)
+            for letter, angle in zip(
+                self.sequence, self._numbers(own, "euler", 3, ""), strict=True
+            ):
+                step = turn_about(np.eye(3)["xyz".index(letter.lower())], angle * self.radians)
+                # small letters turn about moving axes
+                turn = turn @ step if letter.islower() else step @ turn
+            return turn
+        for key in ("xyaxes", "zaxis"):
+            if own.get(key):
+                self.source.refuse(f"{key} is not read: write quat, euler or axisangle", own.line)
+        return np.eye(3)
+
+    def _fill(self, body: Body, own: Element, inherited: str) -> None:
+        """The sites, the joint and the children of a body."""
+        inherited = own.get("childclass", inherited)
+        for child in own.children:
+            place = f"line {child.line}"
+            if child.tag == "site":
+                name = child.get("name") or f"{body.name}_site{len(body.sites) + 1}"
+                body.sites[name] = body.pose.place(self._numbers(child, "pos", 3, "0 0 0"))
+            elif child.tag in ("joint", "freejoint"):
+                self._add_joint(body, child, inherited)
+            elif child.tag == "body":
+                self._add_body(body, child, inherited)
+            elif child.tag == "inertial":
+                self.source.leave_out(place, "mass of a body")
+            elif child.tag == "geom":
+                self.source.leave_out(place, "shape of a body")
+            else:
+                self.source.leave_out(place, f"element <{child.tag[:20]}>")
+
+    def _add_body(self, parent: Body, own: Element, inherited: str) -> None:
+        name = own.get("name") or f"body{len(self.bodies)}"
+        if any(name == other.name for other in self.bodies):
+            self.source.refuse(f'two bodies are called "{name[:40]}"', own.line)
+        if len(self.bodies) > 400:
+            self.source.refuse("has more than 400 bodies", own.line)
+        pose = parent.pose.frame(self._numbers(own, "pos", 3, "0 0 0"), self._turn(own))
+        body = Body(name=name, parent=parent.name, pose=pose, line=own.line)
+        self.bodies.append(body)
+        self._fill(body, own, inherited)
+
+    def _add_joint(self, body: Body, own: Element, inherited: str) -> None:
+        # a class of the joint itself comes before that of its body
+        defaults = self.defaults.get(own.get("class", inherited), self.defaults[""])
+        own = Element(own.tag, {**defaults, **own.attributes}, own.line)
+        name = own.get("name") or f"joint{len(self.joints) + 1}"
+        kind = "free" if own.tag == "freejoint" else own.get("type", "hinge")
+        if kind not in ("hinge", "slide") or body.name == GROUND:
+            self.source.refuse(f"a joint of type {kind[:20]} is not planar", own.line)
+        if body.joint is not None:
+            self.source.refuse(
+                f'body "{body.name[:40]}" has two joints: only one is read', own.line
+            )
+        if name in self.joints:
+            self.source.refuse(f'two joints are called "{name[:40]}"', own.line)
+        axis = body.pose.turn @ np.array(self._numbers(own, "axis", 3, "0 0 1"))
+        at = body.pose.place(self._numbers(own, "pos", 3, "0 0 0"))
+        body.joint = BodyJoint(name=name, kind=kind, at=at, axis=axis)
+        self.joints[name] = body.name
+        for key, what in (("range", "limits"), ("damping", "damping"), ("stiffness", "stiffness")):
+            if own.get(key):
+                self.source.leave_out(f"line {own.line}", f"{what} of a joint")
+
+    def planar(self) -> Planar:
+        """The links, with loops and inputs."""
+        # a file may have several sections of a kind
+        equalities = [own for each in self.root.all("equality") for own in each.children]
+        same: dict[str, str] = {}
+        names = {body.name for body in self.bodies}
+        for own in equalities:
+            # welds first: they decide which bodies are links
+            if own.tag == "weld":
+                one, two = (own.get(key) or GROUND for key in ("body1", "body2"))
+                if not {one, two} <= names:
+                    self.source.refuse("weld needs body1 and body2", own.line)
+                self._weld(same, one, two)
+        planar = Planar(self.source, self.root.get("model"), self.bodies, same)
+        for own in equalities:
+            if own.tag == "connect":
+                self._connect(planar, own, names)
+            elif own.tag != "weld":
+                self.source.leave_out(f"line {own.line}", f"coupling of joints <{own.tag[:20]}>")
+        planar.add_sites()
+        self._drive(planar)
+        return planar
+
+    def _weld(self, same: dict[str, str], one: str, two: str) -> None:
+        """Make two bodies one: ground stays, otherwise the first."""
+        # chains of welds are no longer than the bodies
+        for _ in self.bodies:
+            one, two = same.get(one, one), same.get(two, two)
+        if one != two:
+            kept, lost = (two, one) if two == GROUND else (one, two)
+            same[lost] = kept
+
+    def _connect(self, planar: Planar, own: Element, names: set[str]) -> None:
+        if own.get("site1"):
+            sites = {n: (body.name, at) for body in self.bodies for n, at in body.sites.items()}
+            ends = [sites.get(own.get(key)) for key in ("site1", "site2")]
+            if ends[0] is None or ends[1] is None:
+                self.source.refuse("connect refers to a site that does not exist", own.line)
+            one, two, at = ends[0][0], ends[1][0], ends[0][1]
+            if abs(planar.at(at) - planar.at(ends[1][1])) > 1e-6 * planar.size:
+                self.source.leave_out(f"line {own.line}", "gap between the sites of a connect")
+        else:
+            one, two = own.get("body1"), own.get("body2") or GROUND
+            if not {one, two} <= names:
+                self.source.refuse("connect needs body1 and body2, or two sites", own.line)
+            body = next(body for body in self.bodies if body.name == one)
+            at = body.pose.place(self._numbers(own, "anchor", 3, "0 0 0"))
+        if planar.link(one) == planar.link(two):
+            self.source.leave_out(f"line {own.line}", "connect inside one link")
+        else:
+            planar.pin(own.get("name") or f"{one}_{two}", at, one, two)
+
+    def _drive(self, planar: Planar) -> None:
+        for own in (own for each in self.root.all("actuator") for own in each.children):
+            body = self.joints.get(own.get("joint"))
+            joint = next((b.joint for b in self.bodies if b.name == body), None)
+            if body is None or joint is None:
+                self.source.leave_out(f"line {own.line}", "actuator that drives no joint")
+            elif joint.kind == "slide":
+                self.source.leave_out(f"line {own.line}", "the input: a slide without a range")
+            else:
+                link, on = planar.link(body), planar.link(planar.bodies[body].parent)
+                # a body welded to the world drives the other side
+                link, on = (on, link) if link == GROUND else (link, on)
+                against = None if on == GROUND else on
+                planar.assembly.inputs.append(Input(link=link, relative_to=against))
+        if not planar.assembly.inputs:
+            self.source.leave_out("the file", "the input: no actuator drives a hinge")
