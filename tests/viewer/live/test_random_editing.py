@@ -11,9 +11,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 import linkwork as lw
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live import events as tell, requests as ask
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile
 from linkwork.viewer.live.messages import encoded
+from linkwork.viewer.live.task_requests import OpenTask
 from linkwork.viewer.live.workbench import Workbench
 from tests.viewer.live.conftest import FOUR_BAR
 
@@ -26,7 +29,7 @@ NUMBERS = st.sampled_from(
 )
 SIMPLE = {str: NAMES, float: NUMBERS, bool: st.booleans(), int: st.integers(-1, 60)}
 #: Those that may ask for long tables, write, or open another file are tried elsewhere.
-_SLOW = (ask.Save, ask.SetText, ask.SetInput, ask.OpenExample)
+_SLOW = (ask.Save, ask.SetText, ask.SetInput, ask.OpenExample, OpenTask)
 QUICK = [r for r in ask.REQUESTS if r not in _SLOW]
 
 
@@ -64,7 +67,7 @@ def requests(kinds: list[type]) -> st.SearchStrategy[Any]:
 def test_any_requests_are_answered_and_the_file_is_left_alone(
     path: Path, asked: list[ask.Request]
 ) -> None:
-    bench = Workbench(MechanismFile(path), lw.loads)
+    bench = Bench(MechanismFile(path), lw.loads, solve_task)
     for request in asked:
         for event in bench.handle(request):
             assert encoded(event)
