@@ -51,7 +51,7 @@ _TURNS = {"input": "turns fully"}
 _ZERO = (0.0, 0.0)
 _AT_ORIGIN = {"A0.x": _ZERO, "A0.y": _ZERO, "B0.y": _ZERO, "input": _ZERO}
 CURVES = (
-    Curve(name="line of 6, free", points=printed.LINE, best=1e-20, starts=60,
+    Curve(name="line of 6, free", points=printed.LINE, best=1e-20, starts=200,
           wanted={**_TURNS, "lengths": {"least": 5, "most": 60}}),
     Curve(name="5 timed", points=printed.TIMED_FIVE, best=7.41575e-7, step=15.0, first=30.0,
           wanted=_TURNS, bounds=_AT_ORIGIN),

@@ -49,6 +49,31 @@ def test_timed_points_of_a_changed_mechanism_give_its_lengths_back() -> None:
     assert bounded.rms > best.rms
 
 
+def test_a_mechanism_that_cannot_reach_all_points_yet_is_improved_until_it_does() -> None:
+    """The crank of the start does not turn fully: a third of its positions do not exist."""
+    points = {"A0": (0, 0), "A": (20, 5), "B": (80, 60), "B0": (100, 0), "P": (60, 70)}
+    lengths = {"A0 A": 25, "A B": 80, "B0 B": 60, "A P": 60, "B P": 30}
+    bar = lw.linkage(
+        points=points, lengths=lengths, trace=["P"],
+        links={"ground": ["A0", "B0"], "crank": ["A0", "A"], "coupler": ["A", "B", "P"],
+               "rocker": ["B0", "B"]},
+        inputs=lw.Input(link="crank", start=0, stop=350, step=10),
+    )  # fmt: skip
+    motion = bar.sweep()
+    path = motion.trace("P")
+    goal = {
+        "point": "P",
+        "points": np.stack([path.real, path.imag], axis=1),
+        "inputs": motion.inputs["crank"],
+    }
+    start = bar.with_dimensions({"A0 A": 60})
+    assert not start.sweep(certify=False).found.all()
+    best = start.improve(goal, vary=list(lengths), starts=1)[0]
+    assert best.numbers == pytest.approx(lengths, abs=1e-9)
+    assert best.sound
+    assert repr(best) == f"<ImprovedDesign: total {best.total:.4g}, all rows are proved>"
+
+
 def test_goals_without_a_meaning_are_refused() -> None:
     bar = lw.example("four-bar")
     with pytest.raises(MechanismError, match="has no target"):

@@ -59,3 +59,6 @@ class ImprovedDesign:
     inputs: tuple[float, ...] = ()
     misses: tuple[float, ...] = ()
     motion: Motion | None = None
+
+    def __repr__(self) -> str:
+        return f"<ImprovedDesign: total {self.total:.4g}, {self.message}>"

@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.lane_rows import LaneRows, RatedRows, WrittenDesigns
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
+from linkwork.results.quantity import Kind
 
 __all__ = ["LanePositions", "SolvedLanes"]
 
@@ -130,7 +132,8 @@ class SolvedLanes:
         self.lead, self.rate = leading_input(model.rows)
         self.rows_at = t
         rows, n = len(t), len(model.equations.unknowns)
-        # row by row: a row that does not close keeps the last design in which it did
+        # row by row: a row that does not close keeps the last design in which it did; one that
+        # has never closed keeps its nearest row
         self.x = np.broadcast_to(x, (lanes, rows, len(x))).copy()
         self.t = np.broadcast_to(t, (lanes, rows)).copy()
         self.q = np.broadcast_to(q, (lanes, rows, n)).copy()
@@ -142,6 +145,12 @@ class SolvedLanes:
         self._sign = first.sign
         self.by_x[:] = first.by_x.reshape(1, rows, n, -1)
         self.by_t[:] = first.by_t.reshape(1, rows, n)
+        self._known = np.broadcast_to(first.found, (lanes, rows)).copy()
+        if first.found.any():
+            near = self._nearest(first.found)
+            self._sign = first.sign[:, near]  # rows that do not close are on the same branch
+            for lane in range(lanes):
+                self._lend(lane, near)
 
     def inputs(self, t: Array) -> Array:
         """All inputs (…, p) for values of the leading one."""
@@ -207,6 +216,32 @@ class SolvedLanes:
         self.q[to] = found.rows.solution[:, :n].reshape(shape)[which]
         self.by_x[to] = found.by_x.reshape(*shape, -1)[which]
         self.by_t[to] = found.by_t.reshape(shape)[which]
+        self._known[to] = True
+        closed = found.found.reshape(found.shape)
+        for k in np.flatnonzero(better & closed.any(axis=1)):
+            if not self._known[lanes[k]].all():
+                self._lend(lanes[k], self._nearest(closed[k]))
+
+    def _away(self, rows: IndexArray) -> Array:
+        """The way of the leading input from rows (N,) to their own, a half turn at most."""
+        away = self.rows_at - self.rows_at[rows]
+        if self.model.equations.inputs[self.lead].kind == Kind.ANGLE.value:
+            away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
+        return away
+
+    def _nearest(self, closed: BoolArray) -> IndexArray:
+        """The nearest of the closed rows for each row, (N,)."""
+        rows = np.flatnonzero(closed)
+        away = [np.abs(self._away(np.full(len(closed), row))) for row in rows]
+        return np.asarray(rows[np.argmin(away, axis=0)])
+
+    def _lend(self, lane: int, near: IndexArray) -> None:
+        """Begin rows of a lane that have never closed at their nearest rows."""
+        to = np.flatnonzero(~self._known[lane])
+        of = near[to]
+        self.t[lane, to] = self.rows_at[to] - self._away(near)[to]
+        for kept in (self.x, self.q, self.by_x, self.by_t):
+            kept[lane, to] = kept[lane, of]
 
 
 def _solve(matrix: Array, right: Array) -> Array:
