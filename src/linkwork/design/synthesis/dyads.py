@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -27,10 +28,14 @@ _PART = 1000  # tasks solved together: their matrices fit into the cache
 #: A pivot farther away than this many sizes of the task is a slider: rounding of the poses alone
 #: moves it that far.
 _FAR = 1e9
-#: Fixed rotations of the plane of conics, so that no two of the four points lie behind each other.
-_VIEWS = tuple(
-    np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0] for seed in range(3)
-)
+_VIEWS = 3
+
+
+@cache
+def _view(seed: int) -> Array:
+    """A fixed rotation of the plane of conics: no two of the four points lie behind each other."""
+    rotation: Array = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return rotation
 
 
 #: The joints of a dyad from ground to body, revolute or prismatic, by their numbers. A pair of
@@ -166,8 +171,8 @@ def _solve_part(points: ComplexArray, angles: Array, further: Array) -> Dyads:
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = right[:, :FIVE].transpose(0, 2, 1) / sizes[:, None] @ left.transpose(0, 2, 1)
     basis = _Basis(rows=rows, null=null, inverse=np.nan_to_num(inverse))
-    proofs = _prove(basis, _VIEWS[0])
-    for view in _VIEWS[1:]:
+    proofs = _prove(basis, _view(0))
+    for view in map(_view, range(1, _VIEWS)):
         again = np.flatnonzero(~proofs.complete & ~family)
         if not again.size:
             break
