@@ -52,7 +52,8 @@ function withMinus(text: string): string {
 /** Round numbers between two values, approximately as many as requested. */
 export function ticks(low: number, high: number, about: number): number[] {
   const rough = (high - low) / Math.max(1, about);
-  if (!(rough > 0)) return [low];
+  // steps of rounding errors would never end
+  if (!(rough > 1e-12 * Math.max(Math.abs(low), Math.abs(high)))) return [low];
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((one) => one >= 0.6 * rough)!;
   const found: number[] = [];

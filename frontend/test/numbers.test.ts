@@ -35,6 +35,7 @@ describe("numbers", () => {
 
   it("ticks at round numbers", () => {
     expect(ticks(-45, 45, 4)).toEqual([-40, -20, 0, 20, 40]);
+    expect(ticks(219.99993838641867, 219.9999383864187, 4)).toEqual([219.99993838641867]);
     expect(degreeTicks(0, 360, 6)).toEqual([0, 60, 120, 180, 240, 300, 360]);
     expect(degreeTicks(10, 11, 4).length).toBeGreaterThan(2);
   });

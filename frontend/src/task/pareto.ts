@@ -29,7 +29,7 @@ export class Pareto {
     const logs = high > WIDE * low;
     const along = (size: number): number => (logs ? Math.log10(size) : size);
     const [from, to] = [along(low), along(high)];
-    const span = to - from || Math.max(1e-9, Math.abs(from) * 0.1);
+    const span = to - from > 1e-9 * Math.abs(to) ? to - from : Math.max(1e-9, Math.abs(from) * 0.1);
     const x = (size: number): number => LEFT + 8 + ((along(size) - from) / span) * (WIDTH - LEFT - RIGHT - 16);
     const right = task.angle_unit === "deg" ? 90 : Math.PI / 2;
     const top = Math.min(right, 1.08 * Math.max(...designs.map(({ transmission }) => transmission!)));
