@@ -22,6 +22,7 @@ from linkwork.export.plates.motion_boxes import BodyPoses, boxes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.placing import assembled, box, in_rows
 from linkwork.export.plates.plate_file import plates_of
+from linkwork.export.plates.stack import stack_of
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.figures import Disc
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
@@ -133,7 +134,7 @@ def test_the_search_finds_an_order_exactly_where_one_exists() -> None:
         parts = [*range(1, plates), *(-1 - k for k in range(len(pins)))]
         pairs = [
             (a, b) for a, b in itertools.combinations(parts, 2)
-            if (a >= 0 or a < 0) and not (b < 0 <= a and a in pins[-1 - b])
+            if not (b < 0 <= a and a in pins[-1 - b])
         ]  # fmt: skip
         conflicts = [pair for pair in pairs if chance.random() < 0.7]
         top = plates - 1 if plates > 2 and chance.random() < 0.5 else None
@@ -167,6 +168,23 @@ def test_a_bridge_holds_pins_that_cranks_would_run_into() -> None:
     assert sum(span == (0, stack.layers - 1) for span in spans.values()) == 4
     assert stack.proved
     assert not overlaps(mechanism, stack, motion)
+
+
+def test_columns_that_are_hit_between_the_rows_move_outwards() -> None:
+    mechanism = read_example("drag-link")
+    motion = mechanism.sweep(start=254.4, stop=334.4, step=80)
+    options = lw.PlateOptions(gap=0.0, width=20.0)
+    stack = stack_of(mechanism.model, motion, options)
+    assert sum(pin.name.startswith("column") for pin in stack.pins) == 4
+    assert stack.proved
+
+
+def test_a_search_with_bridges_is_given_up_after_a_number_of_assignments(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("linkwork.export.plates.stack._MOST_WITH_BRIDGES", 1)
+    with pytest.raises(InputError, match="no order of layers was found .* the search was given up"):
+        made(read_example("drag-link"))
 
 
 def test_an_order_that_does_not_exist_is_refused_with_the_parts_in_the_way() -> None:

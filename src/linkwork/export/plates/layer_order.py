@@ -16,10 +16,14 @@ Conflict = tuple[int, int]
 
 @dataclass(frozen=True, kw_only=True)
 class LayerOrder:
-    """``layers`` by plate; ``None`` if there is no order, or, not ``complete``, none was found."""
+    """``layers`` by plate; ``None`` if there is no order, or, not ``complete``, none was found.
+
+    ``tried``: the number of assignments that took.
+    """
 
     layers: tuple[int, ...] | None
     complete: bool = True
+    tried: int = 0
 
 
 def find_layers(
@@ -51,13 +55,15 @@ def find_layers(
     -----
     More layers than plates are never needed: a layer without a plate can be left out.
     """
-    known, complete = tuple(conflicts), True
+    known, complete, tried = tuple(conflicts), True, 0
     for count in range(2, plates + 1):
         search = _Search(plates, pins, known, together, top, count, most)
-        if search.place(0):
-            return LayerOrder(layers=tuple(search.layer))
+        found = search.place(0)
+        tried += most - search.left
+        if found:
+            return LayerOrder(layers=tuple(search.layer), tried=tried)
         complete = complete and search.left > 0
-    return LayerOrder(layers=None, complete=complete)
+    return LayerOrder(layers=None, complete=complete, tried=tried)
 
 
 def obstacles(

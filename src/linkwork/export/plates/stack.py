@@ -25,6 +25,8 @@ from linkwork.results.motion import Motion
 __all__ = ["stack_of"]
 
 _SAMPLED = 0.3  # finished fraction once the rows are compared
+_MOST_WITH_BRIDGES = 500_000  # assignments of layers tried, with all choices of pins together
+_OUTWARDS = 1.25  # of their distance from the middle: columns hit between the rows, once more
 
 
 def stack_of(
@@ -70,7 +72,10 @@ def stack_of(
         )  # fmt: skip
         if not proof.hit:
             break
-        conflicts |= proof.hit
+        of_columns = {pair for pair in proof.hit if -1 - min(pair) >= len(made.pins)}
+        if of_columns:
+            corners = tuple(_OUTWARDS * z + (1.0 - _OUTWARDS) * np.mean(corners) for z in corners)
+        conflicts |= proof.hit - of_columns
     return PlateStack(
         mechanism=linkage.name,
         plates=tuple(layered.plates),
@@ -131,15 +136,18 @@ def _layers(
     found, ordered = _order(collisions, conflicts), sorted(conflicts)
     if found.layers is not None:
         return collisions, found.layers
-    complete = found.complete
+    complete, left = found.complete, _MOST_WITH_BRIDGES
     for plates, pins in bridged(made, corners):
+        if left <= 0:
+            complete = False
+            break
         with_bridge = Collisions(plates, pins, made.meshes, collisions.spacer)
         found = _order(with_bridge, conflicts, top=len(plates) - 1)
         if found.layers is not None:
             for plate in (plates[0], plates[-1]):
                 check_webs(plate, made.sizes)
             return with_bridge, found.layers
-        complete = complete and found.complete
+        complete, left = complete and found.complete, left - found.tried
     if not complete:
         raise InputError(
             f"no order of layers was found for {len(made.plates)} plates: the search was given "
