@@ -183,7 +183,7 @@ def test_a_search_with_bridges_is_given_up_after_a_number_of_assignments(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("linkwork.export.plates.stack._MOST_WITH_BRIDGES", 1)
-    with pytest.raises(InputError, match="no order of layers was found .* the search was given up"):
+    with pytest.raises(InputError, match=r"no order of layers was found .* search was given up"):
         made(read_example("drag-link"))
 
 

@@ -74,7 +74,8 @@ def stack_of(
             break
         of_columns = {pair for pair in proof.hit if -1 - min(pair) >= len(made.pins)}
         if of_columns:
-            corners = tuple(_OUTWARDS * z + (1.0 - _OUTWARDS) * np.mean(corners) for z in corners)
+            middle = sum(corners) / len(corners)
+            corners = tuple(middle + _OUTWARDS * (z - middle) for z in corners)
         conflicts |= proof.hit - of_columns
     return PlateStack(
         mechanism=linkage.name,
