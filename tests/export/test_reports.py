@@ -7,6 +7,7 @@ import sys
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import docx
 import numpy as np
@@ -49,6 +50,10 @@ def _found(name: str, *sections: str) -> Findings:
 
 def _document(name: str, *sections: str) -> Document:
     return document_of(_found(name, *sections), Template(sections=sections))
+
+
+def _of(mechanism: Any, template: Template) -> Document:
+    return document_of(mechanism.findings(template, None, None, lambda part: None), template)
 
 
 def _section(document: Document, title: str) -> list[Block]:
@@ -183,6 +188,35 @@ def test_a_distance_without_rows_is_refused() -> None:
         document_of(_found("four-bar", "motion"), template)
 
 
+def test_a_motion_of_one_row_has_a_table_of_one_row() -> None:
+    bar = read_example("four-bar").changed(inputs=[lw.Input(link="crank", start=60, stop=60)])
+    crank, *_ = _tables(_of(bar, Template(sections=("motion",))))["Motion"].columns
+    assert _numbers(crank) == [60]
+
+
+def test_missing_and_infinite_values_have_no_range() -> None:
+    lost = {"none": "sqrt(-1 - cos(crank)^2)", "poles": "1/sin(crank)"}
+    template = Template(sections=("motion", "plots"), quantities=("rocker", *lost))
+    document = _of(coarse(read_example("four-bar"), 12).changed(outputs=lost), template)
+    _, low, *_ = _tables(document)["Ranges over all rows of the motion"].columns
+    assert low.cells[1] == "-"
+    assert float(low.cells[0]) > 0
+
+
+def test_a_crank_alone_has_no_table_and_no_plots() -> None:
+    crank = lw.linkage(
+        points={"O": (0, 0), "A": (40, 0)},
+        links={"ground": ["O"], "crank": ["O", "A"]},
+        inputs=[lw.Input(link="crank", step=30)],
+    )
+    document = _of(crank, Template(sections=("motion", "plots", "tolerances")))
+    assert _tables(document) == {}
+    assert _facts(document, "Motion")["found"] == "13"
+    reasons = _facts(document, "Sections left out")
+    assert reasons["Plots"] == "the mechanism has no unknown, output or traced point"
+    assert reasons["Tolerances"] == "the mechanism has no unknown and no output"
+
+
 def test_limits_and_missing_positions_are_noted_in_the_table() -> None:
     motion = _found(_DEAD, "motion").motion
     assert motion is not None
@@ -281,6 +315,16 @@ def test_tolerances_are_those_of_the_results() -> None:
     assert contribution.columns[0].cells == [share.name]
     sensitivity = contribution.columns[2].cells[0].partition(" ")[0]
     assert float(sensitivity) == pytest.approx(share.sensitivity, rel=1e-5)  # six digits
+
+
+def test_an_unknown_quantity_of_the_template_is_refused() -> None:
+    bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
+    for template in (
+        Template(sections=("motion",), quantities=("rokcer",)),
+        Template(sections=("tolerances",), tolerances_of=("rokcer",)),
+    ):
+        with pytest.raises(lw.UnknownNameError, match=r'no "rokcer" \(nearest: rocker'):
+            _of(bar, template)
 
 
 def test_the_file_is_shown_as_it_is_written() -> None:
