@@ -26,6 +26,7 @@ from linkwork.export.report.document import (
     Figure,
     Listing,
     Paragraph,
+    Section,
     Table,
     printed,
     split_columns,
@@ -327,6 +328,12 @@ def test_an_unknown_quantity_of_the_template_is_refused() -> None:
             _of(bar, template)
 
 
+def test_purpose_and_source_are_shown_as_they_are_written() -> None:
+    source = "doi 10.1115/1.2345678901, p. 3 -5: x^2"
+    bar = coarse(read_example("four-bar"), 2).changed(source=source)
+    assert _facts(_of(bar, Template(sections=("summary",))), "Summary")["source"] == source
+
+
 def test_the_file_is_shown_as_it_is_written() -> None:
     text = "# mine\n" + example_text("four-bar")
     template = Template(sections=("file",))
@@ -392,6 +399,15 @@ def test_numbers_have_powers_of_ten_and_their_points_below_each_other() -> None:
     assert plain == ["1.25", "12\u2008\u2007\u2007"]
 
 
+def test_numbers_in_sentences_have_seven_digits_and_powers_of_ten() -> None:
+    text = "x^2 and x^20 at -150.123456789 deg, 12345678.5 mm, 1.5e-07, rows 3-5"
+    section = Section(title="", blocks=(Paragraph(text=text),))
+    (shown,) = Document.numbered("", (), [section]).sections[0].blocks
+    assert shown == Paragraph(
+        text="x² and x^20 at −150.1235 deg, 1.234568·10⁷ mm, 1.5·10⁻⁷, rows 3-5"
+    )
+
+
 # Templates
 
 
@@ -432,6 +448,16 @@ def test_unknown_templates_formats_and_packages_are_refused(
         with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):
             bar.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "short.toml")
         assert not (tmp_path / f"x.{suffix}").exists()
+
+
+def test_places_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "short.toml").write_text('sections = ["drawing"]')
+    (tmp_path / "bar-pictures").write_text("a file, no folder")
+    bar = coarse(read_example("four-bar"), 2)
+    for name, shown in (("bar.md", "bar-pictures"), ("no/bar.md", "no/bar-pictures")):
+        with pytest.raises(lw.InputError, match=rf'cannot write ".*/{shown}"'):
+            bar.to_report(tmp_path / name, template=tmp_path / "short.toml")
+        assert not (tmp_path / name).exists()
 
 
 def test_the_command_writes_a_report(tmp_path: Path) -> None:

@@ -91,11 +91,7 @@ class ReportedMechanism(ExportedMechanism):
         written = export.report_of(
             found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part)
         )
-        for name, picture in written.pictures.items():
-            place = target.parent / name
-            place.parent.mkdir(exist_ok=True)
-            textfile.save_bytes(picture, place)
-        textfile.save_bytes(written.content, target)
+        written.save(target)
 
     def findings(
         self,

@@ -21,8 +21,6 @@ from linkwork.results.motion import Motion
 
 __all__ = ["answers", "failure_line", "motion_lines", "range_lines"]
 
-_MOST_RUNS = 4  # ranges of failed rows that are listed
-
 
 def motion_lines(
     motion: Motion, measure: str, columns: Sequence[str] = (), numbers: Sequence[str] = ()

@@ -59,12 +59,13 @@ def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
 def summary(found: Findings, template: Template) -> Iterator[Block]:
     """What the mechanism is, and how the file was read."""
     description = found.model.description
-    told = [("purpose", description.purpose), ("source", description.source)]
+    given = {"purpose": description.purpose, "source": description.source}
     units = f"lengths in {description.length}, angles in {description.angle.value}"
-    pairs = [*(p for p in told if p[1]), *check_fields(found.check), ("units", units)]
+    pairs = [(label, text) for label, text in given.items() if text]
+    pairs += [*check_fields(found.check), ("units", units)]
     if not found.position.status.ok and found.position.failure is not None:
         pairs += found.position.failure.sentences()
-    yield Facts(pairs=tuple(pairs))
+    yield Facts(pairs=tuple(pairs), quoted=frozenset(given))
 
 
 def drawing(found: Findings, template: Template) -> Iterator[Block]:

@@ -47,7 +47,7 @@ def _where(rows: BoolArray) -> str:
 
 
 def _stall(stall: Stall) -> str:
-    """Stalls, how far virtual work and free bodies agree, and what is wrong with joints."""
+    """Where friction stops the mechanism, and whether this is proved."""
     moves, locked = stall.bracket
     proof = (
         f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"
