@@ -291,12 +291,14 @@ def test_lists_are_those_of_the_results() -> None:
 
 def test_the_paragraph_on_proofs_counts_the_rows() -> None:
     text = _proof("rapier-drive")
-    assert text.startswith("Of 13 rows, 13 have a position. All of them are proved")
+    assert text.startswith(
+        "Rows with a position: 13 of 13. Rows with a complete proof: 13. In each"
+    )
     assert "Not proved are rates and plots" in text
 
 
 def test_rows_without_a_proof_are_counted_with_their_reason() -> None:
-    assert "None of them is proved by itself. 13 rows: proved for the mech" in _proof("dixon-one")
+    assert "complete proof: 0. Rows without it: 13; proved for the mech" in _proof("dixon-one")
     assert "none: plain equations have no known bound" in _proof("newton-convergence")
     assert _proof("newton-extremum").startswith("No position was found")
 
@@ -342,10 +344,10 @@ def test_the_file_is_shown_as_it_is_written() -> None:
 
 
 def test_sections_without_content_are_named_with_the_reason() -> None:
-    told = _facts(_document("four-bar", "paths", "forces", "tolerances"), "Sections left out")
-    assert told["Paths of points"] == "the file traces no point"
-    assert told["Forces"].startswith("nothing loads Four-bar linkage, open")
-    assert told["Tolerances"].startswith("nothing deviates")
+    reasons = _facts(_document("four-bar", "paths", "forces", "tolerances"), "Sections left out")
+    assert reasons["Paths of points"] == "the file traces no point"
+    assert reasons["Forces"].startswith("nothing loads Four-bar linkage, open")
+    assert reasons["Tolerances"].startswith("nothing deviates")
 
 
 def test_a_mechanism_without_input_has_its_position() -> None:
@@ -384,7 +386,7 @@ def test_equations_tables_and_figures_are_numbered() -> None:
 def test_wide_tables_are_split_and_repeat_their_first_column() -> None:
     columns = [Column(header=f"column {k}", cells=["1" * 16]) for k in range(9)]
     parts = list(split_columns(columns))
-    # three of 19 characters beside the first, instead of four and one
+    # three of 19 characters after the first, instead of four and one
     assert [len(part) for part in parts] == [4, 4, 3]
     assert {part[0].header for part in parts} == {"column 0"}
     assert [c.header for part in parts for c in part[1:]] == [f"column {k}" for k in range(1, 9)]

@@ -177,12 +177,12 @@ def equations(found: Findings, template: Template) -> Iterator[Block]:
     sheet = EquationSheet(found.model.equations)
     own = sheet.equations
     kinds = [("unknowns", own.unknowns), ("inputs", own.inputs)]
-    told = [
-        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in listed))
-        for name, listed in kinds
-        if listed
+    listed = [
+        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in variables))
+        for name, variables in kinds
+        if variables
     ]
-    yield Facts(pairs=tuple(told))
+    yield Facts(pairs=tuple(listed))
     if not own.labels:
         yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
     mathml, latex = MathML(), Latex()

@@ -31,7 +31,6 @@ from linkwork.results.listing.motion_listing import (
     range_columns,
     range_text,
     status_fields,
-    status_label,
 )
 from linkwork.results.listing.number_text import NOTHING, fixed, lengths, short
 from linkwork.results.listing.position_listing import inputs_text
@@ -220,7 +219,7 @@ def _inputs(swept: Motion, rows: CountArray) -> Iterator[Column]:
 def _notes(swept: Motion, rows: CountArray) -> Iterator[Column]:
     """Limits and missing positions, if there are any."""
     cells = [
-        swept.limit[row] or ("" if swept.status[row].ok else status_label(swept.status[row]))
+        swept.limit[row] or ("" if swept.status[row].ok else swept.status[row].label)
         for row in rows
     ]
     if any(cells):
