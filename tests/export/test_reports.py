@@ -31,7 +31,7 @@ from linkwork.export.report.document import (
     printed,
     split_columns,
 )
-from linkwork.export.report.report import document_of
+from linkwork.export.report.report import WrittenReport, document_of, report_of
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.results.listing.column import Column
 from tests.export.coarse import coarse
@@ -125,6 +125,16 @@ def test_a_page_is_complete_in_itself(written: dict[str, Path]) -> None:
     assert all(link.startswith("#") for link in page.links)
     assert len(set(page.identifiers)) == len(page.identifiers)
     assert "A. Student" in text
+
+
+def test_charts_of_a_page_do_not_share_identifiers() -> None:
+    template = Template(sections=("plots",))
+    page = _Page()
+    page.feed(report_of(_found("four-bar", "plots"), template, Path("x.html")).content.decode())
+    assert page.counts["figure"] == 3
+    assert len(page.identifiers) > 100
+    assert len(set(page.identifiers)) == len(page.identifiers)
+    assert {link[1:] for link in page.links} <= set(page.identifiers)
 
 
 def test_a_word_document_has_its_tables_pictures_and_equations(written: dict[str, Path]) -> None:
@@ -367,9 +377,9 @@ def test_a_mechanism_without_input_has_its_position() -> None:
 def test_a_mechanism_that_does_not_close_says_why() -> None:
     bar = coarse(read_example("four-bar"), 2).with_dimensions({"A B": 30, "O4 B": 20})
     template = Template(sections=("summary", "drawing", "plots"))
-    document = document_of(bar.findings(template, None, None, lambda part: None), template)
-    (reason, _), *_ = list(bar.solve().failure.sentences())
-    assert reason in _facts(document, "Summary")
+    found = bar.findings(template, None, None, lambda part: None)
+    document = document_of(found, template)
+    assert _facts(document, "Summary")["why"] == found.position.failure.what
     assert _facts(document, "Sections left out")["Drawing"] == "no position was found"
 
 
@@ -453,12 +463,11 @@ def test_unknown_templates_formats_and_packages_are_refused(
 
 
 def test_places_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
-    (tmp_path / "short.toml").write_text('sections = ["drawing"]')
+    report = WrittenReport(content=b"#", pictures={"bar-pictures/figure-1.png": b"png"})
     (tmp_path / "bar-pictures").write_text("a file, no folder")
-    bar = coarse(read_example("four-bar"), 2)
     for name, shown in (("bar.md", "bar-pictures"), ("no/bar.md", "no/bar-pictures")):
         with pytest.raises(lw.InputError, match=rf'cannot write ".*/{shown}"'):
-            bar.to_report(tmp_path / name, template=tmp_path / "short.toml")
+            report.save(tmp_path / name)
         assert not (tmp_path / name).exists()
 
 

@@ -18,7 +18,6 @@ from linkwork.results.listing.force_listing import (
 )
 from linkwork.results.listing.tolerance_listing import (
     contribution_columns,
-    sampled_fields,
     tolerance_fields,
 )
 from linkwork.results.sensitivity import SensitivityStatus
@@ -58,5 +57,5 @@ def tolerances(found: Findings, template: Template) -> Iterator[Block]:
             yield Facts(pairs=((each.of, each.status.value),))
             continue
         yield Note(text=f"{pretty(each.of)}{where}")
-        yield Facts(pairs=(*tolerance_fields(each), *sampled_fields(each)))
+        yield Facts(pairs=tuple(tolerance_fields(each)))
         yield from tables(f"Contributions to {pretty(each.of)}{where}", contribution_columns(each))
