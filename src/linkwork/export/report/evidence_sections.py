@@ -76,7 +76,7 @@ def _lists(found: Findings) -> Iterator[str]:
         certified = sum(p.certificate.certified for p in found.configurations)
         if len(found.configurations):
             yield f"Proved configurations: {certified} of {len(found.configurations)}."
-        yield _sentence(f"their list: {found.configurations.message}")
+        yield _sentence(f"configurations: {found.configurations.message}")
 
 
 def _sentence(text: str) -> str:
@@ -105,5 +105,5 @@ def versions(found: Findings, template: Template) -> Iterator[Block]:
 
 def file(found: Findings, template: Template) -> Iterator[Block]:
     """The mechanism file, complete."""
-    yield Paragraph(text="Linkwork computes this report again from the file below.")
+    yield Paragraph(text="All results of this report are computed from the file below.")
     yield Listing(text=found.source)
