@@ -37,9 +37,18 @@ def test_a_large_jacobian_is_a_list_of_its_entries() -> None:
     assert "All others are zero." in text
 
 
+def test_without_unknowns_there_is_nothing_to_solve() -> None:
+    text = _derived("double-pendulum")
+    assert "There is no unknown: all positions follow from the inputs directly." in text
+    assert "Newton" not in text
+    assert "bmatrix" not in text
+
+
 @pytest.mark.extended
 @pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs pdfLaTeX")
-@pytest.mark.parametrize("name", ["rapier-drive", "cam-roller-follower", "double-butterfly"])
+@pytest.mark.parametrize(
+    "name", ["rapier-drive", "cam-roller-follower", "double-butterfly", "pendulum"]
+)
 def test_latex_compiles_the_document(name: str, tmp_path: Path) -> None:
     (tmp_path / "x.tex").write_text(_derived(name), "utf-8")
     command = ["pdflatex", "-halt-on-error", "-interaction=nonstopmode", "x.tex"]

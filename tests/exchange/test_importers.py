@@ -177,6 +177,7 @@ _WRONG = {
     "deep.json": (b'{"joints":' + b"[" * 100_000, "is nested too deeply"),
     "broken.json": (b'{"joints": [}', "is not JSON: expecting value (column 13)"),
     "type.json": (b'{"joints": [{"name": "A", "type": "Ball"}]}', "has an unknown type 'Ball'"),
+    "typed.json": (b'{"joints": [{"name": "A", "type": {}}]}', "has an unknown type '{}'"),
     "huge.dxf": (dxf_text().replace("500\n", "1e999\n").encode(), 'is "1e999": at most 1e+100'),
     "binary.dxf": (b"AutoCAD Binary DXF\r\n\x1a\0", "is a binary DXF file: save it as ASCII DXF"),
     "spatial.mjcf": (

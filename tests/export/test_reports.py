@@ -7,6 +7,7 @@ import sys
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import docx
 import numpy as np
@@ -25,11 +26,12 @@ from linkwork.export.report.document import (
     Figure,
     Listing,
     Paragraph,
+    Section,
     Table,
     printed,
     split_columns,
 )
-from linkwork.export.report.report import document_of
+from linkwork.export.report.report import WrittenReport, document_of, report_of
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.results.listing.column import Column
 from tests.export.coarse import coarse
@@ -49,6 +51,10 @@ def _found(name: str, *sections: str) -> Findings:
 
 def _document(name: str, *sections: str) -> Document:
     return document_of(_found(name, *sections), Template(sections=sections))
+
+
+def _of(mechanism: Any, template: Template) -> Document:
+    return document_of(mechanism.findings(template, None, None, lambda part: None), template)
 
 
 def _section(document: Document, title: str) -> list[Block]:
@@ -121,6 +127,16 @@ def test_a_page_is_complete_in_itself(written: dict[str, Path]) -> None:
     assert "A. Student" in text
 
 
+def test_charts_of_a_page_do_not_share_identifiers() -> None:
+    template = Template(sections=("plots",))
+    page = _Page()
+    page.feed(report_of(_found("four-bar", "plots"), template, Path("x.html")).content.decode())
+    assert page.counts["figure"] == 3
+    assert len(page.identifiers) > 100
+    assert len(set(page.identifiers)) == len(page.identifiers)
+    assert {link[1:] for link in page.links} <= set(page.identifiers)
+
+
 def test_a_word_document_has_its_tables_pictures_and_equations(written: dict[str, Path]) -> None:
     file = docx.Document(str(written["docx"]))
     body = file.element.xml
@@ -181,6 +197,35 @@ def test_a_distance_without_rows_is_refused() -> None:
     template = Template(sections=("motion",), every=37)
     with pytest.raises(lw.InputError, match=r"every = 37: .* take a multiple of its step, 30 deg"):
         document_of(_found("four-bar", "motion"), template)
+
+
+def test_a_motion_of_one_row_has_a_table_of_one_row() -> None:
+    bar = read_example("four-bar").changed(inputs=[lw.Input(link="crank", start=60, stop=60)])
+    crank, *_ = _tables(_of(bar, Template(sections=("motion",))))["Motion"].columns
+    assert _numbers(crank) == [60]
+
+
+def test_missing_and_infinite_values_have_no_range() -> None:
+    lost = {"none": "sqrt(-1 - cos(crank)^2)", "poles": "1/sin(crank)"}
+    template = Template(sections=("motion", "plots"), quantities=("rocker", *lost))
+    document = _of(coarse(read_example("four-bar"), 12).changed(outputs=lost), template)
+    _, low, *_ = _tables(document)["Ranges over all rows of the motion"].columns
+    assert low.cells[1] == "-"
+    assert float(low.cells[0]) > 0
+
+
+def test_a_crank_alone_has_no_table_and_no_plots() -> None:
+    crank = lw.linkage(
+        points={"O": (0, 0), "A": (40, 0)},
+        links={"ground": ["O"], "crank": ["O", "A"]},
+        inputs=[lw.Input(link="crank", step=30)],
+    )
+    document = _of(crank, Template(sections=("motion", "plots", "tolerances")))
+    assert _tables(document) == {}
+    assert _facts(document, "Motion")["found"] == "13"
+    reasons = _facts(document, "Sections left out")
+    assert reasons["Plots"] == "the mechanism has no unknown, output or traced point"
+    assert reasons["Tolerances"] == "the mechanism has no unknown and no output"
 
 
 def test_limits_and_missing_positions_are_noted_in_the_table() -> None:
@@ -256,12 +301,14 @@ def test_lists_are_those_of_the_results() -> None:
 
 def test_the_paragraph_on_proofs_counts_the_rows() -> None:
     text = _proof("rapier-drive")
-    assert text.startswith("Of 13 rows, 13 have a position. All of them are proved")
+    assert text.startswith(
+        "Rows with a position: 13 of 13. Rows with a complete proof: 13. In each"
+    )
     assert "Not proved are rates and plots" in text
 
 
 def test_rows_without_a_proof_are_counted_with_their_reason() -> None:
-    assert "None of them is proved by itself. 13 rows: proved for the mech" in _proof("dixon-one")
+    assert "complete proof: 0. Rows without it: 13; proved for the mech" in _proof("dixon-one")
     assert "none: plain equations have no known bound" in _proof("newton-convergence")
     assert _proof("newton-extremum").startswith("No position was found")
 
@@ -283,6 +330,22 @@ def test_tolerances_are_those_of_the_results() -> None:
     assert float(sensitivity) == pytest.approx(share.sensitivity, rel=1e-5)  # six digits
 
 
+def test_an_unknown_quantity_of_the_template_is_refused() -> None:
+    bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
+    for template in (
+        Template(sections=("motion",), quantities=("rokcer",)),
+        Template(sections=("tolerances",), tolerances_of=("rokcer",)),
+    ):
+        with pytest.raises(lw.UnknownNameError, match=r'no "rokcer" \(nearest: rocker'):
+            _of(bar, template)
+
+
+def test_purpose_and_source_are_shown_as_they_are_written() -> None:
+    source = "doi 10.1115/1.2345678901, p. 3 -5: x^2"
+    bar = coarse(read_example("four-bar"), 2).changed(source=source)
+    assert _facts(_of(bar, Template(sections=("summary",))), "Summary")["source"] == source
+
+
 def test_the_file_is_shown_as_it_is_written() -> None:
     text = "# mine\n" + example_text("four-bar")
     template = Template(sections=("file",))
@@ -291,10 +354,10 @@ def test_the_file_is_shown_as_it_is_written() -> None:
 
 
 def test_sections_without_content_are_named_with_the_reason() -> None:
-    told = _facts(_document("four-bar", "paths", "forces", "tolerances"), "Sections left out")
-    assert told["Paths of points"] == "the file traces no point"
-    assert told["Forces"].startswith("nothing loads Four-bar linkage, open")
-    assert told["Tolerances"].startswith("nothing deviates")
+    reasons = _facts(_document("four-bar", "paths", "forces", "tolerances"), "Sections left out")
+    assert reasons["Paths of points"] == "the file traces no point"
+    assert reasons["Forces"].startswith("nothing loads Four-bar linkage, open")
+    assert reasons["Tolerances"].startswith("nothing deviates")
 
 
 def test_a_mechanism_without_input_has_its_position() -> None:
@@ -314,9 +377,9 @@ def test_a_mechanism_without_input_has_its_position() -> None:
 def test_a_mechanism_that_does_not_close_says_why() -> None:
     bar = coarse(read_example("four-bar"), 2).with_dimensions({"A B": 30, "O4 B": 20})
     template = Template(sections=("summary", "drawing", "plots"))
-    document = document_of(bar.findings(template, None, None, lambda part: None), template)
-    (reason, _), *_ = list(bar.solve().failure.sentences())
-    assert reason in _facts(document, "Summary")
+    found = bar.findings(template, None, None, lambda part: None)
+    document = document_of(found, template)
+    assert _facts(document, "Summary")["why"] == found.position.failure.what
     assert _facts(document, "Sections left out")["Drawing"] == "no position was found"
 
 
@@ -333,7 +396,7 @@ def test_equations_tables_and_figures_are_numbered() -> None:
 def test_wide_tables_are_split_and_repeat_their_first_column() -> None:
     columns = [Column(header=f"column {k}", cells=["1" * 16]) for k in range(9)]
     parts = list(split_columns(columns))
-    # three of 19 characters beside the first, instead of four and one
+    # three of 19 characters after the first, instead of four and one
     assert [len(part) for part in parts] == [4, 4, 3]
     assert {part[0].header for part in parts} == {"column 0"}
     assert [c.header for part in parts for c in part[1:]] == [f"column {k}" for k in range(1, 9)]
@@ -346,6 +409,15 @@ def test_numbers_have_powers_of_ten_and_their_points_below_each_other() -> None:
     ]  # fmt: skip
     plain = printed(Column(header="x", cells=["1.25", "12"], align="point"))
     assert plain == ["1.25", "12\u2008\u2007\u2007"]
+
+
+def test_numbers_in_sentences_have_seven_digits_and_powers_of_ten() -> None:
+    text = "x^2 and x^20 at -150.123456789 deg, 12345678.5 mm, 1.5e-07, rows 3-5"
+    section = Section(title="", blocks=(Paragraph(text=text),))
+    (shown,) = Document.numbered("", (), [section]).sections[0].blocks
+    assert shown == Paragraph(
+        text="x² and x^20 at −150.1235 deg, 1.234568·10⁷ mm, 1.5·10⁻⁷, rows 3-5"
+    )
 
 
 # Templates
@@ -388,6 +460,15 @@ def test_unknown_templates_formats_and_packages_are_refused(
         with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):
             bar.to_report(tmp_path / f"x.{suffix}", template=tmp_path / "short.toml")
         assert not (tmp_path / f"x.{suffix}").exists()
+
+
+def test_places_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
+    report = WrittenReport(content=b"#", pictures={"bar-pictures/figure-1.png": b"png"})
+    (tmp_path / "bar-pictures").write_text("a file, no folder")
+    for name, shown in (("bar.md", "bar-pictures"), ("no/bar.md", "no/bar-pictures")):
+        with pytest.raises(lw.InputError, match=rf'cannot write ".*/{shown}"'):
+            report.save(tmp_path / name)
+        assert not (tmp_path / name).exists()
 
 
 def test_the_command_writes_a_report(tmp_path: Path) -> None:

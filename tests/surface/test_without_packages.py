@@ -45,6 +45,8 @@ for name in ("four-bar", "jansen-leg", "rapier-drive"):
         repr(mechanism.scene()),
         mechanism.check().start_message,
     ]
+deviations = {"A B": 0.1}
+said["tolerance"] = repr(lw.example("four-bar").tolerance("rocker", 60, deviations=deviations))
 desk = BrowserDesk(lw.loads, example_text, told.append, list, solve_task)
 desk.begin("#example=jansen-leg")
 said["events"] = told
@@ -83,7 +85,7 @@ def test_numbers_statuses_and_certificates_are_the_same(
     said: tuple[dict[str, Any], dict[str, Any]],
 ) -> None:
     every, few = said
-    for name in ("four-bar", "jansen-leg", "rapier-drive", "events"):
+    for name in ("four-bar", "jansen-leg", "rapier-drive", "tolerance", "events"):
         assert few[name] == every[name]
 
 

@@ -78,8 +78,13 @@ const IMPORT = `
 from pyodide.ffi import can_run_sync, run_sync
 
 from linkwork.api import example_text, loads
-from linkwork.design.synthesis.solving import solve_task
 from linkwork.viewer.live.browser_desk import BrowserDesk
+
+
+def solve_task(task, **options):
+    from linkwork.design.synthesis.solving import solve_task as solve
+
+    return solve(task, **options)
 `;
 
 /** What a first cycle imports and prepares is part of the snapshot, too. */

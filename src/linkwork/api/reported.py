@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwork import export, motion, textfile
 from linkwork.api.exported import ExportedMechanism
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.internal import internal
 from linkwork.foundation.paths import as_path
 from linkwork.results.reactions import ForceStatus
@@ -91,11 +91,7 @@ class ReportedMechanism(ExportedMechanism):
         written = export.report_of(
             found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part)
         )
-        for name, picture in written.pictures.items():
-            place = target.parent / name
-            place.parent.mkdir(exist_ok=True)
-            textfile.save_bytes(picture, place)
-        textfile.save_bytes(written.content, target)
+        written.save(target)
 
     def findings(
         self,
@@ -170,9 +166,11 @@ class _Gathering:
         """Note the sections that have nothing to show."""
         drawn = bool(self.mechanism.model.compiled.points.names)
         if not position.status.ok:
-            self._without(("drawing", "vectors"), _NOT_FOUND)
+            self._without(("drawing", "vectors", "tolerances"), _NOT_FOUND)
         if not drawn:
             self._without(("drawing", "paths"), _NO_POINTS)
+        if not (self.template.tolerances_of or position.outputs or position.unknowns):
+            self._without(("tolerances",), "the mechanism has no unknown and no output")
         if not self.mechanism.loop_equations.loops:
             self._without(("vectors",), "the mechanism has no loop equations")
         if not self.mechanism.loop_equations.unknowns:
@@ -183,8 +181,11 @@ class _Gathering:
             self._without(("plots", "paths", "circuits", "forces"), _NO_INPUT)
         elif not swept.found.any():
             self._without(("plots", "paths", "forces", "tolerances"), _NOT_FOUND)
-        elif not swept.skeleton.traced:
-            self._without(("paths",), "the file traces no point")
+        else:
+            if not export.quantities_of(swept, self.template):
+                self._without(("plots",), "the mechanism has no unknown, output or traced point")
+            if not swept.skeleton.traced:
+                self._without(("paths",), "the file traces no point")
 
     def _list(self, position: Position) -> None:
         """Circuits, configurations, vectors."""
@@ -216,7 +217,7 @@ class _Gathering:
         """The tolerances at the drawn position."""
         if not self._wanted("tolerances"):
             return
-        usual = (position.outputs or position.unknowns) if position.status.ok else {}
+        usual = position.outputs or position.unknowns
         names = self.template.tolerances_of or tuple(usual)[:_MOST_TOLERANCES]
         at = position.input or None
         self._try(
@@ -230,5 +231,7 @@ class _Gathering:
         """Keep a result, or the reason why there is none."""
         try:
             self.found[section] = compute()
+        except UnknownNameError:  # of the template
+            raise
         except InputError as error:
             self.absent[section] = str(error)

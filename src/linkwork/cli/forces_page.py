@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
-
-import numpy as np
 
 from linkwork.cli.motion_page import range_lines
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import table_lines
 from linkwork.results.listing.column import Column
-from linkwork.results.listing.force_listing import force_fields, undefined_fields
+from linkwork.results.listing.force_listing import (
+    finite_forces,
+    force_fields,
+    force_status_fields,
+    undefined_fields,
+)
 from linkwork.results.listing.motion_listing import limit_fields
 from linkwork.results.listing.number_text import fixed, significant
 from linkwork.results.listing.position_listing import inputs_text
@@ -71,18 +73,9 @@ def motion_forces_lines(
     values, unit = found.inputs[name], found.input_units[name]
     head = f"Forces for {name} from {values[0]:g} to {values[-1]:g} {unit}: {len(found)} positions"
     lines = [*title_lines(found.mechanism), *sentence(str, head)]
-    counts = Counter(status for status in found.statuses if status is not ForceStatus.FOUND)
-    told = [
-        (status.name.lower().replace("_", " "), f"{count}: {status.value}")
-        for status, count in counts.items()
-    ]
     ends = [] if motion.found.all() else [*limit_fields(motion)]
-    lines += fields([("found", str(len(found) - counts.total())), *told, *ends])
-    listed = [
-        name
-        for name in names or found.values
-        if name != "disagreement" and np.isfinite(found.values[name]).any()
-    ]
+    lines += fields([*force_status_fields(found), *ends])
+    listed = finite_forces(found, names)
     lines += ["", *range_lines(motion, listed)] if listed else []
     return [*lines, "", *fields(list(force_fields(found, stalls)))]
 

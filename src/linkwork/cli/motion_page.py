@@ -14,14 +14,11 @@ from linkwork.results.listing.motion_listing import (
     range_columns,
     range_text,
     status_fields,
-    status_label,
 )
 from linkwork.results.listing.number_text import short
 from linkwork.results.motion import Motion
 
 __all__ = ["answers", "failure_line", "motion_lines", "range_lines"]
-
-_MOST_RUNS = 4  # ranges of failed rows that are listed
 
 
 def motion_lines(
@@ -37,7 +34,7 @@ def motion_lines(
     if motion.found.any():
         pairs += evidence_fields(motion, measure)
         pairs += _numbers(motion, numbers)
-    lines += fields(pairs, {status_label(s): bad for s in motion.counts if not s.ok})
+    lines += fields(pairs, {s.label: bad for s in motion.counts if not s.ok})
     ranges = table_lines(range_columns(motion, columns)) if motion.found.any() else []
     return [*lines, "", *ranges] if ranges else lines
 

@@ -54,11 +54,11 @@ def report(
     as_json: bool,
     **head: str | None,
 ) -> None:
-    """Write a report that an engineer files, or a student hands in.
+    """Write a report of the mechanism, for a design file or as homework.
 
     Equations, drawings, tables, plots, circuits, forces, what is proved, and
     the file itself. Sections without content are named with the reason.
-    Markdown has its pictures in a folder beside it.
+    Markdown has its pictures in the folder NAME-pictures next to it.
 
     \b
       linkwork report rapier.toml -o rapier.html

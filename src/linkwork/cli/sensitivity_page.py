@@ -46,9 +46,7 @@ def sensitivity_lines(found: Sensitivity) -> list[str]:
     else:
         lines += fields([("found", str(found.statuses.count(SensitivityStatus.FOUND)))])
         lines += (
-            fields(
-                [(_words(status), f"{count}: {status.value}") for status, count in counts.items()]
-            )
+            fields([(status.label, f"{count}: {status.value}") for status, count in counts.items()])
             if counts
             else []
         )
@@ -58,10 +56,6 @@ def sensitivity_lines(found: Sensitivity) -> list[str]:
     rest = len(found.derivatives) - len(names)
     notes = list(_notes(found, rest))
     return [*lines, "", *fields(notes)] if notes else lines
-
-
-def _words(status: SensitivityStatus) -> str:
-    return status.name.lower().replace("_", " ")
 
 
 def _notes(found: Sensitivity, rest: int) -> Iterator[tuple[str, str]]:

@@ -5,20 +5,25 @@ from __future__ import annotations
 import os
 import threading
 import webbrowser
+from collections.abc import Callable
 from itertools import chain, count
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from linkwork.api import example_text, examples, loads
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
-from linkwork.design.synthesis.solving import solve_task
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import is_link, text_of_link
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet, new_file
 from linkwork.viewer.live.server import LiveServer
+
+if TYPE_CHECKING:
+    from linkwork.design.synthesis.result import Synthesis
+    from linkwork.design.synthesis.task import Task
 
 __all__ = ["view"]
 
@@ -47,6 +52,12 @@ def _of_link(text: str) -> MechanismFile:
     taken = (Path(f"linked{k}.toml") for k in count(2))
     path = next(path for path in chain([Path("linked.toml")], taken) if not path.exists())
     return MechanismFile(path, text)
+
+
+def _solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+    from linkwork.design.synthesis.solving import solve_task  # the first time a task is solved
+
+    return solve_task(task, progress=progress)
 
 
 def _told(name: str, address: str) -> list[str]:
@@ -90,7 +101,7 @@ def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
         raise InputError("standard input cannot be edited and saved: give the name of a file")
     opened = new_file() if file is None else _opened(file)
     with progress("opening"):
-        bench = Bench(opened, loads, solve_task, start=file is None)
+        bench = Bench(opened, loads, _solve_task, start=file is None)
     server = LiveServer(bench, port)
 
     def tell() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.batch.family import family_of
+from linkwork import batch
 from linkwork.batch.sampling import Normal, random
 from linkwork.design.sensitivity import (
     LIMITS,
@@ -226,11 +226,11 @@ def _of_designs(
     """The quantity of every design, (D,); NaN where it does not exist."""
     if isinstance(solved, Motion):
         if of.strip() in LIMITS:
-            return family_of(model, plan).reduced(())[of.strip()]
-        return family_of(model, plan).reduced([of])[of]
+            return batch.family_of(model, plan).reduced(())[of.strip()]
+        return batch.family_of(model, plan).reduced([of])[of]
     # every design is followed from the position that all deviations start from
     one = _at_one_row(model, solved)
-    found = family_of(one, plan).sweep(certify=False)
+    found = batch.family_of(one, plan).sweep(certify=False)
     return found[of][:, 0]
 
 

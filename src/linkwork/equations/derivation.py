@@ -32,16 +32,20 @@ def derivation(sheet: EquationSheet, title: str) -> str:
 def _lines(sheet: EquationSheet, title: str) -> Iterator[str]:
     yield from (_HEAD, f"\\title{{{as_latex(title)}}}", "\\begin{document}", "\\maketitle")
     yield from _variables(sheet)
-    yield from _loops(sheet)
-    yield from _newton(sheet)
-    yield from _rates(sheet)
+    if sheet.equations.unknowns:
+        yield from _loops(sheet)
+        yield from _newton(sheet)
+        yield from _rates(sheet)
     yield "\\end{document}"
 
 
 def _variables(sheet: EquationSheet) -> Iterator[str]:
     equations = sheet.equations
     yield "\\section{Unknowns and dimensions}"
-    yield f"Unknowns: {_listed(equations.unknowns)}."
+    if equations.unknowns:
+        yield f"Unknowns: {_listed(equations.unknowns)}."
+    else:
+        yield "There is no unknown: all positions follow from the inputs directly."
     if equations.inputs:
         yield f"Inputs: {_listed(equations.inputs)}."
     values = (f"\\({_name(n)} = {number_text(v)}\\)" for n, v in equations.symbols.items())

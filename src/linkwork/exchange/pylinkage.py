@@ -113,11 +113,11 @@ class _Parents(_Reading):
         """Add all joints: points first, since they may refer to later ones."""
         for k, entry in enumerate(self.joints):
             name, kind = self.named(entry, "name", "joints", k), entry.get("type")
-            if kind not in _PARENTS:
+            if not isinstance(kind, str) or kind not in _PARENTS:
                 self.refuse("joints", k, f"has an unknown type {str(kind)[:40]!r}")
             self.add_point(name, k, entry.get("x"), entry.get("y"), kind == "Static")
         for k, entry in enumerate(self.joints):
-            _PARENTS[str(entry["type"])](self, entry, k, self.points[entry["name"]])
+            _PARENTS[entry["type"]](self, entry, k, self.points[entry["name"]])
 
     def parent(self, entry: dict[str, Any], key: str, k: int) -> str:
         """The point of a parent: by name, or a fixed place of its own."""

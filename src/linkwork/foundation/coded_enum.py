@@ -20,6 +20,11 @@ class CodedEnum(Enum):
     def __init__(self, sentence: str) -> None:
         self.code = len(type(self).__members__)
 
+    @property
+    def label(self) -> str:
+        """The name as words: ``out of reach``."""
+        return self.name.lower().replace("_", " ")
+
     @classmethod
     def of_code(cls, code: int) -> Self:
         """The member with this code."""

@@ -19,7 +19,7 @@ def motion_summary(motion: Motion) -> Summary:
         f"Motion of {motion.mechanism}, {name} {values[0]:.10g} to {values[-1]:.10g} {unit}, "
         f"{len(values)} positions"
     )
-    rows = [(s.name.lower().replace("_", " "), str(n)) for s, n in motion.counts.most_common()]
+    rows = [(s.label, str(n)) for s, n in motion.counts.most_common()]
     rows += [(limit.kind.word, f"{limit.input:.10g} {unit}") for limit in motion.limits]
     rows += [
         (extreme.kind, f"{extreme.name} = {extreme.value:.10g} at {extreme.input:.10g} {unit}")

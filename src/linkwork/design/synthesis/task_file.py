@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -35,19 +34,7 @@ from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.textfile.writer import write_tables
 
-__all__ = ["is_task", "located_task_error", "read_task", "read_task_text", "task_of_tables"]
-
-
-_KIND = re.compile(r"^\s*task\s*=", re.MULTILINE)
-_FIRST_TABLE = re.compile(r"^\s*\[", re.MULTILINE)
-
-
-def is_task(text: str) -> bool:
-    """Whether a text is meant as a task: it has the key ``task`` before its first table.
-
-    Other than by reading it, this is known of a text with mistakes, too.
-    """
-    return _KIND.search(_FIRST_TABLE.split(text, maxsplit=1)[0]) is not None
+__all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
 
 
 _LARGEST = 1e12

@@ -41,8 +41,19 @@ def _hidden_share(line: Array, other: Array) -> float:
     points = line[np.isfinite(line).all(axis=1)]
     points = points[:: max(1, len(points) // _LOOKED_AT)]
     start, step = other[:-1], np.diff(other, axis=0)
+    ends = np.sort(np.stack([other[:-1, 0], other[1:, 0]]), axis=0)
+    hidden = 0
+    for point in points:
+        # a curve of many turns has few sides near a point
+        close = (ends[0] < point[0] + _NEAR) & (point[0] - _NEAR < ends[1])
+        hidden += bool((_distances(point, start[close], step[close]) < _NEAR).any())
+    return hidden / max(len(points), 1)
+
+
+def _distances(point: Array, start: Array, step: Array) -> Array:
+    """The distance of a point from sides (M, 2), (M,)."""
+    offset = point - start
     squared = np.maximum((step**2).sum(axis=1), 1e-30)
-    offset = points[:, None, :] - start
-    share = np.clip((offset * step).sum(axis=2) / squared, 0.0, 1.0)
-    away = np.linalg.norm(offset - share[:, :, None] * step, axis=2)
-    return float((away < _NEAR).any(axis=1).mean()) if away.size else 0.0
+    share = np.clip((offset * step).sum(axis=1) / squared, 0.0, 1.0)
+    distances: Array = np.linalg.norm(offset - share[:, None] * step, axis=1)
+    return distances

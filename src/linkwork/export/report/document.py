@@ -23,6 +23,7 @@ _DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 _MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
 _DIGITS = 7  # of numbers in sentences
 _POWER = re.compile(r"(?<=\d)e([-+]\d+)\b")
+_SQUARE = re.compile(r"\^2(?!\d)")
 _GAP = 3  # characters between columns
 _WRAPPED = 30  # characters of a column of words, which are broken into lines
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -45,9 +46,13 @@ class Note:
 
 @dataclass(frozen=True, kw_only=True)
 class Facts:
-    """Labels with their texts; an empty label continues the one above."""
+    """Labels with their texts; an empty label continues the one above.
+
+    The texts of the labels in ``quoted`` are those of the file, shown as they are.
+    """
 
     pairs: tuple[tuple[str, str], ...]
+    quoted: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,8 +119,11 @@ class Document:
             if isinstance(block, Paragraph):
                 return Paragraph(text=_sentence(block.text))
             if isinstance(block, Facts):
-                pairs = ((label, _sentence(text)) for label, text in block.pairs)
-                return Facts(pairs=tuple(pairs))
+                pairs = (
+                    (label, text if label in block.quoted else _sentence(text))
+                    for label, text in block.pairs
+                )
+                return replace(block, pairs=tuple(pairs))
             if not isinstance(block, Equation | Table | Figure):
                 return block
             own = counts[type(block)] = counts.get(type(block), 0) + 1
@@ -202,13 +210,13 @@ def _at_point(cells: Sequence[str]) -> list[str]:
 
 def _sentence(text: str) -> str:
     """A text with powers of ten, true minus signs, and numbers of at most seven digits."""
-    return _MINUS.sub("\u2212", _DECIMAL.sub(_rounded, _powers(text)))
+    return _MINUS.sub("\u2212", _powers(_DECIMAL.sub(_rounded, text)))
 
 
 def _powers(text: str) -> str:
     """``1.5·10⁻⁷`` for 1.5e-07, and s² for s^2."""
     shown = _POWER.sub(lambda m: f"·10{str(int(m[1])).translate(_SUPERSCRIPTS)}", text)
-    return shown.replace("^2", "²")
+    return _SQUARE.sub("²", shown)
 
 
 def _rounded(match: re.Match[str]) -> str:

@@ -38,30 +38,27 @@ def _positions(found: Findings) -> Iterator[str]:
         if not found.position.status.ok:
             yield f"No position was found: {found.position.message}."
             return
-        told = certificate_text(found.position.certificate, _measure(found))
-        yield f"The position has this certificate: {told}."
+        certificate = certificate_text(found.position.certificate, _measure(found))
+        yield f"Certificate of the position: {certificate}."
         return
     there = int(motion.found.sum())
-    yield f"Of {len(motion)} rows, {there} have a position."
+    yield f"Rows with a position: {there} of {len(motion)}."
     if not there:
         return
     proved = np.flatnonzero(motion.certified)
-    whole = "All of them" if len(proved) == there else f"{len(proved) or 'None'} of them"
-    plural = "is" if len(proved) == 1 else "are"
+    yield f"Rows with a complete proof: {len(proved)}."
     if len(proved):
         yield (
-            f"{whole} {plural} proved: a true position lies within {_largest(motion, proved)}"
+            f"In each of these, a true position lies within {_largest(motion, proved)}"
             f"{_measure(found)} of the computed one, no other lies near it, and the motion from "
             "the start to it stays on one branch."
         )
-    else:
-        yield "None of them is proved by itself."
     for reason in Certification:
         count = sum(
             c is reason for c, here in zip(motion.certification, motion.found, strict=True) if here
         )
         if count and reason is not Certification.CERTIFIED:
-            yield f"{count} rows: {reason.value}."
+            yield f"Rows without it: {count}; {reason.value}."
 
 
 def _largest(motion: Motion, rows: np.ndarray) -> str:
@@ -73,12 +70,12 @@ def _lists(found: Findings) -> Iterator[str]:
     if found.circuits is not None:
         certified = sum(circuit.certified for circuit in found.circuits)
         if len(found.circuits):
-            yield f"{certified} of {len(found.circuits)} circuits are proved to be one curve."
+            yield f"Circuits proved to be one curve: {certified} of {len(found.circuits)}."
         yield _sentence(found.circuits.message)
     if found.configurations is not None:
         certified = sum(p.certificate.certified for p in found.configurations)
         if len(found.configurations):
-            yield f"{certified} of {len(found.configurations)} configurations are proved."
+            yield f"Proved configurations: {certified} of {len(found.configurations)}."
         yield _sentence(f"configurations: {found.configurations.message}")
 
 
@@ -108,5 +105,5 @@ def versions(found: Findings, template: Template) -> Iterator[Block]:
 
 def file(found: Findings, template: Template) -> Iterator[Block]:
     """The mechanism file, complete."""
-    yield Paragraph(text="Linkwork computes this report again from the file below.")
+    yield Paragraph(text="All results of this report are computed from the file below.")
     yield Listing(text=found.source)

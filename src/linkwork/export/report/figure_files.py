@@ -15,10 +15,7 @@ __all__ = ["FigureFile", "figure_files"]
 _DPI = 200.0  # twice that of a screen
 _INCH, _POINTS = 25.4, 72.0  # [mm], [pt/in]
 _WIDEST, _TALLEST = 150.0, 115.0  # printed [mm]: two figures fit a page
-_SIZE = re.compile(
-    rb'<svg [^>]*height="([\d.]+)pt"[^>]* width="([\d.]+)pt"|'
-    rb'<svg [^>]*width="([\d.]+)pt"[^>]* height="([\d.]+)pt"'
-)
+_SIDES = [re.compile(rb'<svg [^>]*\b%s="([\d.]+)pt"' % side) for side in (b"width", b"height")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,11 +42,8 @@ def figure_files(
 
 def _size(content: bytes) -> tuple[float, float]:
     """Width and height [mm]."""
-    found = _SIZE.search(content)
-    if found is None:  # the header of a PNG file
+    if content.startswith(b"\x89PNG"):
         wide, high = struct.unpack(">II", content[16:24])
         return wide * _INCH / _DPI, high * _INCH / _DPI
-    high, wide, *swapped = found.groups()
-    if wide is None:
-        wide, high = swapped
-    return float(wide) * _INCH / _POINTS, float(high) * _INCH / _POINTS
+    wide, high = (float(side.findall(content)[0]) for side in _SIDES)
+    return wide * _INCH / _POINTS, high * _INCH / _POINTS

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
-
-import numpy as np
 
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.export.report.document import Block, Facts, Note, Paragraph
@@ -14,13 +11,15 @@ from linkwork.export.report.mechanism_sections import tables
 from linkwork.export.report.motion_sections import figures_of, ranges_of
 from linkwork.export.report.template import Template
 from linkwork.foundation.names import pretty
-from linkwork.results.listing.force_listing import force_fields
+from linkwork.results.listing.force_listing import (
+    finite_forces,
+    force_fields,
+    force_status_fields,
+)
 from linkwork.results.listing.tolerance_listing import (
     contribution_columns,
-    sampled_fields,
     tolerance_fields,
 )
-from linkwork.results.reactions import ForceStatus
 from linkwork.results.sensitivity import SensitivityStatus
 
 __all__ = ["forces", "tolerances"]
@@ -31,16 +30,10 @@ def forces(found: Findings, template: Template) -> Iterator[Block]:
     acting = found.forces
     assert acting is not None
     assert found.motion is not None
-    counts = Counter(status for status in acting.statuses if status is not ForceStatus.FOUND)
-    told = [(s.name.lower().replace("_", " "), f"{n}: {s.value}") for s, n in counts.items()]
     rest = "at rest" if found.motion.speed is None else "with the inertia of its masses"
     yield Paragraph(text=f"Forces of the mechanism {rest}, over the rows of its motion.")
-    yield Facts(pairs=(("found", str(len(acting) - counts.total())), *told))
-    listed = [
-        name
-        for name in acting.values
-        if name != "disagreement" and np.isfinite(acting.values[name]).any()
-    ]
+    yield Facts(pairs=tuple(force_status_fields(acting)))
+    listed = finite_forces(acting)
     if listed:
         yield from tables("Smallest and largest forces", ranges_of(found.motion, listed))
     yield Facts(pairs=tuple(force_fields(acting, found.stalls)))
@@ -64,5 +57,5 @@ def tolerances(found: Findings, template: Template) -> Iterator[Block]:
             yield Facts(pairs=((each.of, each.status.value),))
             continue
         yield Note(text=f"{pretty(each.of)}{where}")
-        yield Facts(pairs=(*tolerance_fields(each), *sampled_fields(each)))
+        yield Facts(pairs=tuple(tolerance_fields(each)))
         yield from tables(f"Contributions to {pretty(each.of)}{where}", contribution_columns(each))

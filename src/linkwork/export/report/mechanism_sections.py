@@ -59,12 +59,13 @@ def tables(caption: str, columns: list[Column]) -> Iterator[Table]:
 def summary(found: Findings, template: Template) -> Iterator[Block]:
     """What the mechanism is, and how the file was read."""
     description = found.model.description
-    told = [("purpose", description.purpose), ("source", description.source)]
+    given = {"purpose": description.purpose, "source": description.source}
     units = f"lengths in {description.length}, angles in {description.angle.value}"
-    pairs = [*(p for p in told if p[1]), *check_fields(found.check), ("units", units)]
+    pairs = [(label, text) for label, text in given.items() if text]
+    pairs += [*check_fields(found.check), ("units", units)]
     if not found.position.status.ok and found.position.failure is not None:
         pairs += found.position.failure.sentences()
-    yield Facts(pairs=tuple(pairs))
+    yield Facts(pairs=tuple(pairs), quoted=frozenset(given))
 
 
 def drawing(found: Findings, template: Template) -> Iterator[Block]:
@@ -176,12 +177,12 @@ def equations(found: Findings, template: Template) -> Iterator[Block]:
     sheet = EquationSheet(found.model.equations)
     own = sheet.equations
     kinds = [("unknowns", own.unknowns), ("inputs", own.inputs)]
-    told = [
-        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in listed))
-        for name, listed in kinds
-        if listed
+    listed = [
+        (name, ", ".join(f"{pretty(v.shown)} ({v.kind})" for v in variables))
+        for name, variables in kinds
+        if variables
     ]
-    yield Facts(pairs=tuple(told))
+    yield Facts(pairs=tuple(listed))
     if not own.labels:
         yield Paragraph(text="There is no loop: all positions follow from the inputs directly.")
     mathml, latex = MathML(), Latex()

@@ -31,9 +31,8 @@ from linkwork.results.listing.motion_listing import (
     range_columns,
     range_text,
     status_fields,
-    status_label,
 )
-from linkwork.results.listing.number_text import fixed, lengths, short
+from linkwork.results.listing.number_text import NOTHING, fixed, lengths, short
 from linkwork.results.listing.position_listing import inputs_text
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked
@@ -76,6 +75,8 @@ def motion(found: Findings, template: Template) -> Iterator[Block]:
     if not swept.found.any():
         return
     names = quantities_of(swept, template)
+    if not names:
+        return
     rows = _chosen(swept, template.every)
     for caption, listed in _groups(swept, names):
         columns = _columns(swept, listed, rows)
@@ -84,25 +85,29 @@ def motion(found: Findings, template: Template) -> Iterator[Block]:
 
 
 def ranges_of(swept: Motion, names: Sequence[str]) -> list[Column]:
-    """The smallest and the largest values of quantities."""
+    """The smallest and the largest values of at least one quantity."""
     first, low, low_at, high, high_at, units = range_columns(swept, names, _SHORT)
     sizes: dict[str, float] = {}
     for column in (low, high):
         for cell, unit in zip(column.cells, units.cells, strict=True):
-            sizes[unit] = max(sizes.get(unit, 0.0), abs(float(cell)))
+            sizes[unit] = max(sizes.get(unit, 0.0), _size(cell))
 
     def clean(column: Column) -> Column:
         pairs = zip(column.cells, units.cells, strict=True)
-        cells = ["0" if abs(float(c)) <= _NOISE * sizes[unit] else c for c, unit in pairs]
+        cells = [c if c == NOTHING or _size(c) > _NOISE * sizes[unit] else "0" for c, unit in pairs]
         return replace(column, cells=cells)
 
     shown = replace(first, cells=list(map(shown_name, first.cells)))
     return [shown, clean(low), _shortened(low_at), clean(high), _shortened(high_at), units]
 
 
+def _size(cell: str) -> float:
+    return 0.0 if cell == NOTHING else abs(float(cell))
+
+
 def _shortened(inputs: Column) -> Column:
     """Input values with fewer digits."""
-    cells = [short(float(c), _DIGITS) if c != "-" else c for c in inputs.cells]
+    cells = [c if c == NOTHING else short(float(c), _DIGITS) for c in inputs.cells]
     return replace(inputs, cells=cells)
 
 
@@ -141,7 +146,7 @@ def _chosen(swept: Motion, every: float | None) -> CountArray:
         divisors = (s for s in range(1, last + 1) if not last % s and last // s <= _ROWS)
         stride = next(divisors, 1)
         if last // stride < _ROWS // 2:  # a number of rows with few divisors
-            stride = math.ceil(last / _ROWS)
+            stride = max(math.ceil(last / _ROWS), 1)
         rows = asked[[*range(0, len(asked), stride)]]
     else:
         steps = (values - values[0]) / every
@@ -197,7 +202,7 @@ def number_cells(values: Array, unit: str, size: float) -> list[str]:
     """Numbers of a column with common decimals; ``size`` is the largest of the same unit."""
     clean = np.where(np.abs(values) <= _NOISE * size, 0.0, values)
     if not clean[np.isfinite(clean)].any():
-        return ["0" if value == 0.0 else "-" for value in clean.tolist()]
+        return ["0" if value == 0.0 else NOTHING for value in clean.tolist()]
     if unit in _DECIMALS:
         return [fixed(value, _DECIMALS[unit]) for value in clean.tolist()]
     return lengths(clean.tolist())
@@ -214,7 +219,7 @@ def _inputs(swept: Motion, rows: CountArray) -> Iterator[Column]:
 def _notes(swept: Motion, rows: CountArray) -> Iterator[Column]:
     """Limits and missing positions, if there are any."""
     cells = [
-        swept.limit[row] or ("" if swept.status[row].ok else status_label(swept.status[row]))
+        swept.limit[row] or ("" if swept.status[row].ok else swept.status[row].label)
         for row in rows
     ]
     if any(cells):

@@ -20,6 +20,8 @@ from linkwork.export.report.markdown_writer import markdown_files
 from linkwork.export.report.pdf_writer import pdf_bytes
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import unwritten
+from linkwork.textfile import save_bytes
 
 __all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
 
@@ -54,6 +56,23 @@ class WrittenReport:
 
     content: bytes
     pictures: Mapping[str, bytes]
+
+    def save(self, path: Path) -> None:
+        """Write the pictures, then the file.
+
+        Raises
+        ------
+        InputError
+            If one of them cannot be written.
+        """
+        for name, picture in self.pictures.items():
+            place = path.parent / name
+            try:
+                place.parent.mkdir(exist_ok=True)
+            except OSError as error:
+                raise unwritten(place.parent, error) from None
+            save_bytes(picture, place)
+        save_bytes(self.content, path)
 
 
 def check_report_file(path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
@@ -11,7 +12,23 @@ from linkwork.foundation.arrays import BoolArray
 from linkwork.results.reactions import ForceStatus, Reactions
 from linkwork.results.stall import Stall
 
-__all__ = ["force_fields", "undefined_fields"]
+__all__ = ["finite_forces", "force_fields", "force_status_fields", "undefined_fields"]
+
+
+def force_status_fields(found: Reactions) -> Iterator[tuple[str, str]]:
+    """The number of rows with forces, and those without by their reasons."""
+    counts = Counter(status for status in found.statuses if status is not ForceStatus.FOUND)
+    yield "found", str(len(found) - counts.total())
+    yield from ((status.label, f"{n}: {status.value}") for status, n in counts.items())
+
+
+def finite_forces(found: Reactions, names: Sequence[str] = ()) -> list[str]:
+    """The forces with a finite value in some row, of ``names`` or of all."""
+    return [
+        name
+        for name in names or found.values
+        if name != "disagreement" and np.isfinite(found.values[name]).any()
+    ]
 
 
 def force_fields(found: Reactions, stalls: Sequence[Stall] = ()) -> Iterator[tuple[str, str]]:
@@ -47,7 +64,7 @@ def _where(rows: BoolArray) -> str:
 
 
 def _stall(stall: Stall) -> str:
-    """Stalls, how far virtual work and free bodies agree, and what is wrong with joints."""
+    """Where friction stops the mechanism, and whether this is proved."""
     moves, locked = stall.bracket
     proof = (
         f"proved: moves at {moves:.10g}, locked at {locked:.10g}" if stall.proved else "not proved"

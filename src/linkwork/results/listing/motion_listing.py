@@ -30,10 +30,11 @@ __all__ = [
     "range_columns",
     "range_text",
     "status_fields",
-    "status_label",
 ]
 
 _MOST_RUNS = 4  # ranges of failed rows that are listed
+_EQUAL = 1e-9  # relative difference of values that are equal but for rounding
+_STILL = 1e-10  # relative range below which a value counts as constant, without located extremes
 
 
 def how_many(motion: Motion) -> str:
@@ -68,15 +69,11 @@ def status_fields(motion: Motion) -> Iterator[tuple[str, str]]:
             continue
         rows = f"{counts[status]} at {_runs(motion, status)}"
         if status is Status.NO_START and motion.failure is not None:
-            yield status_label(status), rows
+            yield status.label, rows
             yield from motion.failure.sentences()
             continue
         reason = motion.message if status is Status.NO_START else status.value
-        yield status_label(status), f"{rows}: {reason}"
-
-
-def status_label(status: Status) -> str:
-    return status.name.lower().replace("_", " ")
+        yield status.label, f"{rows}: {reason}"
 
 
 def _runs(motion: Motion, status: Status) -> str:
@@ -148,10 +145,6 @@ def _worst(motion: Motion, values: Array, measure: str) -> str:
 class _Range:
     quantity: Asked
     value: Array
-
-
-_EQUAL = 1e-9  # relative difference of values that are equal but for rounding
-_STILL = 1e-10  # relative range below which a value counts as constant, without located extremes
 
 
 def range_columns(motion: Motion, columns: Sequence[str] = (), decimals: int = 6) -> list[Column]:

@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-__all__ = ["fixed", "lengths", "short", "significant"]
+__all__ = ["NOTHING", "fixed", "lengths", "short", "significant"]
 
 _ANGLE_DECIMALS = 6
 _LENGTH_DIGITS = 6
-_NOTHING = "-"  # printed for a missing number
+#: Printed for a missing number.
+NOTHING = "-"
 
 
 def fixed(value: float, decimals: int = _ANGLE_DECIMALS) -> str:
     """A number with the given decimals, without a negative zero."""
     if not math.isfinite(value):
-        return _NOTHING
+        return NOTHING
     text = f"{value:.{decimals}f}"
     # rounding -0.0000001 gives "-0.000000"
     return text.lstrip("-") if float(text) == 0 else text
@@ -35,7 +36,7 @@ def lengths(values: Iterable[float]) -> list[str]:
 def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
     """A number with the given significant digits; 0 if it is at most ``noise``."""
     if not math.isfinite(value):
-        return _NOTHING
+        return NOTHING
     if abs(value) <= noise:
         return "0"
     exponent = _exponent(value)
@@ -46,7 +47,7 @@ def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
 
 def short(value: float, digits: int = 10) -> str:
     """A number with at most the given significant digits, without trailing zeros."""
-    return f"{value:.{digits}g}" if math.isfinite(value) else _NOTHING
+    return f"{value:.{digits}g}" if math.isfinite(value) else NOTHING
 
 
 def _exponent(value: float) -> int:

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from linkwork.design.synthesis.task_file import is_task
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.opened_file import Events
 from linkwork.viewer.live.solvable import Read
-from linkwork.viewer.live.task.bench import TaskBench
-from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.workbench import Workbench
 
+if TYPE_CHECKING:
+    from linkwork.viewer.live.task.bench import TaskBench
+    from linkwork.viewer.live.task.cycle import SolveTask
+
 __all__ = ["Bench"]
+
+_KIND = re.compile(r"^\s*task\s*=", re.MULTILINE)
+_FIRST_TABLE = re.compile(r"^\s*\[", re.MULTILINE)
+
+
+def _is_task(text: str) -> bool:
+    """Whether a text is meant as a task, with mistakes or without: its head has the key task."""
+    return _KIND.search(_FIRST_TABLE.split(text, maxsplit=1)[0]) is not None
 
 
 class Bench:
@@ -81,7 +92,7 @@ class Bench:
                 case do.OpenTask():
                     self._check_saved(request.discard)
                     return self._open(task_template(request.name))
-                case ask.OpenExample() if self._behind or isinstance(self.current, TaskBench):
+                case ask.OpenExample() if self._behind or not isinstance(self.current, Workbench):
                     self._check_saved(request.discard)
                     return self._open(new_file(request.name))
                 case do.OpenDesign():
@@ -106,7 +117,7 @@ class Bench:
 
     def _design(self, index: int) -> Events:
         task = self.current
-        if not isinstance(task, TaskBench):
+        if isinstance(task, Workbench):
             raise InputError("no task is open: a mechanism is")
         name, text = task.design_text(index)
         self.current, self._behind = self._bench_of(new_file(name, text)), task
@@ -124,7 +135,10 @@ class Bench:
 
     def _bench_of(self, file: MechanismFile, *, start: bool = False) -> Workbench | TaskBench:
         bench: Workbench | TaskBench
-        if is_task(file.text):
+        if _is_task(file.text):
+            # with all of synthesis: the page of a mechanism does without it
+            from linkwork.viewer.live.task.bench import TaskBench
+
             bench = TaskBench(file, self._solve)
         else:
             bench = Workbench(file, self._read, start=start)

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from linkwork.foundation.errors import InputError
@@ -16,9 +17,11 @@ from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.messages import MessageError, decoded, encoded
 from linkwork.viewer.live.requests import SetText
 from linkwork.viewer.live.solvable import Read
-from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.waiting import Waiting, WorkSigns, answer, answers_of
+
+if TYPE_CHECKING:
+    from linkwork.viewer.live.task.cycle import SolveTask
 
 __all__ = ["BrowserDesk"]
 
