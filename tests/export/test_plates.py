@@ -43,6 +43,15 @@ def test_plates_keep_the_dimensions_and_do_not_touch(name: str) -> None:
     assert stack.proved
 
 
+def test_rows_without_a_position_are_counted(tmp_path: Path) -> None:
+    mechanism = read_example("parallelogram")
+    motion = mechanism.sweep(start=0, stop=360, step=30)
+    lost = np.count_nonzero(~motion.found)
+    stack = mechanism.to_plates(tmp_path / "x.svg", motion)
+    assert 0 < lost < len(motion)
+    assert f"{lost} of {len(motion)} rows of the table have no position: left out" in stack.notes
+
+
 def test_plates_forced_into_one_layer_are_seen_to_touch() -> None:
     mechanism = read_example("four-bar")
     stack, motion = made(mechanism)

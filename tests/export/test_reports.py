@@ -452,7 +452,7 @@ def test_unknown_templates_formats_and_packages_are_refused(
     bar = coarse(read_example("four-bar"), 2)
     with pytest.raises(lw.InputError, match=r'no template "enginer" \(templates: engineer'):
         bar.to_report(tmp_path / "x.html", template="enginer")
-    with pytest.raises(lw.InputError, match=r"must be one of \.html, \.pdf, \.docx, \.md"):
+    with pytest.raises(lw.InputError, match=r"a report is one of \.html, \.pdf, \.docx, \.md"):
         bar.to_report(tmp_path / "x.odt")
     (tmp_path / "short.toml").write_text('sections = ["versions"]')
     for suffix, package in (("pdf", "typst"), ("docx", "docx")):

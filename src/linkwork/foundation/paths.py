@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import errno
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["as_path", "unwritten"]
+__all__ = ["as_path", "suffix_of", "unwritten"]
 
 
 def as_path(given: object) -> Path:
@@ -23,6 +24,23 @@ def as_path(given: object) -> Path:
     if not isinstance(given, str | PathLike):
         raise InputError(f"a path must be a text or a Path, got {as_told(given)}")
     return Path(given)
+
+
+def suffix_of(file: Path, what: str, formats: Iterable[str]) -> str:
+    """The suffix of a file to be written, in small letters.
+
+    Raises
+    ------
+    InputError
+        If it is none of the formats.
+    """
+    suffix = file.suffix.lower()
+    known = tuple(formats)
+    if suffix not in known:
+        raise InputError(
+            f'cannot write "{file}": the suffix of {what} is one of {", ".join(known)}'
+        )
+    return suffix
 
 
 def unwritten(path: Path | str, error: Exception) -> InputError:

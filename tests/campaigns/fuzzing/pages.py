@@ -13,15 +13,16 @@ from typing import Any
 import numpy as np
 
 import linkwork as lw
+from linkwork.design.synthesis.solving import solve_task
 from linkwork.mechanism.part.index import PARTS
+from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import ProblemsFound, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.messages import decoded, encoded, kind_of
 from linkwork.viewer.live.requests import REQUESTS, Picked
-from linkwork.viewer.live.workbench import Workbench
 from tests.campaigns.fuzzing.loads import LOADED, loaded_text, names_in
 from tests.campaigns.fuzzing.odd import FORMULAS, NAMES, NUMBERS, pick
-from tests.campaigns.fuzzing.texts import changed_bytes, changed_text, library_text
+from tests.campaigns.fuzzing.texts import changed_bytes, changed_text, library_text, task_text
 from tests.campaigns.fuzzing.witness import LIMIT, SHOWS_PROGRESS, Witness
 
 __all__ = ["BENCH", "BENCH_NAMES", "BENCH_TEXTS", "messages"]
@@ -82,11 +83,13 @@ class _Sheet:
 
 
 def messages(rng: np.random.Generator, witness: Witness, folder: Path) -> None:
-    """Requests to a workbench, one after the other."""
+    """Requests to what a page has, one after the other."""
     sheet = _sheet(rng)
     path = folder / "bench.toml"
     path.write_text(sheet.text, encoding="utf-8", errors="replace")
-    bench = witness.call("workbench", lambda: Workbench(MechanismFile(path), lw.loads), sheet.limit)
+    bench = witness.call(
+        "bench", lambda: Bench(MechanismFile(path), lw.loads, solve_task), sheet.limit
+    )
     if bench is None:
         return
     witness.call("opened", bench.opened, sheet.limit)
@@ -100,6 +103,8 @@ def _sheet(rng: np.random.Generator) -> _Sheet:
         return _Sheet(BENCH, BENCH_NAMES)
     if kind < 0.6:
         return _Sheet(LOADED, (*BENCH_NAMES, "return", "torsion", *_QUANTITIES))
+    if kind < 0.65:
+        return _Sheet(task_text(rng), BENCH_NAMES, SHOWS_PROGRESS)
     if kind < 0.75:
         return _Sheet(blank_sheet("Untitled"), BENCH_NAMES)
     text = library_text(rng)
@@ -111,7 +116,7 @@ def _sheet(rng: np.random.Generator) -> _Sheet:
     return _Sheet(text, [name.strip('"') for name in names], SHOWS_PROGRESS)
 
 
-def _asked(witness: Witness, bench: Workbench, text: str, limit: float) -> None:
+def _asked(witness: Witness, bench: Bench, text: str, limit: float) -> None:
     """Send a message and judge the events that answer it."""
     asked = witness.call(f"decoded {text[:200]}", lambda: decoded(text))
     if asked is None:

@@ -10,7 +10,7 @@ from linkwork.export.plates.plate import PlateStack
 from linkwork.export.plates.solids import mesh_of, stl_of, three_mf_of
 from linkwork.export.plates.step import step_of
 from linkwork.export.plates.svg import svg_of
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import suffix_of
 
 __all__ = ["check_plate_file", "plates_of"]
 
@@ -25,11 +25,7 @@ def check_plate_file(file: Path) -> str:
     InputError
         If there is no such format.
     """
-    suffix = file.suffix.lower()
-    if suffix not in _FORMATS:
-        known = ", ".join(_FORMATS)
-        raise InputError(f'cannot write "{file}": the suffix of plates is one of {known}')
-    return suffix
+    return suffix_of(file, "plates", _FORMATS)
 
 
 def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:

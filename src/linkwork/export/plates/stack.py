@@ -112,6 +112,9 @@ def _checked(model: Model, motion: Motion) -> Linkage:
 def _notes(linkage: Linkage, motion: Motion, made: Construction, longest: float) -> list[str]:
     """What the plates lack; refuse redundant links that are too far from fitting."""
     notes = list(made.notes)
+    lost = int(np.count_nonzero(~motion.found))
+    if lost:
+        notes.append(f"{lost} of {len(motion)} rows of the table have no position: left out")
     nothing = KinematicPairs()
     left = [part.label for part in linkage.parts if part.pairs(linkage) == nothing]
     if left:

@@ -19,8 +19,7 @@ from linkwork.export.report.html_writer import html_bytes
 from linkwork.export.report.markdown_writer import markdown_files
 from linkwork.export.report.pdf_writer import pdf_bytes
 from linkwork.export.report.template import SECTIONS, Template
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import unwritten
+from linkwork.foundation.paths import suffix_of, unwritten
 from linkwork.textfile import save_bytes
 
 __all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
@@ -83,11 +82,7 @@ def check_report_file(path: Path) -> None:
     InputError
         If the suffix is not one of :data:`FORMATS`.
     """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(
-            f'cannot write "{path.name}": the suffix of a report must be one of '
-            f"{', '.join(FORMATS)}"
-        )
+    suffix_of(path, "a report", FORMATS)
 
 
 def document_of(found: Findings, template: Template) -> Document:

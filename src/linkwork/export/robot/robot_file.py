@@ -9,6 +9,7 @@ from linkwork.export.robot.robot import Robot
 from linkwork.export.robot.sdf import sdf_of
 from linkwork.export.robot.urdf import urdf_of
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.paths import suffix_of
 from linkwork.motion.model import Model
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
@@ -26,11 +27,7 @@ def check_robot_file(file: Path) -> str:
     InputError
         If there is no such format.
     """
-    suffix = file.suffix.lower()
-    if suffix not in _FORMATS:
-        known = ", ".join(_FORMATS)
-        raise InputError(f'cannot write "{file}": the suffix of a robot is one of {known}')
-    return suffix
+    return suffix_of(file, "a robot", _FORMATS)
 
 
 def robot_of(model: Model, start: Position, motion: Motion | None, file: Path) -> str:
