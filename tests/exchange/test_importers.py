@@ -202,6 +202,13 @@ def test_wrong_files_are_refused_with_reason_and_place(name: str) -> None:
     assert message in str(refused.value)
 
 
+def test_a_missing_file_names_the_files_of_its_kind(tmp_path: Path) -> None:
+    (tmp_path / "sketch.dxf").write_text("0")
+    with pytest.raises(lw.MechanismFileError) as caught:
+        lw.imported(tmp_path / "sketsh.dxf")
+    assert "there is no such file (DXF files there: sketch.dxf)" in str(caught.value)
+
+
 def test_every_format_has_a_sample() -> None:
     assert {read_foreign(data, name).format for name, data in SAMPLES.items()} == set(FORMATS)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from glob import escape
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -56,11 +57,12 @@ def bytes_of(path: Path, name: str, most: int = LARGEST) -> bytes:
 
 
 def _files_beside(path: Path) -> str:
+    suffix = path.suffix or ".toml"
     try:
-        found = sorted(other.name for other in path.parent.glob("*.toml"))
+        found = sorted(other.name for other in path.parent.glob(f"*{escape(suffix)}"))
     except (OSError, ValueError):
         found = []
-    return choices("TOML files there", found, path.name)
+    return choices(f"{suffix[1:].upper()} files there", found, path.name)
 
 
 def _too_large(size: int, most: int = LARGEST) -> str:
