@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import linkwork as lw
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.linkage import Linkage
+from linkwork.results.reactions import ForceStatus
 from tests.described import described_as
 
 SLIDER_CRANK = {
@@ -47,6 +49,51 @@ def test_bars_of_a_truss_carry_its_load() -> None:
         assert found[f"{name}.force.x"] == pytest.approx(force[0], abs=1e-14)
         assert found[f"{name}.force.y"] == pytest.approx(force[1], abs=1e-14)
     assert found.efforts == ()
+
+
+TRUSS: dict[str, Any] = {
+    "points": {"A": (0, 0), "B": (100, 0), "C": (40, 60), "E": (20, -10)},
+    "links": {"ground": ["A", "B", "E"], "left": ["A", "C"], "right": ["B", "C"]},
+    "loads": [lw.Load(point="C", force=(30, -100))],
+}
+
+
+def test_a_redundant_bar_leaves_the_forces_of_a_truss_undetermined() -> None:
+    links = {**TRUSS["links"], "third": ["E", "C"]}
+    found = lw.linkage(**{**TRUSS, "links": links}).forces()
+    assert found.status is ForceStatus.UNDETERMINED
+    assert np.isnan(found["A.force.x"])
+    assert found["shaking.y"] == -100
+
+
+def test_friction_at_rest_leaves_the_forces_of_a_truss_open() -> None:
+    friction = {"C": lw.Friction(mu=0.3, radius=5)}
+    found = lw.linkage(**TRUSS, friction=friction).forces()
+    assert found.status is ForceStatus.HELD
+    assert np.isnan(found["A.force.x"])
+
+
+def test_a_load_in_time_needs_an_input() -> None:
+    loads = [lw.Load(point="C", force=("30*t", -100))]
+    truss = lw.linkage(**{**TRUSS, "loads": loads})
+    assert truss.solve().status is lw.Status.CONVERGED
+    with pytest.raises(MechanismError, match="the time t needs the speed of an input"):
+        truss.forces()
+
+
+def test_redundant_links_with_two_inputs_keep_their_reactions() -> None:
+    """A bar of a parallelogram that two inputs move adds no equation."""
+    cranks = lw.linkage(
+        points={"A": (0, 0), "B": (0, 10), "C": (30, 0), "D": (30, 10), "E": (15, 0),
+                "F": (15, 10), "G": (60, 40)},
+        links={"ground": ["A", "C", "E"], "left": ["A", "B"], "right": ["C", "D"],
+               "middle": ["E", "F"], "bar": ["B", "F", "D"], "arm": ["D", "G"]},
+        inputs=[lw.Input(link="left", start=90, stop=100, step=5),
+                lw.Input(link="arm", start=40, stop=40, step=0)],
+        loads=[lw.Load(point="G", link="arm", force=(0, -5))],
+    )  # fmt: skip
+    found = cranks.forces(at={"left": 90, "arm": 40})
+    assert found["shaking.y"] == -5
 
 
 def test_a_block_pushed_beside_its_line_needs_a_moment() -> None:

@@ -30,7 +30,8 @@ __all__ = ["motion_forces_lines", "position_forces_lines", "reactions_data"]
 _TOTALS = ("shaking", "power", "kinetic_energy", "stored_energy", "load_power", "energy_rate")
 _LOSSES = ("friction_power", "efficiency")
 _NONE = (
-    ForceStatus.NO_POSITION, ForceStatus.NO_RATES, ForceStatus.SELF_LOCKING, ForceStatus.NO_LOAD
+    ForceStatus.NO_POSITION, ForceStatus.NO_RATES, ForceStatus.SELF_LOCKING, ForceStatus.NO_LOAD,
+    ForceStatus.HELD,
 )  # fmt: skip
 
 

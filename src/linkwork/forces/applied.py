@@ -197,6 +197,8 @@ def time_of(geometry: Geometry) -> Array:
     model = geometry.model
     if model.untimed is not None:
         return geometry.lead
+    if not model.equations.inputs:
+        return np.full(geometry.shape, np.nan)
     lead = list(model.motion_quantities.names.inputs).index(model.motion_quantities.names.lead)
     speed = model.speed or np.nan
     return np.asarray((geometry.lead - model.rows[0, lead]) / speed)

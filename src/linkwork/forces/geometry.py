@@ -153,8 +153,16 @@ class Geometry:
     @cached_property
     def variables(self) -> Array:
         """All variables of the mechanism with its own inputs, internal units, (B, N)."""
-        named = (self.own(variable.name).v for variable in self.driven.equations.variables)
-        return np.stack(list(named), axis=1)
+        equations = self.driven.equations
+        spans = {part.variable: part.points for part in equations.redundant}
+        found = []
+        for variable in equations.variables:
+            if variable.name in spans:  # the length of a redundant link is no quantity
+                first, second = (self.place(point).v for point in spans[variable.name])
+                found.append(np.abs(second - first))
+            else:
+                found.append(self.own(variable.name).v)
+        return np.stack(found, axis=1)
 
     @cached_property
     def _partials(self) -> tuple[ComplexArray, Array]:

@@ -148,7 +148,8 @@ def solve_forces(model: Model, solved: Solved) -> ForceRows:
             rubbing = _add_reactions(found, bodies)
         drives = [] if bodies is None else [effort_name(i.column) for i in bodies.linkage.inputs]
         _add_efforts(found, by_work, largest, drives, rubbing)
-        if bodies is not None and any(own.motion is not None for own in bodies.following):
+        rubs = bodies is not None and any(own.motion is not None for own in bodies.following)
+        if bodies is not None and rubs and len(by_work):
             _add_losses(found, by_work, largest, rubbing)
             if not applied.rate:
                 _add_backward(found, bodies, by_work)
@@ -293,7 +294,9 @@ def _add_reactions(found: _Solution, bodies: FreeBodies) -> FrictionEfforts:
 
 
 def _held(geometry: Geometry) -> BoolArray:
-    """Rows of a simulation in which the mechanism stays at rest, (B,)."""
+    """Rows of a structure, and of a simulation where the mechanism stays at rest, (B,)."""
+    if not geometry.driven.equations.inputs:
+        return np.ones(geometry.rows, dtype=bool)
     if geometry.model.untimed is None or geometry.model.description.timed:
         return np.zeros(geometry.rows, dtype=bool)
     found: BoolArray = (geometry.input_ways == 0.0).all(axis=0)
