@@ -22,7 +22,7 @@ class CodedEnum(Enum):
 
     @property
     def label(self) -> str:
-        """The name as words: ``out of reach``."""
+        """The name as words, as in ``out of reach``."""
         return self.name.lower().replace("_", " ")
 
     @classmethod
