@@ -17,6 +17,13 @@ from linkwork.design.differentiated_rows import DifferentiatedRows
 from linkwork.design.tape import Tape
 from linkwork.expression.jets import Jet
 from linkwork.forces.applied import AppliedLoads
+from linkwork.forces.build_bodies import (
+    free_bodies,
+    free_bodies_of,
+    known_acts,
+    read_bodies,
+    set_down,
+)
 from linkwork.forces.drives import effort_name
 from linkwork.forces.free_bodies import Act, FreeBodies
 from linkwork.forces.geometry import Geometry
@@ -25,15 +32,7 @@ from linkwork.forces.part.guide import line_of
 from linkwork.forces.part.index import join_loads
 from linkwork.forces.part.load import apply_load
 from linkwork.forces.pins import read_first_links
-from linkwork.forces.system import (
-    NO_WORK,
-    free_bodies,
-    free_bodies_of,
-    known_acts,
-    read_bodies,
-    set_down,
-    totals,
-)
+from linkwork.forces.system import NO_WORK, totals
 from linkwork.forces.virtual_work import work_terms
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
