@@ -4,8 +4,9 @@ import type { FileState, LiveEvent, LiveRequest, TaskState } from "../messages";
 import { Bar } from "./bar";
 import { Busy } from "./busy";
 import { Latest } from "./latest";
-import { Notices } from "./notices";
-import { Starting } from "./starting";
+import { Notices, type Choices } from "./notices";
+import { Opening } from "./opening";
+import { leaveStart, noteAtStart, Starting } from "./starting";
 import type { Transport } from "./transport";
 
 export interface ShellHooks {
@@ -24,6 +25,7 @@ export class Shell {
   readonly busy = new Busy();
   readonly bar: Bar;
   readonly starting: Starting;
+  private readonly opening: Opening;
   private readonly latest: Latest<LiveRequest>;
   private gone = false;
 
@@ -33,7 +35,8 @@ export class Shell {
   ) {
     const desk = { ask: (request: LiveRequest) => this.ask(request), file: hooks.file };
     this.latest = new Latest((request) => this.background(hooks.dragged?.(request) ?? request));
-    this.starting = new Starting(desk);
+    this.opening = new Opening(desk, { shown: () => this.bar.element.checkVisibility(), refuse: (message) => this.refuse(message) });
+    this.starting = new Starting(desk, () => this.opening.pick());
     this.bar = new Bar(desk, () => this.starting.offer(true));
     document.body.append(this.busy.element);
   }
@@ -66,11 +69,12 @@ export class Shell {
         return; // it goes on
       case "refused":
         if (this.bar.link.opened) this.bar.link.refuse(event.message);
-        else this.notices.say(event.message, /overwrite/.test(event.message) ? this.decisions() : {});
+        else this.refuse(event.message, /overwrite/.test(event.message) ? this.decisions() : {});
         this.hooks.restore();
         break;
       case "problems_found":
-        this.notices.problems(event);
+        this.notices.problems(event, event.where === this.hooks.file()?.file ? "" : event.where);
+        noteAtStart(this.notices.text);
         this.hooks.restore();
         break;
       case "file_changed":
@@ -78,6 +82,10 @@ export class Shell {
         break;
       case "link_made":
         this.bar.link.show(event);
+        break;
+      case "file_opened":
+        leaveStart();
+        this.notices.opened(event);
         break;
       case "saved":
         this.notices.done(`Saved in ${event.file}.`);
@@ -96,6 +104,11 @@ export class Shell {
     element.classList.add("lw-lost");
     for (const one of panels.querySelectorAll<HTMLInputElement>("input, button:not([role=tab]), select, textarea")) one.disabled = true;
     this.notices.say(message, { Reload: () => location.reload() }, false);
+  }
+
+  private refuse(message: string, choices: Choices = {}): void {
+    this.notices.say(message, choices);
+    noteAtStart(message);
   }
 
   private decisions(): Record<string, () => void> {
