@@ -67,7 +67,8 @@ def _usual(motion: Motion) -> list[str]:
     """The default columns: unknown lengths, else rates of traced points, else the usual ones."""
     lengths = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.LENGTH]
     rate = Rate.FIRST if motion.speed is None else Rate.VELOCITY
-    return lengths or [f"{p}.{rate.value}" for p in motion.skeleton.traced] or [*usual_columns(motion)]
+    rates = [f"{point}.{rate.value}" for point in motion.skeleton.traced]
+    return lengths or rates or list(usual_columns(motion))
 
 
 def _an_angle(motion: Motion) -> str:
