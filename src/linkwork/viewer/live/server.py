@@ -72,7 +72,7 @@ class LiveServer:
         Parameters
         ----------
         tell : callable
-            Called before the server starts, once its packages are found; from then on Ctrl-C ends it.
+            Called before the server starts, once its packages are found: Ctrl-C then ends it.
 
         Raises
         ------
