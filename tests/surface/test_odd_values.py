@@ -45,6 +45,7 @@ PRESS = lw.example("crank-press")
             'the motion belongs to "Four-bar linkage, open", not to "Crank press with forces"',
         ),
         (lambda: batch.from_table("\0"), "'\\x00' cannot be read: embedded null"),
+        (lambda: batch.from_table({"A": 1}, 1.5), "the columns must be a list of names, got 1.5"),  # type: ignore[arg-type]
         (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]
