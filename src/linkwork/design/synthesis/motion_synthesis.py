@@ -125,9 +125,7 @@ def _pairs(
         guided, immobile = pair_guides(dyads, poses)
         made += guided
         if immobile:
-            told = (
-                f"; {immobile} pairs of parallel or equal guides have no degree of freedom to turn"
-            )
+            told = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
     return [part for part in made if part.kind.value in task.mechanisms], told
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guide_loops import guide_speeds
-from linkwork.design.synthesis.loop_limits import DrivenLoops
+from linkwork.design.synthesis.guide_loops import guide_speeds, meeting
+from linkwork.design.synthesis.loop_limits import DrivenLoops, cross
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.travel import Travel
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
@@ -73,14 +73,29 @@ def _gaps(
     # a crank, a rocker, or the body from its end to the block
     both = {"A0": (given.fixed_a, a), "B0": (given.fixed_b, b)}
     ends += [both[name] for name in given.kind.pivots]
-    if given.kind is LoopKind.RAPSON:
-        ends.append((given.fixed_b, a))
+    if given.kind.body_line:
+        corner = _corner(given, a, b)
+        ends += [(corner, a), (corner, b), (corner, given.fixed_b)]
+        if given.kind is LoopKind.OLDHAM:
+            ends.append((corner, given.fixed_a))
     gaps = [
         distances_to_segments(np.asarray(x + 1j * y), start, end) - radius
         for x, y, radius in circles
         for start, end in ends
     ]
     return np.asarray(np.min(gaps, axis=0))
+
+
+def _corner(given: Candidates, a: ComplexArray, b: ComplexArray) -> ComplexArray:
+    """Where the body's line through B begins: the foot of A, or the crossing with that through A,
+    at places of A and B (D,).
+    """
+    first, second, line = given.moving_a[:, 0], given.moving_b[:, 0], given.lines[:, 0]
+    if given.kind is LoopKind.OLDHAM:
+        start = meeting(given.fixed_a, given.lines_a[:, 0], given.fixed_b, line)
+    else:
+        start = first + 1j * cross(line, second - first) * line
+    return np.asarray(a + (start - first) * (b - a) / (second - first))
 
 
 def _fastest(

@@ -52,7 +52,7 @@ class Verdicts:
         A lower bound of the transmission angle over the driven range [rad]; NaN where the range is
         not defined.
     size : (D,)
-        The longest link or distance of fixed pivots [length].
+        The longest link or distance of fixed pivots, of two guides also the longest arm [length].
     shortest : (D,)
         The shortest link [length].
     arm : (D,)
@@ -115,6 +115,9 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     arm = np.maximum(
         np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
     )
+    if not given.kind.has_crank:
+        # a rod between two guides may be short, and hold the guided point far away
+        size = np.maximum(size, arm)
     found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
     found[DefectKind.TOLERANCE] = open_ & wishes.exceeds(given.guided, given.error).any(axis=1)
     # a design with one other defect tells what that wish costs, if nothing else is wrong
@@ -142,7 +145,7 @@ def _lengths(given: Candidates) -> Array:
     A coupler that slides in a block is as long as its farthest position needs.
     """
     if given.kind is LoopKind.RAPSON:
-        return np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)[:, None]
+        return np.asarray(np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)[:, None])
     if not given.kind.has_crank:
         rod = np.abs(given.moving_b[:, 0] - given.moving_a[:, 0])
         ground = np.abs(given.fixed_b - given.fixed_a)
