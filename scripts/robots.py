@@ -14,6 +14,7 @@ from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
 from linkwork.export.robot.urdf import urdf_of
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.part.pairs import PairKind
 from linkwork.results.motion import Motion
 
@@ -57,9 +58,11 @@ def _moved(robot: Robot, motion: Motion) -> str:
             first, second = (data.site(f"{body}/{edge.point}").xpos for body in edge.bodies)
             gap = max(gap, float(np.abs(first - second).max()) / size)
             if edge.kind is PairKind.FIXED:
-                turn = np.subtract(*(_angle(data.body(body)) for body in edge.bodies))
-                at_start = np.subtract(*(robot.frame(body)[1] for body in edge.bodies))
-                gap = max(gap, abs(np.exp(1j * turn) - np.exp(1j * at_start)))
+                turned = [
+                    _angle(data.body("world" if body == GROUND else body)) - robot.frame(body)[1]
+                    for body in edge.bodies
+                ]
+                gap = max(gap, abs(np.exp(1j * turned[0]) - np.exp(1j * turned[1])))
         if model.ntendon:
             slip = max(slip, float(np.abs(data.ten_length - model.tendon_length0).max()))
     wrong = "" if away <= 1e-9 and gap <= 1e-12 and slip <= 1e-9 else " WRONG"

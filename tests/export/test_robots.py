@@ -12,6 +12,7 @@ import linkwork as lw
 from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
 from linkwork.export.robot.urdf import urdf_of
+from linkwork.mechanism.part.pairs import Pair, PairKind
 from linkwork.results.motion import Motion
 from tests.export.coarse import coarse
 from tests.library_mechanisms import read_example
@@ -200,3 +201,14 @@ def test_a_link_with_the_name_of_the_ground_of_simulators_is_refused(
     mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "world ="))
     with pytest.raises(lw.InputError, match='link "world" has the name of the ground'):
         mechanism.to_robot(tmp_path / f"x.{suffix}")
+
+
+def test_a_weld_to_the_ground_names_the_world() -> None:
+    mechanism = read_example("four-bar")
+    robot = Robot(mechanism.model, mechanism.solve())
+    robot.tree.closing.append(
+        Pair(kind=PairKind.FIXED, name="more", bodies=("rocker", "ground"), point="O4")
+    )
+    weld = Tree.fromstring(mjcf_of(robot)).find("equality/weld")
+    assert weld is not None
+    assert weld.attrib == {"body1": "rocker", "body2": "world"}

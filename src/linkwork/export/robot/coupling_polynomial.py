@@ -65,7 +65,7 @@ def couplings_of(robot: Robot, motion: Motion) -> Couplings:
     with np.errstate(all="ignore"):
         slopes = {name: own_rate / rate for name, (_, own_rate) in values.items()}
     # at a dead point slopes are infinite, at rest they are unknown
-    known = np.isfinite([x, *slopes.values()]).all(axis=0)
+    known = np.logical_and.reduce(np.isfinite([x, *slopes.values()]))
     rows = _rows(x, motion, known)
     if len(rows) < 5:
         raise InputError(
