@@ -352,7 +352,7 @@ def test_a_template_that_does_not_fit_is_refused_before_any_computation(
     (tmp_path / "t.toml").write_text(f'sections = ["motion", "tolerances"]\n{wrong}\n')
     bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
     monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
-    with pytest.raises(lw.InputError, match='no "rokcer"|every = 37: the motion has no two rows'):
+    with pytest.raises(lw.InputError, match=r'no "rokcer"|every = 37: the motion has no two rows'):
         bar.to_report(tmp_path / "bar.html", template=tmp_path / "t.toml")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.precision.linkage_proof import prove_linkages
-from linkwork.design.precision.path_tracking import ReportingTracker, tracker_for
+from linkwork.design.precision.path_tracking import SparingTracker
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.start_sets import start_member
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
@@ -93,6 +93,7 @@ def four_bars_through(
     given: PrecisionPositions,
     tracker: Tracker | None = None,
     *,
+    alike: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> PrecisionFourBars:
     """All four-bars through positions that determine a finite number of them.
@@ -104,15 +105,15 @@ def four_bars_through(
         the first position: eight in all, at least one of them a point.
     tracker : Tracker, optional
         By default compiled where that saves time.
+    alike : int
+        How many tasks of this kind will be solved, this one included.
     progress : callable, optional
         Told the finished fraction of the paths; may raise an error to end the work.
     """
     problem, size = given.problem, given.size
     member = start_member(problem)
     goal, rng = given.parameters(size), np.random.default_rng(_SEED)
-    tracker = tracker or tracker_for(len(member.x))
-    if progress is not None:
-        tracker = ReportingTracker(tracker, progress)
+    tracker = tracker or SparingTracker(alike * len(member.x), progress)
     roots = roots_at(problem, member, goal, tracker, rng)
     apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
     real = problem.linkages(roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL], goal)

@@ -42,7 +42,13 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
             progress((len(solved) + fraction) / len(tasks))
 
     for given in tasks:
-        solved.append(four_bars_through(given, progress=None if progress is None else go_on))
+        solved.append(
+            four_bars_through(
+                given,
+                alike=len(tasks) - len(solved),
+                progress=None if progress is None else go_on,
+            )
+        )
         go_on(0.0)
     grade, message = _completeness(solved)
     return Found(

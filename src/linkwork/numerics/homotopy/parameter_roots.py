@@ -116,11 +116,13 @@ class _Search:
             more = self._new_ones(found, self._by_detour(rng))
             detours += 1
             by_detour += len(more)
-            if len(more):
-                found = np.concatenate([found, more])
-                if closed is not None:
-                    found, mirrored, closed = self._close(found)
-                    by_mirror += mirrored
+            if not len(more):
+                # what is missing ends where no path leads in time
+                break
+            found = np.concatenate([found, more])
+            if closed is not None:
+                found, mirrored, closed = self._close(found)
+                by_mirror += mirrored
         # a mirror image may have shown that an end is regular after all
         singular = self._apart(found, ends.x[ends.singular])
         return ParameterRoots(
