@@ -336,8 +336,8 @@ class PartChecks:
         return amount
 
     def positive(self, number: Number, noun: str, *field: str | int) -> float:
-        """A positive number."""
-        amount = self.number(number, *field)
+        """A positive number, limited so that products with it are finite."""
+        amount = self.amount(number, *field)
         if amount <= 0:
             what = "positive" if noun == "radii" else f"a positive {noun}"
             what = "positive whole numbers" if noun == "teeth" else what

@@ -116,13 +116,14 @@ class _Search:
             more = self._new_ones(found, self._by_detour(rng))
             detours += 1
             by_detour += len(more)
-            if not len(more):
-                # what is missing ends where no path leads in time
+            if len(more):
+                found = np.concatenate([found, more])
+                if closed is not None:
+                    found, mirrored, closed = self._close(found)
+                    by_mirror += mirrored
+            elif settled > paths - settled - len(found):
+                # in a special task what is missing creeps to where the other paths ended
                 break
-            found = np.concatenate([found, more])
-            if closed is not None:
-                found, mirrored, closed = self._close(found)
-                by_mirror += mirrored
         # a mirror image may have shown that an end is regular after all
         singular = self._apart(found, ends.x[ends.singular])
         return ParameterRoots(
