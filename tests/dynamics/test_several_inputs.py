@@ -192,7 +192,7 @@ def test_whether_a_motion_stays_at_a_stop_depends_on_its_path_too(
 
 
 def test_a_stop_that_a_law_moves_is_a_moving_wall() -> None:
-    turning = [lw.LawSegment(law="constant", over=3, by=3)]
+    turning = (lw.LawSegment(law="constant", over=3, by=3),)
     inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1.5, stop=1.5))
     masses = {x: lw.Mass(mass=1, center=(0, 0), inertia=1) for x in "ab"}
     arms = _arms(
@@ -208,7 +208,7 @@ def test_a_stop_that_a_law_moves_is_a_moving_wall() -> None:
 
 
 def test_a_law_that_moves_into_a_stop_ends_the_motion() -> None:
-    turning = [lw.LawSegment(law="constant", over=3, by=3)]
+    turning = (lw.LawSegment(law="constant", over=3, by=3),)
     inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1, stop=1))
     stops = [lw.Stop(of="a", stop=1)]
     motion = _arms((1 + 0j, 1j), "O", inputs=inputs, stops=stops).simulate(until=3, step=0.5)
