@@ -144,7 +144,7 @@ def test_a_branch_defect_names_its_dead_point() -> None:
     assert defect.kind.name == "BRANCH"
     assert defect.between == (4, 5)
     angle = float(defect.message.split()[-1].rstrip("°"))
-    z = found.designs[0].design.points
+    z = found.designs[0].points
     crank = abs(z["A"] - z["A0"]) * np.exp(1j * np.radians(angle))
     reach = abs(z["A0"] + crank - z["B0"])
     coupler, rocker = abs(z["B"] - z["A"]), abs(z["B"] - z["B0"])

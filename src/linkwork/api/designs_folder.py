@@ -9,7 +9,8 @@ from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
 from linkwork.design.synthesis.designs_table import designs_table
-from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.task import Task
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.foundation.errors import InputError
@@ -130,7 +131,7 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
     return there
 
 
-def _file_name(found: Synthesis, design: SynthesizedDesign) -> str:
+def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     """``pick-and-place-01.toml``; refused ones are in their own folder."""
     stem = re.sub(r"[^a-z0-9]+", "-", found.task.name.lower()).strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"
