@@ -180,6 +180,7 @@ def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesi
         numbers[bool(refused)] += 1
         number = numbers[bool(refused)]
         yield SynthesizedDesign(
+            task=task,
             number=number,
             group=judged[group],
             index=k,

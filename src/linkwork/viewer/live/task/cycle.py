@@ -120,10 +120,9 @@ class TaskCycle:
         InputError
             If there is none.
         """
-        if not 0 <= index < len(self.found.designs):
+        if not 0 <= index < len(self.found.of_loops):
             raise InputError(f"there is no design {index + 1}: the task has been solved again")
-        found: SynthesizedDesign = self.found.designs[index]
-        return found
+        return self.found.of_loops[index]
 
     def events(self, *, live: bool = False) -> Events:
         """Solve the task, and find the chosen design again.
@@ -168,7 +167,7 @@ class TaskCycle:
 
     def _found_again(self) -> int | None:
         """The place of the chosen design after a change; by default the best one."""
-        designs = self.found.designs
+        designs = self.found.of_loops
         if not designs:
             return None
         index, chosen = 0, self._chosen

@@ -45,7 +45,7 @@ def task_solved(
     sound = found.sound
     listed = [] if live else [
         *range(min(sound, _MOST_SOUND)),
-        *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
+        *range(sound, min(len(found.of_loops), sound + _MOST_REFUSED)),
     ]  # fmt: skip
     wish, costs = found.costliest or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
@@ -55,7 +55,7 @@ def task_solved(
         live=live,
         solutions=solutions,
         linkages=found.linkages,
-        count=len(found.designs),
+        count=len(found.of_loops),
         sound=sound,
         delivered=len(found.delivered),
         completeness=found.completeness.name,
@@ -65,8 +65,8 @@ def task_solved(
         defects={kind.value: count for kind, count in found.defects.items()},
         costliest=wish,
         costs=costs,
-        designs=tuple(_shown(found.designs[k], k) for k in listed),
-        left_out=len(found.designs) - len(listed),
+        designs=tuple(_shown(found.of_loops[k], k) for k in listed),
+        left_out=len(found.of_loops) - len(listed),
         dyads=tuple(
             DyadShown(kind=dyad.kind, fixed=dyad.fixed, proved=dyad.proved)
             for dyad in (() if live else found.dyads[:_MOST_DYADS])
@@ -98,7 +98,7 @@ def _finite(value: float) -> float | None:
 
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
-    design = found.designs[index]
+    design = found.of_loops[index]
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
     one = np.array([k])
@@ -184,7 +184,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
     ``None`` without designs.
     """
     best: tuple[bool, float, int] | None = None
-    groups = {id(design.group): design.group for design in found.designs}
+    groups = {id(design.group): design.group for design in found.of_loops}
     distances: dict[int, Array] = {}
     for name, group in groups.items():
         given = group.given
@@ -192,7 +192,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
         off = np.abs(np.stack(own, axis=1) - pivots).sum(axis=1)
         other = (given.kind.value, group.drive.value) != (kind, drive)
         distances[name] = np.where(other, np.inf, off)
-    for k, design in enumerate(found.designs):
+    for k, design in enumerate(found.of_loops):
         off = float(distances[id(design.group)][design.index])
         rank = (bool(design.kinds), off, k)
         if best is None or rank < best:
@@ -264,7 +264,7 @@ def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
 
 def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:
     """A four-bar and its two cognates, each with its verdict if it is among the designs."""
-    design = found.designs[index]
+    design = found.of_loops[index]
     own = design.group.given.take(slice(design.index, design.index + 1))
     curve = design_found(found, index).curve
     if own.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
@@ -295,8 +295,8 @@ def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> C
     """A cognate with the best verdict that the list has on it, in the names of its points."""
     wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
     size = np.abs(wanted - wanted.mean()).max()
-    for k in range(len(found.designs)) if index is None else (index,):
-        other = found.designs[k]
+    for k in range(len(found.of_loops)) if index is None else (index,):
+        other = found.of_loops[k]
         given, j = other.group.given, other.index
         ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
         for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
