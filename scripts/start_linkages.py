@@ -32,7 +32,7 @@ from linkwork.numerics.homotopy.monodromy import Member, solve_by_monodromy  # n
 from linkwork.numerics.homotopy.trace_test import trace_defect  # noqa: E402
 
 #: The families of every shipped file.
-_FILES = {SHIPPED: SHIPPED_PROBLEMS, SHIPPED_WATT: (WATT,)}
+_FILES: dict[Path, tuple[NamedFamily, ...]] = {SHIPPED: SHIPPED_PROBLEMS, SHIPPED_WATT: (WATT,)}
 _SEED, _CHECK = 11, 12  # random numbers of the shipped sets, and of others
 _STRAIGHT = 1e-7  # a trace's distance from a straight line that rounding explains
 _SEEN = 100.0  # times less straight is the trace of one solution less

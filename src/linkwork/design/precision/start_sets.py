@@ -47,6 +47,10 @@ class NamedFamily(Family, Protocol):
     def name(self) -> str:
         """The name of its start set."""
 
+    @property
+    def last(self) -> slice:
+        """The parameters of the last equation."""
+
 
 def as_arrays(problem: NamedFamily, member: Member) -> dict[str, AnyArray]:
     """A solved member as arrays of the shipped file."""

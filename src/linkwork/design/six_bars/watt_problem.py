@@ -32,7 +32,7 @@ _UNKNOWNS = 8
 _TURN = 0.7  # rad, of random complex rotations
 _CLOSE, _FAR = 0.1, 10.0  # rotations of a random six-bar beyond these make a bad start
 _NOTHING = 1e-9  # of the largest number of a solution: zero
-_UNIT = 1e-9  # how far a rotation of a real task is from the unit circle
+_OFF_CIRCLE = 1e-9  # how far a rotation of a real task is from the unit circle
 
 #: p, q, r; their derivatives by the four unknowns; and by the rotation.
 _Loop = tuple[tuple[Any, Any, Any], tuple[list[Any], list[Any], list[Any]], tuple[Any, Any, Any]]
@@ -90,7 +90,7 @@ class WattProblem:
 
     def is_real(self, c: ComplexArray) -> bool:
         """Whether parameters (P,) are rotations by real angles."""
-        return bool((np.abs(np.abs(c) - 1.0) < _UNIT).all())
+        return bool((np.abs(np.abs(c) - 1.0) < _OFF_CIRCLE).all())
 
     def mirrored(self, x: ComplexArray) -> ComplexArray:
         """The mirror images (B, n): ā in place of a, and so on."""
@@ -130,7 +130,7 @@ def bell_crank_turns(x: ComplexArray, u: ComplexArray, v: ComplexArray) -> Compl
     return turns
 
 
-def _loop(z: Sequence[Any], u: Any) -> _Loop:
+def _loop(z: Any, u: Any) -> _Loop:
     """p, q, r of a four-bar with the crank a turned by u, eq. (180), times u."""
     a, a_bar, b, b_bar = z
     back, end, end_bar = 1.0 - u, 1.0 + b, 1.0 + b_bar

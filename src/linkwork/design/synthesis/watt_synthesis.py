@@ -18,7 +18,7 @@ from linkwork.foundation.errors import MechanismError, Problem
 
 __all__ = ["solve_watt"]
 
-_SAME = 1e-9  # rad: angles that differ by whole turns
+_EQUAL_ANGLES = 1e-9  # rad: angles that differ by whole turns
 
 
 def solve_watt(
@@ -43,13 +43,16 @@ def solve_watt(
     return designs, found, _completeness(found, len(inputs))
 
 
-def _completeness(found: WattSixBars, given: int) -> tuple[Completeness, str]:
-    roots, grade = found.roots, found.completeness
-    paths = f"{roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost"
-    if given == PAIRS:
-        return grade, f"{grade.value} ({paths})"
-    told = f"a sample: {given} pairs leave a family; {PAIRS - given} more were taken between them"
-    return Completeness.SAMPLED, f"{told} ({paths})"
+def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:
+    roots, grade = solved.roots, solved.completeness
+    found = f"{len(roots.x)} of {roots.paths} solutions found"
+    if given < PAIRS:
+        more = PAIRS - given
+        told = f"a sample: {given} pairs leave a family; {more} more were taken between them"
+        return Completeness.SAMPLED, f"{told} ({found})"
+    if grade is Completeness.NOT_PROVED:
+        return grade, f"not proved: {found}; the others ended too near to singular ones"
+    return grade, f"{grade.value} ({found})"
 
 
 def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
@@ -57,7 +60,7 @@ def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
     for k in range(len(inputs)):
         for j in range(k):
             apart = np.array([inputs[k] - inputs[j], outputs[k] - outputs[j]])
-            if np.abs(apart - FULL_TURN * np.round(apart / FULL_TURN)).max() < _SAME:
+            if np.abs(apart - FULL_TURN * np.round(apart / FULL_TURN)).max() < _EQUAL_ANGLES:
                 told = f"is pair {j + 1} after whole turns: leave one out"
                 raise MechanismError(
                     [Problem(key=("function", "pairs", k), message=told)], f'task "{task.name}"'
