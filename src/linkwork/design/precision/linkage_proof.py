@@ -12,7 +12,7 @@ from linkwork.design.precision.exact_proof import (
     whole_number,
     whole_unit,
 )
-from linkwork.design.precision.position_equations import position_equations
+from linkwork.design.precision.position_equations import FurtherConditions, position_equations
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 
@@ -40,12 +40,14 @@ class ProvedLinkages:
     error: Array
 
 
-def prove_linkages(given: PrecisionPositions, linkage: ComplexArray) -> ProvedLinkages:
+def prove_linkages(
+    given: PrecisionPositions, linkage: ComplexArray, further: FurtherConditions | None = None
+) -> ProvedLinkages:
     """Refine real linkages x, x̄, a, ā, y, ȳ, b, b̄ (B, 8) [length], and prove them."""
-    equations, bits = position_equations(given), whole_unit(given.size)
-    found = prove_numbers(
-        equations.sums, _start(given, linkage), _given_numbers(given, bits), bits, given.size
-    )
+    further = further or FurtherConditions()
+    equations, bits = position_equations(given, further), whole_unit(given.size)
+    data = _given_numbers(given, further, bits)
+    found = prove_numbers(equations.sums, _start(given, linkage), data, bits, given.size)
     pairs = found.v[:, 0::2] + 1j * found.v[:, 1::2]
     return ProvedLinkages(
         holds=found.holds,
@@ -82,8 +84,8 @@ def _turn(
     return np.asarray(e / np.abs(e))
 
 
-def _given_numbers(given: PrecisionPositions, bits: int) -> list[int]:
-    """Pivots, turns, distances and 1, as whole numbers."""
+def _given_numbers(given: PrecisionPositions, further: FurtherConditions, bits: int) -> list[int]:
+    """Pivots, turns, distances, lengths, held values and 1, as whole numbers."""
     start = complex(given.start)
     whole = [whole_number(start.real, bits), whole_number(start.imag, bits)]
 
@@ -95,4 +97,6 @@ def _given_numbers(given: PrecisionPositions, bits: int) -> list[int]:
         numbers += exact_turn(angle, bits)
     for z in (*given.poses.tolist(), *given.points.tolist()):
         numbers += from_start(z)
+    for value in (*(x.length for x in further.lengths), *(x for _, x in further.held)):
+        numbers += [whole_number(value, bits), 0]
     return [*numbers, 1 << bits, 0]

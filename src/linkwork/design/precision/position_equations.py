@@ -16,7 +16,32 @@ from dataclasses import dataclass
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.product_sums import ComplexPlace, ProductSums, ProductWriter
 
-__all__ = ["PositionEquations", "position_equations"]
+__all__ = ["FurtherConditions", "GivenLength", "PositionEquations", "position_equations"]
+
+
+@dataclass(frozen=True)
+class GivenLength:
+    """The distance of two of A0, B0, A, B and the traced point P [length]."""
+
+    one: str
+    other: str
+    length: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class FurtherConditions:
+    """Conditions besides positions.
+
+    Parameters
+    ----------
+    lengths : tuple of GivenLength
+    held : tuple of (int, float)
+        Coordinates of pivots that keep a value: their place among x, [a], y, [b], seen from the
+        first position [length].
+    """
+
+    lengths: tuple[GivenLength, ...] = ()
+    held: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,10 +55,13 @@ class PositionEquations:
     moving: tuple[tuple[ComplexPlace, ComplexPlace], ...]
 
 
-def position_equations(given: PrecisionPositions) -> PositionEquations:
+def position_equations(
+    given: PrecisionPositions, further: FurtherConditions | None = None
+) -> PositionEquations:
     """The equations; v is x, [a], y, [b], all A_j and B_j, then a, b as far as they are given,
-    e of all poses, δ of all positions, 1 and 0.
+    e of all poses, δ of all positions, given lengths and held values, each with 0, then 1 and 0.
     """
+    further = further or FurtherConditions()
     free = iter(range(0, 10_000, 2))
 
     def place() -> ComplexPlace:
@@ -50,6 +78,8 @@ def position_equations(given: PrecisionPositions) -> PositionEquations:
     b = place() if pivots > 1 else b
     turns = [place() for _ in given.poses]
     deltas = [place() for _ in range(count)]
+    lengths = [place()[0] for _ in further.lengths]
+    values = [place()[0] for _ in further.held]
     one = place()
     writer = ProductWriter()
     for k, ((left, right), delta) in enumerate(zip(moving, deltas, strict=True)):
@@ -61,6 +91,12 @@ def position_equations(given: PrecisionPositions) -> PositionEquations:
         else:
             writer.equal_lengths(left, x)
             writer.equal_products(right, x, left, y)
+    named = {"A": x, "A0": a, "B": y, "B0": b}
+    for entry, length in zip(further.lengths, lengths, strict=True):
+        ends = [named[end] for end in (entry.one, entry.other) if end in named]
+        _given_length(writer, ends[0], ends[1] if len(ends) > 1 else None, length)
+    for (k, _), value in zip(further.held, values, strict=True):
+        writer.equation((1, k, one[0]), (-1, value, one[0]))
     return PositionEquations(
         sums=writer.sums(unknowns, one[1] + 1), legs=(x, a, y, b), moving=moving
     )
@@ -81,3 +117,14 @@ def _leg(
         *[(-2, m, f) for m, f in zip(moved, fixed, strict=True)],
         *[(2, s, f) for s, f in zip(start, fixed, strict=True)],
     )
+
+
+def _given_length(
+    writer: ProductWriter, one: ComplexPlace, other: ComplexPlace | None, length: int
+) -> None:
+    """|A - B|² = L²; ``None`` is the traced point, from which all is seen."""
+    terms = [(1, k, k) for k in one]
+    if other is not None:
+        terms += [(1, k, k) for k in other]
+        terms += [(-2, k, i) for k, i in zip(one, other, strict=True)]
+    writer.equation(*terms, (-1, length, length))

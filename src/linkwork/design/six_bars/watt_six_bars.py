@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.precision.path_tracking import ReportingTracker, tracker_for
+from linkwork.design.precision.path_tracking import SparingTracker
 from linkwork.design.six_bars.start_member import watt_member
 from linkwork.design.six_bars.watt_problem import WATT
 from linkwork.design.six_bars.watt_proof import prove_six_bars
@@ -92,9 +92,7 @@ def watt_six_bars(
     member = member or watt_member()
     inputs, outputs = inputs - inputs[0], outputs - outputs[0]
     goal = np.exp(1j * np.stack([inputs[1:], outputs[1:]], axis=1)).ravel()
-    tracker = tracker or tracker_for(len(member.x))
-    if progress is not None:
-        tracker = ReportingTracker(tracker, progress)
+    tracker = tracker or SparingTracker(len(member.x), progress)
     roots = roots_at(WATT, member, goal, tracker, np.random.default_rng(_SEED))
     apart = np.abs(WATT.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
     real = roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL]

@@ -100,6 +100,8 @@ class FunctionGoal:
             yield from self._formula_problems()
         else:
             yield from self._pair_problems()
+        if self.fit and not self.exact.fits:
+            yield ("function", "fit"), f"has no effect on {self.exact.mechanism}: leave it out"
         for key in ("input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
