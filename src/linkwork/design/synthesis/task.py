@@ -61,6 +61,7 @@ class Task:
     angle : AngleUnit
     mechanisms : tuple of str
         The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too;
+        of poses, and only if named, those without a crank;
         of functions watt-ii alone.
     positions : tuple of PrecisionPosition
         In order of travel.

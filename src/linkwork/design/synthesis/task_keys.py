@@ -243,7 +243,9 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            '"four-bar", "slider-crank", "inverted-slider-crank", "watt-ii"; a file to improve',
+            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; of two guides, if named: '
+            '"double-slider", "rapson-slide", "oldham-coupling"; of functions "watt-ii"; a file to '
+            "improve",
         ),
         _POSITIONS,
         _GIVEN,

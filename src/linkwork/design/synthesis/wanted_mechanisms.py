@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.function_goal import ExactPairs, FunctionGoal
 from linkwork.design.synthesis.task_keys import KINDS
 from linkwork.foundation.plain_numbers import as_told
@@ -21,14 +22,15 @@ _Problems = Iterator[tuple[tuple[str | int, ...], str]]
 
 def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
     """Kinds of mechanisms that are not known, or not made for this kind of task."""
-    known = (*MECHANISMS, WATT_II) if kind == "function" else MECHANISMS
+    known = (*MECHANISMS, WATT_II) if kind == "function" else (*MECHANISMS, *GUIDED)
     for k, name in enumerate(mechanisms):
         if name == WATT_II and kind in KINDS[:3]:
             yield ("mechanism", k), 'is made for functions only: task = "function"'
-        elif name not in known and kind != "improve":
+        elif name not in (*known, *GUIDED) and kind != "improve":
             told = " or ".join(f'"{one}"' for one in known)
             yield ("mechanism", k), f"must be {told}, got {as_told(name)}"
-        if name == MECHANISMS[2] and kind != "motion" and tuple(mechanisms) != MECHANISMS:
+        of_poses = name in (MECHANISMS[2], *GUIDED) and tuple(mechanisms) != MECHANISMS
+        if of_poses and kind not in ("motion", "improve"):
             yield ("mechanism", k), "is made from poses only: leave it out"
         if name == WATT_II and len(mechanisms) > 1 and kind == "function":
             yield ("mechanism", k), "meets more pairs than others: make it a task of its own"
