@@ -38,7 +38,7 @@ _STRAIGHT = 1e-7  # a trace's distance from a straight line that rounding explai
 _SEEN = 100.0  # times less straight is the trace of one solution less
 # of six-bars: of so many paths some pass too near to a degenerate solution on a longer way
 _REACH = 1e-3
-_TRIES = 5  # random directions of the trace test, until no path is lost
+_TRIES = 20  # random directions of the trace test, until no path is lost
 
 
 def solve(problem: NamedFamily, seed: int) -> Member:

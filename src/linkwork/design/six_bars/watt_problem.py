@@ -131,11 +131,11 @@ def bell_crank_turns(x: ComplexArray, u: ComplexArray, v: ComplexArray) -> Compl
 
 
 def _loop(z: Any, u: Any) -> _Loop:
-    """p, q, r of a four-bar with the crank a turned by u, eq. (180), times u."""
+    """p, q, r of a four-bar with the crank a turned by u."""
     a, a_bar, b, b_bar = z
     back, end, end_bar = 1.0 - u, 1.0 + b, 1.0 + b_bar
     left = a * u * end_bar - a_bar * end
-    p, r = b * (u - a_bar), back * left
+    p, r = b * (u - a_bar), back * left  # eq. (180)
     q = (b - b_bar) * u - b * a_bar + b_bar * a * u * u + r
     by = [back * u * end_bar, -(back * end), -(back * a_bar), back * a * u]
     slopes = (

@@ -59,8 +59,8 @@ class WattDesign:
 
     Examples
     --------
-    >>> import linkwork as lw
-    >>> lw.WattDesign.mechanism, lw.WattDesign.driven
+    >>> from linkwork.design.synthesis.watt_design import WattDesign
+    >>> WattDesign.mechanism, WattDesign.driven
     ('watt-ii', 'A0')
     """
 
