@@ -51,7 +51,7 @@ def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:
         told = f"a sample: {given} pairs leave a family; {more} more were taken between them"
         return Completeness.SAMPLED, f"{told} ({found})"
     if grade is Completeness.NOT_PROVED:
-        return grade, f"not proved: {found}; the others ended too near to singular ones"
+        return grade, f"not proved: {found}, other paths met or were lost"
     return grade, f"{grade.value} ({found})"
 
 
