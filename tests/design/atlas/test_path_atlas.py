@@ -17,10 +17,10 @@ from linkwork.design.atlas.path_atlas import (
     SHIPPED,
     AtlasFamily,
     PathAtlas,
-    atlas_of_stores,
     read_atlas,
 )
 from linkwork.design.atlas.path_shape import coefficients, distances, in_ways
+from linkwork.design.atlas.stored_paths import atlas_of_stores
 from linkwork.foundation.arrays import Array, ComplexArray
 
 _PLANS = Path(__file__).parents[3] / "examples" / "atlas"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
@@ -17,6 +17,7 @@ from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point
+from linkwork.viewer.live.task.mechanism_designs import finite, mechanism_found, pieces
 from linkwork.viewer.live.task_events import CognateShown, DesignShown, DyadShown
 
 __all__ = [
@@ -76,29 +77,28 @@ def task_solved(
     )
 
 
-def _shown(design: SynthesizedDesign, index: int) -> DesignShown:
+def _shown(design: SynthesizedDesign | ImprovedMechanism, index: int) -> DesignShown:
     return DesignShown(
         index=index,
+        origin="",
         number=design.number,
-        mechanism=design.group.given.kind.value,
-        drive=design.drive.value,
+        mechanism=design.mechanism,
+        drive=design.driven,
         sound=not design.kinds,
         delivered=design.delivered,
-        transmission=_finite(design.transmission),
-        size=_finite(design.size),
-        error=_finite(design.error),
-        score=_finite(design.score),
+        transmission=finite(design.transmission),
+        size=finite(design.size),
+        error=finite(design.error),
+        score=finite(design.score),
         reason=design.defects[0].message if design.kinds else "",
     )
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
     design = found.designs[index]
+    if isinstance(design, ImprovedMechanism):
+        return mechanism_found(design, _shown(design, index))
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
     one = np.array([k])
@@ -114,6 +114,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
         marks = tuple(((travel.place[k] - first) / span * (_ROWS - 1)).tolist())
     return tell.DesignFound(
         design=_shown(design, index),
+        skeleton=None,
         fixed=tuple(_fixed(own, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
         line=_line(own),
@@ -155,21 +156,12 @@ def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, .
     else:
         place = np.linspace(-np.pi, np.pi, _CURVE)
     points = pivots_at(own, drive, loops, place[None])[2][0]  # type: ignore[arg-type]
-    return tuple(_pieces(points))
+    return tuple(pieces(points))
 
 
 def _slider_range(own: Candidates) -> tuple[float, float]:
     reach = abs(own.moving_a[0, 0] - own.fixed_a[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
     return -float(reach), float(reach)
-
-
-def _pieces(points: ComplexArray) -> Iterator[tuple[float, ...]]:
-    """Runs of finite points."""
-    whole = np.isfinite(points)
-    ends = np.flatnonzero(np.diff(whole)) + 1
-    for part, ok in zip(np.split(points, ends), np.split(whole, ends), strict=True):
-        if len(part) > 1 and ok[0]:
-            yield tuple(np.stack([part.real, part.imag], axis=1).ravel().tolist())
 
 
 def _point(z: complex) -> Point:
@@ -199,7 +191,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
 
 def centre_curve(task: Task) -> tuple[tuple[float, ...], ...]:
     """The centre-point curve of four poses as polylines; none for other tasks."""
-    return tuple(piece for run in _centre_runs(task) for piece in _pieces(run))
+    return tuple(piece for run in _centre_runs(task) for piece in pieces(run))
 
 
 def nearest_on(task: Task, point: complex) -> complex:
@@ -262,6 +254,8 @@ def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
 def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:
     """A four-bar and its two cognates, each with its verdict if it is among the designs."""
     design = found.designs[index]
+    if isinstance(design, ImprovedMechanism):
+        return tell.CognatesFound(design=index, cognates=(), curve=())
     own = design.group.given.take(slice(design.index, design.index + 1))
     curve = design_found(found, index).curve
     if own.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
