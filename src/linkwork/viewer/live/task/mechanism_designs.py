@@ -51,8 +51,17 @@ def mechanism_found(
     design: ImprovedMechanism, shown: DesignShown, point: str = ""
 ) -> tell.DesignFound:
     """A design with the rows of its table that have a position; ``point`` draws its path."""
-    nothing = {"line": None, "at": (), "rows": (), "marks": (), "curve": ()}
-    found = tell.DesignFound(design=shown, skeleton=None, fixed=(), guided="", **nothing)
+    found = tell.DesignFound(
+        design=shown,
+        skeleton=None,
+        fixed=(),
+        guided="",
+        line=None,
+        at=(),
+        rows=(),
+        marks=(),
+        curve=(),
+    )
     motion = design.improved.motion
     if motion is None or not motion.found.any():
         return found
