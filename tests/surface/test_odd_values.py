@@ -11,6 +11,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import batch
+from linkwork.batch.study import summary_of
 from tests.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")
@@ -46,6 +47,7 @@ PRESS = lw.example("crank-press")
         ),
         (lambda: batch.from_table("\0"), "'\\x00' cannot be read: embedded null"),
         (lambda: batch.from_table({"A": 1}, 1.5), "the columns must be a list of names, got 1.5"),  # type: ignore[arg-type]
+        (lambda: summary_of("x" * 5000), "cannot be read: File name too long"),
         (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]
@@ -153,3 +155,9 @@ def test_a_load_is_no_complex_number() -> None:
         lw.MechanismError, match=r"column 1: cis is complex, a load is a real number"
     ):
         lw.loads(text)
+
+
+def test_a_jacobian_too_small_to_invert_is_no_warning() -> None:
+    product = "*".join(["sin(x)"] * 30)
+    found = lw.loads(f'format = 1\n[equations]\nF = "{product} = 0"\n[guess]\nx = 1e-9\n').solve()
+    assert np.isinf(found.condition)

@@ -247,14 +247,19 @@ export class LivePage {
   }
 
   private state(file: FileState): void {
-    if (this.file !== null && this.file.file !== file.file) this.another();
+    const before = this.file;
+    if (before !== null && before.file !== file.file) this.another();
+    const saved = before?.file === file.file && before.text === file.text && before.configuration === file.configuration;
     this.file = file;
     this.shell.bar.show(file);
     this.dimensions.show(file);
     this.build.show(file);
-    this.ways.renew();
-    this.circuits.renew();
-    this.simulate.renew(file);
+    if (!saved) {
+      // a file that was only saved keeps what was found of it
+      this.ways.renew();
+      this.circuits.renew();
+      this.simulate.renew(file);
+    }
     this.plots.renew();
     this.newton.renew();
     this.editor.renew(file);

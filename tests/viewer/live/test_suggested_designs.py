@@ -124,6 +124,8 @@ def test_an_improvement_is_stopped_and_the_best_is_kept(tmp_path: Path) -> None:
     events = bench.handle(do.ImproveDesign(design=begin.index))
     shown = looked(events).design
     assert (shown.origin, shown.number) == ("improved", 1)
+    assert shown.error is not None
+    assert begin.error is not None
     assert shown.error < begin.error
     assert len(looked(events).marks) == 12
     assert bench.handle(ask.Cancel()) == []
@@ -151,13 +153,14 @@ def test_wrong_questions_are_refused_and_change_nothing(tmp_path: Path) -> None:
     bench = opened(tmp_path, CURVE)
     bench.opened()
     before = bench.text
-    for request, why in {
+    wrong: dict[ask.Request, str] = {
         do.FindNearest(count=0): "1 to 100 designs",
         do.ImproveDesign(design=-2): "no such design",
         do.ImproveDesign(design=0): "not solved",
         do.ShowDesign(design=-9): "no such design",
         do.OpenDesign(design=-2): "no such design",
-    }.items():
+    }
+    for request, why in wrong.items():
         (refused,) = bench.handle(request)
         assert isinstance(refused, tell.Refused)
         assert why in refused.message

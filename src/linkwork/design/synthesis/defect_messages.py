@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
+from linkwork.foundation.arrays import Array
 
-__all__ = ["Defect", "defects_of"]
+__all__ = ["Defect", "defects_of", "tolerance_message"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +49,12 @@ def defects_of(
     return tuple(words.defects())
 
 
+def tolerance_message(away: Array, reach: Array, unit: str) -> str:
+    """Which position is missed most beyond its tolerance; distances (N,) and tolerances (N,)."""
+    k = int((away - reach).argmax())
+    return f"position {k + 1} is missed by {away[k]:.4g} {unit}, tolerance {reach[k]:g} {unit}"
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Words:
     task: Task
@@ -65,6 +72,7 @@ class _Words:
             DefectKind.TRANSMISSION: self._transmission,
             DefectKind.PIVOTS: self._pivots,
             DefectKind.LENGTHS: self._lengths,
+            DefectKind.TOLERANCE: self._tolerance,
             DefectKind.OBSTACLE: self._obstacle,
             DefectKind.NOT_PROVED: self._not_proved,
         }
@@ -100,9 +108,9 @@ class _Words:
         unreached, wanted = int(self.verdicts.travel.unreached[self.k]), self.task.wanted
         if unreached < self.verdicts.travel.place.shape[1]:
             return f"position {unreached + 1} is outside the driven range", None
-        if wanted.turns_fully and self.drive is Drive.SLIDER:
+        if wanted.turns_fully and not self.drive.turns:
             return "the driven slider cannot turn fully", None
-        ends = " and ".join(self._input_text(end) for end in self._dead_points())
+        ends = " and ".join(map(self._input_text, filter(np.isfinite, self._dead_points())))
         return f"the driven range passes a dead point: the branch ends at {ends}", None
 
     def _transmission(self) -> tuple[str, None]:
@@ -115,9 +123,8 @@ class _Words:
         )
 
     def _pivots(self) -> tuple[str, None]:
-        pivots = {"A0": self.given.fixed_a[self.k]}
-        if self.given.kind is not LoopKind.SLIDER_CRANK:
-            pivots["B0"] = self.given.fixed_b[self.k]
+        both = {"A0": self.given.fixed_a[self.k], "B0": self.given.fixed_b[self.k]}
+        pivots = {name: both[name] for name in self.given.kind.pivots}
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
         return f"fixed pivots {places} are not all in their region", None
 
@@ -127,6 +134,13 @@ class _Words:
         if arm > self.task.wanted.longest:
             return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
         return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
+
+    def _tolerance(self) -> tuple[str, None]:
+        positions = self.task.positions
+        points = np.array([complex(*position.point) for position in positions])
+        reach = np.array([position.tolerance for position in positions])
+        away = np.abs(self.given.guided[self.k] - points)
+        return tolerance_message(away, reach, self.task.length), None
 
     def _obstacle(self) -> tuple[str, None]:
         return "a link meets an obstacle, or passes it too closely to exclude that", None

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.driven_loop import cross
 from linkwork.design.synthesis.dyads import FIVE
+from linkwork.design.synthesis.guide_loops import meeting
+from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
-__all__ = ["NearTasks", "near_tasks", "with_misses"]
+__all__ = ["NearTasks", "drawn_within", "is_tolerant", "near_tasks", "with_misses"]
 
 _SAMPLES = 400
 _SEED = 1
@@ -32,28 +33,41 @@ def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
 
     Of more than five poses each task takes five: the first, all exact ones, and a random choice.
     """
-    reach = np.array([position.tolerance for position in task.positions])
-    swing = np.array([position.angle_tolerance for position in task.positions])
-    swing = swing * task.angle.radians
     count = len(points)
-    if count == FIVE and not (reach.any() or swing.any()):
+    if count == FIVE and not is_tolerant(task):
         return NearTasks(points=points[None], angles=angles[None], is_exact=True)
     rng = np.random.default_rng(_SEED)
-    shape = (_SAMPLES, count)
-    # evenly in discs; the first task is the wanted one
-    radius, direction = np.sqrt(rng.random(shape)), rng.uniform(0.0, 2.0 * np.pi, shape)
-    shift, turn = radius * np.exp(1j * direction), rng.uniform(-1.0, 1.0, shape)
-    shift[0], turn[0] = 0.0, 0.0
-    index = _choices(rng, (reach == 0) & (swing == 0), count)
+    shift, turn = drawn_within(task, _SAMPLES, rng)
+    exact = [p.tolerance == 0 and p.angle_tolerance == 0 for p in task.positions]
+    index = _choices(rng, np.array(exact), count)
     rows = np.arange(_SAMPLES)[:, None]
     if count > FIVE:
         # the others are compared at the wanted angle of the first
         turn[:] = 0.0
     return NearTasks(
-        points=(points + reach * shift)[rows, index],
-        angles=(angles + swing * turn)[rows, index],
+        points=(points + shift)[rows, index],
+        angles=(angles + turn)[rows, index],
         is_exact=False,
     )
+
+
+def is_tolerant(task: Task) -> bool:
+    """Whether a position may be missed."""
+    return any(position.tolerance or position.angle_tolerance for position in task.positions)
+
+
+def drawn_within(task: Task, count: int, rng: np.random.Generator) -> tuple[ComplexArray, Array]:
+    """Shifts [length] and turns [rad] of positions within their tolerances, (T, N).
+
+    Shifts are spread evenly in discs; the first task has none.
+    """
+    reach = np.array([position.tolerance for position in task.positions])
+    swing = np.array([position.angle_tolerance for position in task.positions])
+    shape = (count, len(reach))
+    radius, direction = np.sqrt(rng.random(shape)), rng.uniform(0.0, 2.0 * np.pi, shape)
+    shift, turn = radius * np.exp(1j * direction), rng.uniform(-1.0, 1.0, shape)
+    shift[0], turn[0] = 0.0, 0.0
+    return reach * shift, swing * task.angle.radians * turn
 
 
 def _choices(rng: np.random.Generator, exact: Array, count: int) -> IndexArray:
@@ -90,6 +104,17 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
     coupler = (given.moving_b[:, :1] - given.moving_a[:, :1]) * turns
     arm = (given.guided[:, :1] - given.moving_a[:, :1]) * turns
     crank = np.abs(given.moving_a[:, :1] - given.fixed_a[:, None])
+    if not given.kind.has_crank:
+        # A and B are on lines: fixed ones, or lines of the body through fixed pivots
+        line_a = given.direction_a[:, None] * np.ones_like(turns)
+        line_b = given.direction[:, None] * np.ones_like(turns)
+        if given.kind is LoopKind.OLDHAM:
+            line_a = given.lines_a[:, :1] * turns
+        if given.kind.body_line:
+            line_b = given.lines[:, :1] * turns
+        with np.errstate(all="ignore"):
+            a = meeting(given.fixed_a[:, None], line_a, given.fixed_b[:, None] - coupler, line_b)
+        return _moved_to(given, a, a + coupler, a + arm)
     # A is on its circle, and B on its circle or line moved back by the coupler
     centre = given.fixed_b[:, None] - coupler
     with np.errstate(invalid="ignore"):
@@ -113,6 +138,11 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
     pivots = [given.fixed_a[:, None] + way for way in ways]
     misses = [np.nan_to_num(np.abs(a + arm - points), nan=np.inf) for a in pivots]
     a = np.where(misses[0] <= misses[1], *pivots)
+    return _moved_to(given, a, a + coupler, a + arm)
+
+
+def _moved_to(
+    given: Candidates, a: ComplexArray, b: ComplexArray, guided: ComplexArray
+) -> Candidates:
     closes = np.isfinite(a).all(axis=1)
-    made = replace(given, moving_a=a, moving_b=a + coupler, guided=a + arm)
-    return made.take(np.flatnonzero(closes))
+    return replace(given, moving_a=a, moving_b=b, guided=guided).take(np.flatnonzero(closes))

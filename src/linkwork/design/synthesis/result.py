@@ -30,6 +30,7 @@ _WISHES = {
     DefectKind.TRANSMISSION: "the least transmission angle",
     DefectKind.PIVOTS: "the region of fixed pivots",
     DefectKind.LENGTHS: "the bounds of lengths",
+    DefectKind.TOLERANCE: "the tolerances",
     DefectKind.OBSTACLE: "clear_of",
 }
 
@@ -218,7 +219,7 @@ class SynthesizedDesign:
     def first_input(self) -> float:
         """The input at the first position [file units]."""
         value = self.design.inputs[0]
-        if self.drive is Drive.SLIDER:
+        if not self.drive.turns:
             return value
         return self.group.task.angle.from_radians(value)
 

@@ -55,6 +55,7 @@ _GIVEN = Key(
                 ListOf(_POINT, "pivot", 1, 2),
                 "Pivots of the guided body, as they are at the first position",
             ),
+            Key("lengths", Named(PlainNumber(), 2), 'Lengths of a task of points: { "A0 A" = 40 }'),
         )
     ),
     "What the author of the task fixes",
@@ -238,7 +239,8 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; a file to improve',
+            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; of two guides, if named: '
+            '"double-slider", "rapson-slide", "oldham-coupling"; a file to improve',
         ),
         _POSITIONS,
         _GIVEN,
