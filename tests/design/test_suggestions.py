@@ -85,6 +85,10 @@ def test_what_cannot_be_suggested_says_why() -> None:
     few = path_task(count=3)
     with pytest.raises(InputError, match="5 positions or more, got 3"):
         suggesting.nearest(replace(few, positions=few.positions[:3]), 1, told)
+    long = path_task(count=8)
+    long = replace(long, given=replace(long.given, lengths={"A0 A": 40.0}))
+    with pytest.raises(InputError, match='"A0 A" is given as 40, which this design does not have'):
+        suggesting.improved(long, lw.example("hoeken").description, "hoeken", told)
     poses = lw.Task.motion([(0, 0, 0), (2, 1, 20), (3, 3, 50)]).described
     linkage = lw.example("four-bar").description
     with pytest.raises(InputError, match="towards points"):

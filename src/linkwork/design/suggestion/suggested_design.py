@@ -11,7 +11,8 @@ import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.task import Point, Task
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import Point
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.mechanism.description import Description
 from linkwork.results.motion import Motion

@@ -16,7 +16,8 @@ from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign,
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improvement_synthesis import improve_description, mechanism_of
 from linkwork.design.synthesis.solving import wishes_of
-from linkwork.design.synthesis.task import Point, Task
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import Point
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError, LinkworkError
@@ -139,16 +140,24 @@ def _improvement_of(task: Task, description: Description) -> Task:
         spread=_SPREAD,
         point=next(iter(description.trace), ""),
     )
-    return replace(task, kind="improve", mechanisms=("chosen",), curve=None, improvement=settings)
+    return replace(
+        task,
+        kind="improve",
+        mechanisms=("chosen",),
+        positions=tuple(replace(position, tolerance=0.0) for position in task.positions),
+        given=replace(task.given, lengths={}),
+        curve=None,
+        improvement=settings,
+    )
 
 
 def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, ...]:
-    """All numbers but the coordinates of given pivots.
+    """All numbers but the coordinates of given pivots and given lengths.
 
     Raises
     ------
     InputError
-        If there are none.
+        If there are none, or the design has other lengths than those given.
     """
     numbers = numbers_to_vary(model_of(description), ())
     fixed = np.array([complex(*pivot) for pivot in task.given.fixed_pivots])
@@ -161,7 +170,19 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
             for name, (x, y) in description.points.items()
             if np.abs(fixed - complex(value(x), value(y))).min() <= near
         }
-    free = tuple(q for q in numbers if not (q.table == "points" and q.key in held))
+    lengths = {q.key: float(q.of(description)) for q in numbers if q.table == "lengths"}
+    for name, length in task.given.lengths.items():
+        if abs(lengths.get(name, math.inf) - length) > _SAME_PIVOT * length:
+            raise InputError(
+                f'the length "{name}" is given as {length:g}, which this design does not have: '
+                "choose one that the search has found"
+            )
+    free = tuple(
+        q
+        for q in numbers
+        if not (q.table == "points" and q.key in held)
+        and not (q.table == "lengths" and q.key in task.given.lengths)
+    )
     if not free:
         raise InputError("every number of this design is given: nothing can be improved")
     return free
