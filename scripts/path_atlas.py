@@ -18,9 +18,9 @@ from linkwork.batch.study import read_plan_text, run_study  # noqa: E402 - after
 from linkwork.design.atlas.path_atlas import (  # noqa: E402
     SHIPPED,
     PathAtlas,
-    atlas_of_stores,
     read_atlas,
 )
+from linkwork.design.atlas.stored_paths import atlas_of_stores  # noqa: E402
 
 _COUNT, _CHECKED = 20_000, 300  # designs of each plan
 _WHOLE = "count     = 1_000_000"

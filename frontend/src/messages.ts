@@ -400,6 +400,18 @@ export interface ShowCognates {
   design: number;
 }
 
+export interface FindNearest {
+  kind: "find_nearest";
+  id?: number;
+  count?: number;
+}
+
+export interface ImproveDesign {
+  kind: "improve_design";
+  id?: number;
+  design: number;
+}
+
 export interface SolveTask {
   kind: "solve_task";
   id?: number;
@@ -700,6 +712,7 @@ export interface DesignFound {
   kind: "design_found";
   answers: number | null;
   design: DesignShown;
+  skeleton: SkeletonShown | null;
   fixed: readonly (readonly [number, number])[];
   guided: string;
   line: number | null;
@@ -713,6 +726,13 @@ export interface DesignOpened {
   kind: "design_opened";
   answers: number | null;
   task: string;
+}
+
+export interface DesignsSuggested {
+  kind: "designs_suggested";
+  answers: number | null;
+  designs: readonly (DesignShown)[];
+  note: string;
 }
 
 export interface CognatesFound {
@@ -919,6 +939,7 @@ export interface PositionShown {
 
 export interface DesignShown {
   index: number;
+  origin: string;
   number: number;
   mechanism: string;
   drive: string;
@@ -935,6 +956,15 @@ export interface DyadShown {
   kind: string;
   fixed: readonly [number, number];
   proved: boolean;
+}
+
+export interface SkeletonShown {
+  bars: readonly (readonly (number)[])[];
+  driven: readonly (boolean)[];
+  fixed: readonly (number)[];
+  pins: readonly (number)[];
+  blocks: readonly (readonly [number, number, number])[];
+  discs: readonly (readonly [number, number])[];
 }
 
 export interface CognateShown {
@@ -1027,6 +1057,8 @@ export type LiveRequest =
   | SetRegion
   | ShowDesign
   | ShowCognates
+  | FindNearest
+  | ImproveDesign
   | SolveTask
   | OpenTask
   | OpenDesign
@@ -1059,4 +1091,5 @@ export type LiveEvent =
   | TaskUnsolved
   | DesignFound
   | DesignOpened
+  | DesignsSuggested
   | CognatesFound;

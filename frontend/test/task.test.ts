@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import { goalsOf } from "../src/task/task_form";
 import { distance, front, resampled, roundedTo, type Place } from "../src/task/geometry";
 
 describe("a drawn curve", () => {
@@ -30,5 +31,13 @@ describe("numbers of a drag", () => {
     expect(roundedTo(12.3456, 0.1)).toBe(12.3);
     expect(roundedTo(1234.6, 10)).toBe(1235);
     expect(Object.is(roundedTo(-0.0004, 0.1), 0)).toBe(true);
+  });
+});
+
+describe("the goals of an improvement", () => {
+  it("are read from the entries of the task, with what varies", () => {
+    const entries = { "improve.goals.0.of": "stroke(d)", "improve.goals.0.target": 70, "improve.goals.1.of": "B.y", "improve.goals.1.values.0": 1, "improve.goals.1.values.1": 2, "improve.goals.1.at.0": 10, "improve.goals.1.at.1": 20, "improve.vary": "O2 A, A B" };
+    expect(goalsOf({ entries })).toEqual(["Goal: stroke(d) = 70", "Goal: B.y = 1, 2 at 10, 20", "Varied: O2 A, A B"]);
+    expect(goalsOf({ entries: {} })).toEqual([]);
   });
 });

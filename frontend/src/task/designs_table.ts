@@ -1,9 +1,13 @@
 // All designs in a table that sorts; refused ones are grey, with their reason.
 
-import type { DesignShown, TaskSolved, TaskState } from "../messages";
+import type { DesignShown, DesignsSuggested, TaskSolved, TaskState } from "../messages";
 import { measured, trimmed, shortNumber } from "../numbers";
 import { html, say } from "../svg";
 import { toggle } from "../controls";
+
+/** Tasks whose positions are a path, and positions of a curve. */
+export const PATHS: readonly string[] = ["path", "improve"];
+const FEWEST = 5;
 
 type Column = "number" | "mechanism" | "transmission" | "size" | "error" | "score";
 
@@ -22,6 +26,8 @@ const FALLING: readonly Column[] = ["transmission", "score"];
 export class DesignsTable {
   readonly element = html("div", { class: "lw-t-designs" });
   private readonly lead = html("p", { class: "lw-lead", role: "status" }, this.element);
+  private readonly nearest = html("button", { type: "button", class: "lw-t-nearest", hidden: "" }, this.element, "Nearest in the atlas");
+  private readonly note = html("p", { class: "lw-lead" }, this.element);
   private readonly reasons = html("ul", { class: "lw-t-reasons" }, this.element);
   private readonly scroll = html("div", { class: "lw-t-scroll" }, this.element);
   private readonly table = html("table", {}, this.scroll);
@@ -29,15 +35,20 @@ export class DesignsTable {
   private readonly body = html("tbody", {}, this.table);
   private readonly more = html("p", { class: "lw-lead" }, this.element);
   private solved: TaskSolved | null = null;
+  private suggested: readonly DesignShown[] = [];
   private task: TaskState | null = null;
   private by: Column | null = null;
   private falling = false;
   private refused = true;
   private chosen = -1;
 
-  constructor(private readonly choose: (index: number) => void) {
+  constructor(
+    private readonly choose: (index: number) => void,
+    findNearest: () => void,
+  ) {
+    this.nearest.addEventListener("click", findNearest);
     const box = html("div", { class: "lw-t-filter" });
-    this.lead.after(box);
+    this.reasons.before(box);
     toggle(box, "Refused designs too", true, (on) => {
       this.refused = on;
       this.fill();
@@ -45,11 +56,25 @@ export class DesignsTable {
     this.table.addEventListener("keydown", (event) => this.key(event));
   }
 
+  /** Offer the atlas for paths; what it needs is said where it cannot be used. */
+  offer(state: TaskState): void {
+    const { task, positions } = (this.task = state);
+    this.nearest.hidden = !PATHS.includes(task) || (task === "improve" && !positions.length);
+    this.nearest.disabled = positions.length < FEWEST;
+    this.nearest.title = this.nearest.disabled ? `A curve needs ${FEWEST} positions or more` : "Compare the positions with the paths of 38,000 mechanisms";
+  }
+
+  /** Designs that the search has not found; they head the list. */
+  suggest(event: DesignsSuggested): void {
+    this.suggested = event.designs;
+    say(this.note, event.note);
+    if (this.task) this.fill();
+  }
+
   /** The list; null while there is none. */
   show(task: TaskState, solved: TaskSolved | null, why = ""): void {
     this.task = task;
     this.solved = solved;
-    this.element.classList.toggle("lw-t-none", !solved?.designs.length);
     say(this.lead, solved ? verdict(solved) : why);
     this.reasons.replaceChildren();
     if (solved && !solved.sound) for (const [defect, count] of Object.entries(solved.defects)) html("li", {}, this.reasons, `${count} × ${defect}`);
@@ -62,8 +87,13 @@ export class DesignsTable {
     for (const row of this.body.rows) row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
   }
 
+  /** All designs: suggested ones, then those found. */
+  get designs(): readonly DesignShown[] {
+    return [...this.suggested, ...(this.solved?.designs ?? [])];
+  }
+
   private get columns(): Column[] {
-    const errors = this.solved?.designs.some(({ error }) => error) ?? false;
+    const errors = this.designs.some(({ error }) => error);
     return ["number", "mechanism", "transmission", "size", ...(errors ? ["error" as const] : []), "score"];
   }
 
@@ -72,15 +102,17 @@ export class DesignsTable {
     this.head.replaceChildren();
     this.body.replaceChildren();
     say(this.more, solved?.left_out ? `${solved.left_out} more designs are not listed; linkwork synthesize --csv writes all.` : "");
-    if (!solved || !task) return;
-    for (const column of this.columns) this.title(column, task, solved);
-    const shown = solved.designs.filter(({ sound }) => sound || this.refused);
+    const { designs } = this;
+    this.element.classList.toggle("lw-t-none", !designs.length);
+    if (!designs.length || !task) return;
+    for (const column of this.columns) this.title(column, task, solved?.error_unit ?? task.length_unit);
+    const shown = designs.filter(({ sound }) => sound || this.refused);
     for (const design of this.sorted(shown)) this.row(design, task);
     this.mark(this.chosen);
   }
 
-  private title(column: Column, task: TaskState, solved: TaskSolved): void {
-    const unit = { transmission: task.angle_unit === "deg" ? "°" : "rad", size: task.length_unit, error: solved.error_unit === "deg" ? "°" : solved.error_unit }[column as string];
+  private title(column: Column, task: TaskState, errorUnit: string): void {
+    const unit = { transmission: task.angle_unit === "deg" ? "°" : "rad", size: task.length_unit, error: errorUnit === "deg" ? "°" : errorUnit }[column as string];
     const sorted = this.by === column ? (this.falling ? "descending" : "ascending") : "none";
     const cell = html("th", { scope: "col", "aria-sort": sorted }, this.head);
     const button = html("button", { type: "button", title: ABOUT[column] }, cell, TITLES[column] + (unit ? ` [${unit}]` : ""));
@@ -118,6 +150,7 @@ export class DesignsTable {
   private number(design: DesignShown, column: Exclude<Column, "mechanism">, task: TaskState): string {
     const value = design[column];
     if (value === null) return "–";
+    if (design.origin && column === "number") return origin(design);
     if (column === "number") return design.sound ? String(value) : `(${value})`;
     if (column === "transmission") return trimmed(shortNumber(value, task.angle_unit === "deg" ? 3 : 4));
     return trimmed(shortNumber(value, 4));
@@ -139,10 +172,11 @@ export class DesignsTable {
 /** The counts in one sentence, or why there is no sound design. */
 export function verdict(solved: TaskSolved): string {
   const designs = `${solved.count} design${solved.count === 1 ? "" : "s"}`;
-  if (!solved.count) return "No mechanism of the wanted kinds solves the task.";
-  if (solved.sound) return `${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
+  const stopped = solved.interrupted ? "Stopped: the best so far. " : "";
+  if (!solved.count) return stopped ? "Stopped before a design was found." : "No mechanism of the wanted kinds solves the task.";
+  if (solved.sound) return `${stopped}${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
   const cost = solved.costliest ? ` The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : "";
-  return `No design is free of defects (${designs}).${cost}`;
+  return `${stopped}No design is free of defects (${designs}).${cost}`;
 }
 
 /** A design in one line. */
@@ -153,6 +187,17 @@ export function inOneLine(design: DesignShown, task: TaskState): string {
   return `${inWords(design)} ${driven}${angle}${size}`;
 }
 
+/** What a design is called. */
+export function called(design: DesignShown): string {
+  if (design.origin === "as given") return "The mechanism as given";
+  const name = design.origin === "atlas" ? `Atlas ${design.number}` : design.origin ? `Improved ${design.number}` : `Design ${design.number}`;
+  return design.sound || design.origin ? name : "Refused";
+}
+
+function origin({ origin: from, number }: DesignShown): string {
+  return from === "as given" ? "given" : `${from === "atlas" ? "A" : "I"}${number}`;
+}
+
 function inWords({ mechanism }: DesignShown): string {
-  return mechanism.replace("inverted-", "inverted ");
+  return mechanism.replace("inverted-", "inverted ").replace(/ with a .*$/, ""); // the point is that of the task
 }

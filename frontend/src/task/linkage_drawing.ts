@@ -1,6 +1,6 @@
-// A four-bar or slider-crank in one position, drawn in pixels.
+// A four-bar, a slider-crank or a skeleton of any mechanism in one position, drawn in pixels.
 
-import type { DesignFound } from "../messages";
+import type { DesignFound, SkeletonShown } from "../messages";
 import { svg } from "../svg";
 import type { Place } from "./geometry";
 
@@ -43,15 +43,47 @@ export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | 
   if (design.guided === "P") svg("circle", { cx: p[0], cy: p[1], r: 4, class: "lw-t-guided" }, group);
 }
 
+/** Draw a mechanism of any kind at a row of its points; `pixel`: the size of one in the plane. */
+export function drawSkeleton(group: Element, skeleton: SkeletonShown, row: readonly number[], project: Project, pixel: number): void {
+  const at = (point: number): Place => project([row[2 * point]!, row[2 * point + 1]!]);
+  for (const [centre, radius] of skeleton.discs) {
+    const [x, y] = at(centre);
+    svg("circle", { cx: x, cy: y, r: radius / pixel, class: "lw-t-wheel" }, group);
+  }
+  skeleton.bars.forEach((points, k) => {
+    const driven = skeleton.driven[k] ? " lw-t-driven" : " lw-t-rocker";
+    if (points.length > 2) plate(group, points.map(at), driven);
+    else if (points.length === 2) line(group, at(points[0]!), at(points[1]!), `lw-t-bar${driven}`);
+  });
+  for (const [point, one, other] of skeleton.blocks) {
+    rail(group, at(one), at(other), at(point));
+    block(group, at(point), at(one), at(other), false);
+  }
+  for (const point of skeleton.fixed) ground(group, at(point));
+  for (const point of skeleton.pins) {
+    const [x, y] = at(point);
+    svg("circle", { cx: x, cy: y, r: 4.5, class: "lw-t-pin" }, group);
+  }
+}
+
 /** The coupler alone, thin: another position of the same design. */
 export function drawGhost(group: Element, row: readonly number[], project: Project): void {
   const places = jointsOf(row).map(project);
   svg("path", { d: `M${places.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`, class: "lw-t-ghost" }, group);
 }
 
-function plate(group: Element, [a, b, p]: readonly [Place, Place, Place]): void {
-  const d = `M${[a, b, p].map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`;
-  svg("path", { d, class: "lw-t-plate" }, group);
+function plate(group: Element, corners: readonly Place[], name = ""): void {
+  const d = `M${corners.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`;
+  svg("path", { d, class: `lw-t-plate${name}` }, group);
+}
+
+/** The line of a block, which ends a little beyond it. */
+function rail(group: Element, [x1, y1]: Place, [x2, y2]: Place, [x, y]: Place): void {
+  const length = Math.hypot(x2 - x1, y2 - y1) || 1;
+  const [dx, dy] = [(x2 - x1) / length, (y2 - y1) / length];
+  const at = (x - x1) * dx + (y - y1) * dy;
+  const [from, to] = [Math.min(0, at - 30), Math.max(length, at + 30)];
+  line(group, [x1 + from * dx, y1 + from * dy], [x1 + to * dx, y1 + to * dy], "lw-t-rail");
 }
 
 function line(group: Element, [x1, y1]: Place, [x2, y2]: Place, name: string): void {

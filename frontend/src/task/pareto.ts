@@ -1,8 +1,9 @@
 // Transmission angle against size: what a larger mechanism gains.
 
-import type { DesignShown, TaskSolved, TaskState } from "../messages";
+import type { DesignShown, TaskState } from "../messages";
 import { measured, ticks, trimmed, shortNumber } from "../numbers";
 import { html, say, svg } from "../svg";
+import { called } from "./designs_table";
 import { front, type Place } from "./geometry";
 
 const [WIDTH, HEIGHT] = [400, 290];
@@ -18,9 +19,9 @@ export class Pareto {
 
   constructor(private readonly choose: (index: number) => void) {}
 
-  show(task: TaskState, solved: TaskSolved | null): void {
+  show(task: TaskState, listed: readonly DesignShown[]): void {
     this.plot.replaceChildren();
-    const designs = (solved?.designs ?? []).filter(({ sound, size, transmission }) => sound && size !== null && transmission !== null);
+    const designs = listed.filter(({ sound, size, transmission }) => sound && size !== null && transmission !== null);
     this.element.classList.toggle("lw-t-none", !designs.length);
     say(this.lead, designs.length ? "Sound designs. On the line, no other one is both smaller and better; choose one by a click or with Tab and Enter." : "Sound designs are shown here, once there are any.");
     if (!designs.length) return;
@@ -64,7 +65,7 @@ export class Pareto {
   }
 
   private dot(design: DesignShown, [x, y]: Place, best: boolean, task: TaskState): void {
-    const name = `Design ${design.number}: transmission angle ${measured(Number(design.transmission!.toPrecision(3)), task.angle_unit)}, size ${trimmed(shortNumber(design.size!, 4))} ${task.length_unit}`;
+    const name = `${called(design)}: transmission angle ${measured(Number(design.transmission!.toPrecision(3)), task.angle_unit)}, size ${trimmed(shortNumber(design.size!, 4))} ${task.length_unit}`;
     const dot = svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: best ? 5 : 3.5, class: `lw-t-point${best ? " lw-t-best" : ""}`, "data-index": design.index, ...(best ? { tabindex: 0, role: "button", "aria-label": name } : { "aria-hidden": "true" }) }, this.plot);
     svg("title", {}, dot).textContent = name;
     dot.addEventListener("click", () => this.choose(design.index));

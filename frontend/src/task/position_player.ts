@@ -38,15 +38,15 @@ export class PositionPlayer {
     const share = this.design ? this.player.at / Math.max(1, this.rows.length - 1) : 0;
     const playing = this.player.playing;
     this.design = design;
-    this.element.hidden = design === null;
-    if (!design) {
+    this.element.hidden = !this.rows.length;
+    if (!this.rows.length || !design) {
       this.player.playing = false;
       this.stand(null, null);
       return;
     }
     put(this.bar, { max: this.rows.length - 1 });
-    this.makeChips(design.at.length);
-    const start = this.player.at === 0 && !live ? this.marks[0]! : share * (this.rows.length - 1);
+    this.makeChips(this.marks.length);
+    const start = this.player.at === 0 && !live ? (this.marks[0] ?? 0) : share * (this.rows.length - 1);
     this.player.restart(this.rows.length, closes(design), Math.round(start));
     this.player.playing = playing && this.rows.length > 1;
     this.draw();
@@ -94,17 +94,17 @@ export class PositionPlayer {
       put(this.button, { "aria-label": player.playing ? "Pause" : "Play", title: `${player.playing ? "Pause" : "Play"} (space)` });
       put(this.icon, { d: player.playing ? PAUSE : PLAY });
     }
-    if (!design) return;
+    if (!design || !this.rows.length) return;
     const near = exact ?? nearest(this.marks, player.at);
     this.bar.value = String(player.at);
     put(this.bar, { "aria-valuetext": near === null ? `${player.at + 1} of ${this.rows.length}` : `position ${near + 1}` });
     [...this.chips.children].forEach((chip, k) => chip.setAttribute("aria-pressed", String(k === near)));
-    this.stand(near !== null ? design.at[near]! : this.rows[player.at]!, near);
+    this.stand((near === null ? null : design.at[near]) ?? this.rows[player.at] ?? null, near);
   }
 
   private makeChips(count: number): void {
     const shown = count <= MOST ? count : 0;
-    if (this.chips.children.length === shown) return;
+    if (this.chips.children.length === shown) return; // they are the same
     this.chips.replaceChildren();
     for (let k = 0; k < shown; k++) {
       const chip = html("button", { type: "button", "aria-label": `Position ${k + 1}`, title: `Position ${k + 1} (${k + 1})` }, this.chips);

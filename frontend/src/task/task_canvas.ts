@@ -5,7 +5,7 @@ import { html, pathOf, svg } from "../svg";
 import { viewOf, zoomed, type View } from "../view_box";
 import { boxAround, distance, pairs, resampled, roundedTo, type Box, type Place } from "./geometry";
 import { ARM, Handles, placeOf, radians, sameThing, type Thing } from "./handles";
-import { drawGhost, drawLinkage } from "./linkage_drawing";
+import { drawGhost, drawLinkage, drawSkeleton } from "./linkage_drawing";
 import { ToolBar, type Tool } from "./tools";
 
 export interface CanvasHooks {
@@ -96,7 +96,7 @@ export class TaskCanvas {
   /** Look at a design; the view changes if it is out of sight. */
   look(design: DesignFound | null): void {
     this.design = design;
-    this.row = design?.at[0] ?? null;
+    this.row = design?.at[0] ?? design?.rows[0] ?? null;
     if (design && !this.dragging && !this.inSight(design)) this.whole();
     else this.draw();
   }
@@ -408,6 +408,10 @@ export class TaskCanvas {
     this.middle.setAttribute("class", `${design.design.sound ? "" : "lw-t-refused"} ${design.at.length > MANY ? "lw-t-many" : ""}`);
     const guided = this.task!.task !== "function"; // no point of the coupler is wanted there
     if (guided) for (const piece of design.curve) this.path(this.middle, piece, "lw-t-curve");
+    if (design.skeleton) {
+      if (row) drawSkeleton(this.middle, design.skeleton, row, this.project, this.pixel);
+      return;
+    }
     if (guided && design.at.length <= 12) for (const one of design.at) drawGhost(this.middle, one, this.project);
     if (row) drawLinkage(this.middle, design, row, this.project, true);
   }

@@ -8,7 +8,7 @@ import type { Thing } from "./handles";
 
 type Ask = (request: LiveRequest) => void;
 
-const KINDS: Readonly<Record<string, string>> = { motion: "Poses of a body", path: "Points of a path", mixed: "Points and poses", function: "A function" };
+const KINDS: Readonly<Record<string, string>> = { motion: "Poses of a body", path: "Points of a path", mixed: "Points and poses", function: "A function", improve: "Improve a mechanism" };
 const MECHANISMS: Readonly<Record<string, string>> = {
   "": "all kinds of mechanisms",
   "four-bar": "four-bars",
@@ -34,12 +34,22 @@ const FUNCTION = [
   ["function.output.1", "Output to", ""],
 ] as const;
 
+const IMPROVE = [
+  ["mechanism", "Mechanism: of the library, or a file", ""],
+  ["improve.point", "Point that follows the positions", ""],
+  ["improve.starts", "Starts", ""],
+] as const;
+/** Entries that are no numbers. */
+const TEXTS: readonly string[] = ["function.of", "mechanism", "improve.point"];
+
 export class TaskForm {
   readonly element = html("div", { class: "lw-t-form" });
   private readonly kind = this.choice("Task", KINDS, (value) => this.set("task", value));
   private readonly mechanism = this.choice("Find", MECHANISMS, (value) => value !== "given" && this.set("mechanism", value || null));
   private readonly positions = html("table", { class: "lw-t-positions" }, this.element);
   private readonly functions = html("div", { class: "lw-t-fields" }, this.element);
+  private readonly improved = html("div", { class: "lw-t-fields" }, this.element);
+  private readonly goals = html("ul", { class: "lw-t-goals", "aria-label": "Goals" });
   private readonly order = this.choice("Order of positions", { "as given": "as given", any: "any" }, (value) => this.set("wanted.order", value));
   private readonly range = this.choice("Driven range", { "": "from the first position to the last", "turns fully": "turns fully", given: "as in the text" }, (value) => value !== "given" && this.set("wanted.input", value || null));
   private readonly wishes = html("div", { class: "lw-t-fields" }, this.element);
@@ -53,6 +63,8 @@ export class TaskForm {
     private readonly pick: (thing: Thing) => void,
   ) {
     for (const [key, label, kind] of FUNCTION) this.field(this.functions, key, label, kind);
+    for (const [key, label, kind] of IMPROVE) this.field(this.improved, key, label, kind);
+    this.improved.append(this.goals);
     for (const [key, label, kind] of WISHES) this.field(this.wishes, key, label, kind);
     const box = html("details", { class: "lw-group" }, this.element);
     html("summary", {}, box, "Text of the task");
@@ -75,7 +87,9 @@ export class TaskForm {
     const functions = task.task === "function";
     this.functions.hidden = !functions;
     this.positions.hidden = this.order.parentElement!.hidden = functions;
-    this.mechanism.parentElement!.hidden = task.task === "path" || task.task === "mixed";
+    this.mechanism.parentElement!.hidden = ["path", "mixed", "improve"].includes(task.task);
+    this.improved.hidden = task.task !== "improve";
+    this.goals.replaceChildren(...goalsOf(task).map((goal) => html("li", {}, undefined, goal)));
     for (const [key, { input, unit, kind }] of this.fields) {
       const value = entries[key];
       fill(input, value === undefined ? "" : typeof value === "number" ? plain(value) : value);
@@ -107,9 +121,9 @@ export class TaskForm {
 
   private field(parent: Element, key: string, label: string, kind: string): void {
     const holder = html("label", { class: "lw-t-field" }, parent, label);
-    const input = html("input", { type: "text", class: "lw-field", spellcheck: "false", "data-key": key, ...(key === "function.of" ? {} : { inputmode: "decimal" }) }, holder);
+    const input = html("input", { type: "text", class: "lw-field", spellcheck: "false", "data-key": key, ...(TEXTS.includes(key) ? {} : { inputmode: "decimal" }) }, holder);
     const unit = html("span", { class: "lw-unit" }, holder);
-    input.addEventListener("change", () => this.set(key, key === "function.of" ? input.value.trim() || null : number(input.value)));
+    input.addEventListener("change", () => this.set(key, TEXTS.includes(key) ? input.value.trim() || null : number(input.value)));
     this.fields.set(key, { input, unit, kind });
   }
 
@@ -153,6 +167,23 @@ export class TaskForm {
     const gone = html("button", { type: "button", class: "lw-close", "aria-label": `Remove position ${index + 1}` }, cell, "×");
     gone.addEventListener("click", () => this.ask({ kind: "remove_task_point", of: "position", index }));
   }
+}
+
+/** The goals of an improvement in words, and what varies. */
+export function goalsOf({ entries }: Pick<TaskState, "entries">): string[] {
+  const goals = new Map<string, Record<string, string>>();
+  for (const [key, value] of Object.entries(entries)) {
+    const found = /^improve\.goals\.(\d+)\.(\w+)(?:\.\d+)?$/.exec(key);
+    if (!found) continue;
+    const goal = goals.get(found[1]!) ?? {};
+    const [name, text] = [found[2]!, typeof value === "number" ? plain(value) : value];
+    goal[name] = name in goal ? `${goal[name]}, ${text}` : text;
+    goals.set(found[1]!, goal);
+  }
+  const words = { target: "=", least: "≥", most: "≤", values: "=", at: "at", weight: "· weight" } as const;
+  const lines = [...goals.values()].map((goal) => [goal.of ?? "?", ...Object.entries(words).flatMap(([name, word]) => (goal[name] === undefined ? [] : [`${word} ${goal[name]}`]))].join(" "));
+  const varied = entries["improve.vary"];
+  return [...lines.map((line) => `Goal: ${line}`), varied === undefined ? "" : `Varied: ${varied}`].filter(Boolean);
 }
 
 /** What is typed: a number with comma or point, nothing, or a text that the reader refuses with its reason. */

@@ -8,7 +8,7 @@ import type { DesignFound, LiveEvent, LiveRequest, TaskSolved, TaskState, TaskUn
 import { html, say } from "../svg";
 import { themeButton } from "../theme_button";
 import { Cognates } from "./cognates";
-import { DesignsTable, inOneLine } from "./designs_table";
+import { called, DesignsTable, inOneLine, PATHS } from "./designs_table";
 import { Pareto } from "./pareto";
 import { PositionPlayer } from "./position_player";
 import { TaskCanvas } from "./task_canvas";
@@ -16,6 +16,10 @@ import { TaskForm } from "./task_form";
 import { TOOLS } from "./tools";
 
 const ANSWERS: ReadonlySet<LiveEvent["kind"]> = new Set(["task_solved", "task_unsolved", "refused"]);
+/** Long work: what it is called, and what its button does. */
+const DOING = { search: "Searching for designs", nearest: "Comparing paths of the atlas", improve: "Improving the design" } as const;
+/** More positions are met approximately: the best of a search that is ended are kept. */
+const EXACT = 9;
 const KINDS: Readonly<Record<string, string>> = { motion: "pose", path: "point", mixed: "position", improve: "point" };
 
 export class TaskPage {
@@ -28,7 +32,9 @@ export class TaskPage {
   private readonly player: PositionPlayer;
   private readonly chosen = html("div", { class: "lw-t-chosen" });
   private readonly open: HTMLButtonElement;
+  private readonly improve: HTMLButtonElement;
   private readonly line: HTMLElement;
+  private doing: keyof typeof DOING = "search";
   private readonly waiting = html("div", { class: "lw-t-waiting", role: "status", hidden: "" });
   private readonly table: DesignsTable;
   private readonly pareto: Pareto;
@@ -58,10 +64,12 @@ export class TaskPage {
     this.player = new PositionPlayer((row, at) => this.canvas.stand(row, at));
     stage.append(this.canvas.element, this.waiting, this.shell.notices.element, this.player.element);
     this.open = html("button", { type: "button", class: "lw-t-open" }, this.chosen, "Open as mechanism");
+    this.improve = html("button", { type: "button", title: "Change its numbers so that the positions or goals are met better" }, this.chosen, "Improve");
+    this.improve.addEventListener("click", () => this.work("improve", this.design && { kind: "improve_design", design: this.design.design.index }));
     this.line = html("p", {}, this.chosen);
     this.open.addEventListener("click", () => this.design && this.ask({ kind: "open_design", design: this.design.design.index }));
     const choose = (index: number): void => this.ask({ kind: "show_design", design: index });
-    this.table = new DesignsTable(choose);
+    this.table = new DesignsTable(choose, () => this.work("nearest", { kind: "find_nearest" }));
     this.pareto = new Pareto(choose);
     this.cognates = new Cognates(choose);
     this.form = new TaskForm((request) => this.ask(request), (thing) => this.canvas.pick(thing));
@@ -88,6 +96,11 @@ export class TaskPage {
       case "task_unsolved":
         this.unsolved(event);
         break;
+      case "designs_suggested":
+        this.table.suggest(event);
+        if (this.task) this.pareto.show(this.task, this.table.designs);
+        this.mark();
+        break;
       case "design_found":
         this.look(event);
         break;
@@ -98,6 +111,10 @@ export class TaskPage {
         this.working(event.fraction);
         break;
     }
+    if (event.kind !== "working" && event.answers !== null) {
+      this.waiting.hidden = true;
+      this.doing = "search";
+    }
     this.shell.told(event);
   }
 
@@ -105,6 +122,14 @@ export class TaskPage {
     this.player.play(false);
     this.waiting.hidden = true;
     this.shell.lost(message, this.element, this.side);
+  }
+
+  /** Ask for long work. */
+  private work(doing: keyof typeof DOING, request: LiveRequest | null): void {
+    if (!request) return;
+    this.ask(request);
+    this.doing = doing;
+    this.working(0);
   }
 
   private ask(request: LiveRequest): void {
@@ -119,6 +144,7 @@ export class TaskPage {
     say(this.title, task.title);
     this.canvas.show(task);
     this.form.show(task);
+    this.table.offer(task);
     if (!this.canvas.dragging) this.stale(true);
     this.count();
   }
@@ -148,7 +174,7 @@ export class TaskPage {
     this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
     if (solved.live) return;
     this.table.show(this.task!, solved);
-    this.pareto.show(this.task!, solved);
+    this.pareto.show(this.task!, this.table.designs);
     this.mark();
     this.count();
     if (this.tabs.chosen === this.tabs.indexOf("Cognates")) this.askCognates();
@@ -172,7 +198,7 @@ export class TaskPage {
     this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
     if (event.live) return;
     this.table.show(this.task!, null, text);
-    this.pareto.show(this.task!, null);
+    this.pareto.show(this.task!, this.table.designs);
     this.cognates.show(null);
     this.count();
   }
@@ -182,11 +208,13 @@ export class TaskPage {
     if (this.waiting.hidden) {
       this.waiting.replaceChildren();
       html("span", {}, this.waiting);
-      const end = html("button", { type: "button" }, this.waiting, "End the search");
-      end.addEventListener("click", () => this.ask({ kind: "cancel" }));
+      const { task } = this;
+      const keeps = this.doing === "improve" || (this.doing === "search" && task !== null && (task.task === "improve" || (task.task === "path" && task.positions.length > EXACT)));
+      const end = html("button", { type: "button" }, this.waiting, keeps ? "Stop and keep the best" : this.doing === "search" ? "End the search" : "Stop");
+      end.addEventListener("click", () => this.shell.background({ kind: "cancel" }));
       this.waiting.hidden = false;
     }
-    say(this.waiting.querySelector("span")!, `Searching for designs: ${Math.round(100 * fraction)} %`);
+    say(this.waiting.querySelector("span")!, `${DOING[this.doing]}: ${Math.round(100 * fraction)} %`);
   }
 
   private look(found: DesignFound): void {
@@ -205,7 +233,7 @@ export class TaskPage {
   }
 
   private askCognates(): void {
-    if (this.design && ["path", "mixed"].includes(this.task!.task)) this.shell.background({ kind: "show_cognates", design: this.design.design.index });
+    if (this.design && !this.design.design.origin && ["path", "mixed"].includes(this.task!.task)) this.shell.background({ kind: "show_cognates", design: this.design.design.index });
     else this.cognates.show(null);
   }
 
@@ -214,8 +242,9 @@ export class TaskPage {
     const design = this.design?.design;
     this.chosen.hidden = !design;
     if (!design) return;
-    say(this.line, `${design.sound ? `Design ${design.number}` : "Refused"}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason}` : ""}`);
+    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : ""}`);
     this.chosen.classList.toggle("lw-t-refused", !design.sound);
+    this.improve.hidden = !PATHS.includes(this.task!.task);
   }
 
   private count(): void {
@@ -223,7 +252,7 @@ export class TaskPage {
     if (!task) return;
     const word = KINDS[task.task];
     const count = task.positions.length;
-    const given = word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";
+    const given = task.task === "improve" && !count ? "goals of a mechanism" : word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";
     say(this.summary, solved ? `${given} · ${solved.count} design${solved.count === 1 ? "" : "s"}, ${solved.sound} without defects` : given);
     this.summary.title = solved ? `${solved.solutions}; ${solved.message}` : "";
   }

@@ -8,6 +8,8 @@ export interface Engine {
   readonly lock: { readonly info: Readonly<Record<string, string>>; readonly packages: Readonly<Record<string, never>> };
   /** Names, places next to the page, and packed sizes [bytes]. */
   readonly files: readonly EngineFile[];
+  /** Data of Linkwork that are loaded when they are read first. */
+  readonly late: readonly EngineFile[];
 }
 
 export interface EngineFile {
@@ -22,6 +24,13 @@ const MACHINE = "pyodide.asm.wasm";
 
 const KINDS: Readonly<Record<string, string>> = { js: "text/javascript", wasm: "application/wasm" };
 
+/** A file that is loaded when it is read first: its content where the page contains it, otherwise its address. */
+export interface LateFile {
+  readonly name: string;
+  readonly size: number;
+  readonly content: Blob | string;
+}
+
 /** Contents by name; a browser keeps them outside the page's process. */
 export type Files = Readonly<Record<string, Blob>>;
 
@@ -30,6 +39,7 @@ export type Files = Readonly<Record<string, Blob>>;
  */
 export interface Found {
   readonly files: Files;
+  readonly late: readonly LateFile[];
   readonly store: string | null;
   readonly machine: string | null;
 }
@@ -45,7 +55,8 @@ export async function engineFiles(engine: Engine, progress: (bytes: number, all:
   const streamed = cache && navigator.serviceWorker?.controller && (await cache.match(machine));
   const contents = await Promise.all(engine.files.map((file) => (file.url ? fetched(file, cache, received) : contained(file, received))));
   const files = Object.fromEntries(engine.files.map((file, k) => [file.name, contents[k]!]));
-  return { files, store: cache && store, machine: streamed ? machine : null };
+  const late = await Promise.all(engine.late.map(async (file) => ({ name: file.name, size: file.size, content: file.url ? new URL(file.url, location.href).href : await contained(file) })));
+  return { files, late, store: cache && store, machine: streamed ? machine : null };
 }
 
 /** The store of earlier visits; none in a frame without an origin of its own. */
@@ -76,13 +87,13 @@ async function fetched(file: EngineFile, cache: Cache | null, received: (bytes: 
   return content;
 }
 
-async function contained(file: EngineFile, received: (bytes: number) => void): Promise<Blob> {
+async function contained(file: EngineFile, received?: (bytes: number) => void): Promise<Blob> {
   const element = document.getElementById(`linkwork-${file.name}`)!;
   const code = atob(element.textContent ?? "");
   element.remove();
   const bytes = new Uint8Array(code.length);
   for (let k = 0; k < code.length; k += 1) bytes[k] = code.charCodeAt(k);
-  received(bytes.length);
+  received?.(bytes.length);
   return await unpacked(new Blob([bytes]), file.name);
 }
 

@@ -1,7 +1,8 @@
 // The worker: Python, compiled to WebAssembly, with a workbench that answers the page.
 
-import type { Engine, Files } from "./engine";
+import type { Engine, Files, LateFile } from "./engine";
 import type { Kept } from "./keeping";
+import { Late } from "./late";
 import { release } from "./memory";
 import { forgetSnapshot, keepSnapshot, keptSnapshot, snapshotOf, type Memory } from "./snapshot";
 import { StoredZip, type Stored } from "./stored_zip";
@@ -10,6 +11,7 @@ import { StoredZip, type Stored } from "./stored_zip";
 export interface Start {
   readonly engine: Engine;
   readonly files: Files;
+  readonly late: readonly LateFile[];
   readonly fragment: string;
   readonly kept: Kept | null;
   /** The name of the cache that keeps Python's memory for later visits, if there is one. */
@@ -39,12 +41,13 @@ interface PyFunction {
 
 /** Files that stay where they are: they are read part by part. */
 interface OutsideFiles {
-  reader: { readAsArrayBuffer(part: Stored): ArrayBuffer };
+  reader: { readAsArrayBuffer(part: Stored | Late): ArrayBuffer };
 }
 
 interface FileSystem {
   readonly filesystems: { readonly WORKERFS: OutsideFiles };
-  mount(kind: object, options: { blobs: readonly { name: string; data: Stored }[] }, place: string): void;
+  readonly ErrnoError: new (number: number) => Error;
+  mount(kind: object, options: { blobs: readonly { name: string; data: Stored | Late }[] }, place: string): void;
 }
 
 interface Python extends Memory {
@@ -71,6 +74,9 @@ const PACKAGES = "/lib/python3.13/site-packages";
 /** Machine code of NumPy that is loaded before Python starts: only thus it has the same addresses at every visit. */
 const LIBRARIES = /^numpy\/(_core\/_multiarray_umath|linalg\/_umath_linalg)\..*\.so$/;
 
+/** Emscripten's number of the error of a file that cannot be read. */
+const INPUT_OUTPUT = 29;
+
 /** For a start from a snapshot, on a busy machine [ms]. */
 const PATIENCE = 20_000;
 
@@ -85,6 +91,12 @@ def solve_task(task, **options):
     from linkwork.design.synthesis.solving import solve_task as solve
 
     return solve(task, **options)
+
+
+def suggesting():
+    from linkwork.design.suggestion import suggesting as found
+
+    return found
 `;
 
 /** What a first cycle imports and prepares is part of the snapshot, too. */
@@ -106,7 +118,7 @@ def pause():
         run_sync(turn())
 
 
-desk = BrowserDesk(loads, example_text, tell, take, solve_task, pause)
+desk = BrowserDesk(loads, example_text, tell, take, solve_task, pause, suggesting)
 begin, work = desk.begin, desk.work
 `;
 
@@ -128,13 +140,13 @@ self.onmessage = ({ data }) => {
   }
 };
 
-async function start({ engine, files, fragment, kept, store, machine }: Start): Promise<void> {
+async function start({ engine, files, late, fragment, kept, store, machine }: Start): Promise<void> {
   say("Starting Python …", 0.35);
   const cache = store === null ? null : await caches.open(store);
   const before = cache && (await keptSnapshot(cache));
   restored = before && cache;
   // Pyodide waits for ever where its machine code does not fit into the memory
-  const late = restored && setTimeout(startAgain, PATIENCE, restored);
+  const patience = restored && setTimeout(startAgain, PATIENCE, restored);
   const site = new StoredZip(files["site.zip"]!);
   if (!before) await site.bringIn();
   const entries = await site.entries();
@@ -148,7 +160,8 @@ async function start({ engine, files, fragment, kept, store, machine }: Start): 
   });
   const { WORKERFS } = python.FS.filesystems;
   WORKERFS.reader = { readAsArrayBuffer: (part) => part.read() };
-  python.FS.mount(WORKERFS, { blobs: [...entries].map(([name, data]) => ({ name, data })) }, PACKAGES);
+  const lateFiles = late.map((file) => ({ name: file.name, data: Late.of(file, cache, () => new python.FS.ErrnoError(INPUT_OUTPUT)) }));
+  python.FS.mount(WORKERFS, { blobs: [...[...entries].map(([name, data]) => ({ name, data })), ...lateFiles] }, PACKAGES);
   if (before) release(before.buffer);
   else {
     say("Loading the solver …", 0.7);
@@ -159,7 +172,7 @@ async function start({ engine, files, fragment, kept, store, machine }: Start): 
   const take = (): string[] => messages.splice(0);
   python.registerJsModule("linkwork_page", { take, tell: (event: string) => self.postMessage(event), turn });
   python.runPython(BEGIN);
-  if (late) clearTimeout(late);
+  if (patience) clearTimeout(patience);
   say("Solving …", 0.9);
   const [begin, one] = [python.globals.get("begin"), python.globals.get("work")];
   begin(fragment, kept?.name ?? "", kept?.saved ?? "", kept?.text ?? "");

@@ -37,8 +37,8 @@ export class WorkerConnection implements Transport {
     worker.onerror = (event) => this.failed(event.message);
     const kept = keptWork();
     this.saved = kept?.saved ?? null;
-    const { store, machine } = found;
-    worker.postMessage({ engine, files, fragment: location.hash, kept, store, machine } satisfies Start);
+    const { late, store, machine } = found;
+    worker.postMessage({ engine, files, late, fragment: location.hash, kept, store, machine } satisfies Start);
     for (const message of this.early.splice(0)) worker.postMessage(message);
   }
 

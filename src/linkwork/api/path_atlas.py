@@ -13,6 +13,7 @@ import numpy as np
 from linkwork.api.mechanism import Mechanism
 from linkwork.design.atlas import path_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
+from linkwork.design.atlas.stored_paths import atlas_of_stores
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
@@ -125,7 +126,7 @@ class PathAtlas:
         InputError
             If a store keeps no path, or has no closed path.
         """
-        return cls(path_atlas.atlas_of_stores([as_path(store) for store in stores]))
+        return cls(atlas_of_stores([as_path(store) for store in stores]))
 
     def save(self, path: str | Path) -> None:
         """Write the atlas to a file (.npz)."""

@@ -22,6 +22,7 @@ from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet, new_
 from linkwork.viewer.live.server import LiveServer
 
 if TYPE_CHECKING:
+    from linkwork.design.suggestion.suggested_design import Suggesting
     from linkwork.design.synthesis.result import Synthesis
     from linkwork.design.synthesis.task import Task
 
@@ -58,6 +59,12 @@ def _solve_task(task: Task, *, progress: Callable[[float], None] | None = None) 
     from linkwork.design.synthesis.solving import solve_task  # the first time a task is solved
 
     return solve_task(task, progress=progress)
+
+
+def _suggesting() -> Suggesting:
+    from linkwork.design.suggestion import suggesting  # the first time designs are suggested
+
+    return suggesting
 
 
 def _told(name: str, address: str) -> list[str]:
@@ -101,7 +108,7 @@ def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
         raise InputError("standard input cannot be edited and saved: give the name of a file")
     opened = new_file() if file is None else _opened(file)
     with progress("opening"):
-        bench = Bench(opened, loads, _solve_task, start=file is None)
+        bench = Bench(opened, loads, _solve_task, _suggesting, start=file is None)
     server = LiveServer(bench, port)
 
     def tell() -> None:

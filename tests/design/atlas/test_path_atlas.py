@@ -18,11 +18,11 @@ from linkwork.design.atlas.path_atlas import (
     AtlasFamily,
     Nearest,
     PathAtlas,
-    atlas_of_stores,
     read_atlas,
 )
 from linkwork.design.atlas.path_shape import coefficients, distances, in_ways
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
+from linkwork.design.atlas.stored_paths import atlas_of_stores
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.textfile.library import example_text
 

@@ -15,9 +15,10 @@ from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
-from linkwork.viewer.live.answers import GivenUpError
+from linkwork.viewer.live.answers import GivenUpError, Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
+from linkwork.viewer.live.opened_file import NoSign
 from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template, template_names
@@ -213,7 +214,7 @@ def test_wishes_are_written_in_one_line_and_removed(tmp_path: Path) -> None:
 
 def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:
     bench = opened(tmp_path, "curve", searching)
-    bench.listen(lambda: True, lambda fraction: None)
+    bench.listen(lambda: Hurry.CHANGE, NoSign())
     assert [type(event) for event in bench.opened()] == [tell.TaskState]
     (ended,) = bench.handle(ask.Cancel())
     assert isinstance(ended, tell.TaskUnsolved)

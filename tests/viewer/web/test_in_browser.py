@@ -5,7 +5,9 @@ The engine is that of ``LINKWORK_PYODIDE``, a folder as ``scripts/web_files`` co
 
 from __future__ import annotations
 
+import base64
 import json
+import math
 import os
 import threading
 from collections.abc import Callable, Iterator
@@ -13,7 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -58,6 +60,22 @@ _SNAPSHOT = """async (damage) => {
   return bytes.subarray(0, 64).join();
 }"""
 
+#: Whether the atlas is kept for later visits.
+_KEPT_ATLAS = """async () => {
+  const cache = await caches.open((await caches.keys())[0]);
+  return (await cache.keys()).some(({url}) => url.includes("paths.npz"));
+}"""
+#: A task of eleven points on an ellipse, the last of them twice.
+_CURVE = base64.b64encode(
+    (
+        'format = 1\ntask = "path"\nmechanism = "four-bar"\n[improve]\nstarts = 2\n'
+        + "".join(
+            f"[[positions]]\npoint = [{50 * math.cos(a):.3f}, {20 * math.sin(a):.3f}]\n"
+            for a in [*(k * math.tau / 12 for k in range(12)), 11 * math.tau / 12]
+        )
+    ).encode()
+).decode()
+
 pytestmark = pytest.mark.skipif(
     not _FOLDER, reason="needs LINKWORK_PYODIDE, a folder as scripts/web_files collects it"
 )
@@ -74,8 +92,11 @@ class Site:
 
 
 class _Silent(SimpleHTTPRequestHandler):
+    asked: ClassVar[list[str]] = []
+
     def log_message(self, *_: object) -> None:
-        """Say nothing."""
+        """Note what was asked for, and say nothing."""
+        self.asked.append(self.path)
 
 
 @pytest.fixture(scope="module")
@@ -329,6 +350,27 @@ def test_a_snapshot_that_cannot_be_read_is_made_again(open_web: Open, site: Site
     assert "Loading the solver …" in done
     with_snapshot(page)
     assert page.evaluate(_SNAPSHOT, None) != damaged
+
+
+def test_the_atlas_is_loaded_when_it_is_asked_for_and_kept(open_web: Open, site: Site) -> None:
+    _Silent.asked.clear()
+    page = open_web(f"{site.address}#example=four-bar")
+    page.wait_for_selector(_READY)
+    sizes = {path: path.stat().st_size for path in (site.folder / "engine").iterdir()}
+    loaded = sum(size for path, size in sizes.items() if path.suffixes[0] != ".npz")
+    assert loaded < 10.5e6  # with the page itself: less than 11 MB at the first visit
+    assert [path for path in _Silent.asked if ".npz" in path] == []
+    answer = asked(page, {"kind": "open_file", "name": "a.toml", "content": _CURVE})
+    assert answer["kind"] == "task_state"  # two positions at one place: nothing to be solved
+    refused = asked(page, {"kind": "find_nearest"})
+    assert "complete it first" in refused["message"]
+    asked(page, {"kind": "remove_task_point", "of": "position", "index": 12})
+    page.locator(".lw-task[data-solved]").wait_for()
+    page.get_by_role("button", name="Nearest in the atlas").click()
+    page.locator(".lw-t-designs tbody th", has_text="A10").wait_for()
+    (one,) = (path for path in _Silent.asked if ".npz" in path)
+    assert "paths.npz" in one
+    page.wait_for_function(_KEPT_ATLAS)
 
 
 @pytest.mark.extended

@@ -20,7 +20,7 @@ from linkwork.cli.main import linkwork
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.web import pyodide_files as module
 from linkwork.viewer.web.pyodide_files import PyodideFiles, pyodide_files
-from linkwork.viewer.web.site_packages import site_packages
+from linkwork.viewer.web.site_packages import late_files, site_packages
 from linkwork.viewer.web.web_app import web_folder, web_page
 
 
@@ -136,6 +136,21 @@ def test_the_archive_holds_what_runs_and_no_more() -> None:
     assert not any("__pycache__" in name or ".nbi" in name for name in names)
 
 
+def test_data_that_few_visits_need_are_files_of_their_own(small: PyodideFiles) -> None:
+    folder = web_folder(small)
+    late = {name: content for name, content in folder.items() if name.endswith(".npz.bin")}
+    assert sum(map(len, late.values())) > 4e6
+    wheels = {name: CONTENTS[name] for name in ("numpy", "tomlkit", "platformdirs")}
+    with zipfile.ZipFile(io.BytesIO(site_packages(wheels))) as archive:
+        assert not [name for name in archive.namelist() if name.endswith(".npz")]
+    assert {f"engine/{Path(name).name}.bin" for name in late_files()} == set(late)
+    for name, url in _urls(folder, "late").items():
+        assert url.partition("?")[0] in late
+        assert Path("src", name).read_bytes() == late[url.partition("?")[0]]
+    # a page of one file contains them
+    assert set(_urls({"index.html": web_page(small)}, "late").values()) == {""}
+
+
 def test_the_same_files_give_the_same_bytes(small: PyodideFiles) -> None:
     assert web_folder(small) == web_folder(small)
 
@@ -177,11 +192,11 @@ def test_addresses_change_with_their_files(small: PyodideFiles) -> None:
     assert _urls(before)["pyodide.asm.wasm"] != _urls(after)["pyodide.asm.wasm"]
 
 
-def _urls(folder: dict[str, bytes]) -> dict[str, str]:
+def _urls(folder: dict[str, bytes], when: str = "files") -> dict[str, str]:
     page = folder["index.html"].decode()
     told = re.search(r'id="linkwork-engine" type="application/json">([^<]*)<', page)
     assert told is not None
-    return {file["name"]: file["url"] for file in json.loads(told[1])["files"]}
+    return {file["name"]: file["url"] for file in json.loads(told[1])[when]}
 
 
 def test_a_page_of_other_files_says_so(small: PyodideFiles) -> None:

@@ -91,10 +91,13 @@ def fit_curve(
         keep = np.argsort(fit.total, kind="stable")[: max(_FEWEST, round(share * starts))]
         if done:
             fit, numbers = fit.take(keep), numbers[keep]
-        fit = problem.minimised(fit, numbers, steps, threads)
+
+        def tell(part: float, done: float = done, whole: float = share * steps) -> None:
+            if progress is not None:
+                progress((done + part * whole) / work)
+
+        fit = problem.minimised(fit, numbers, steps, threads, tell)
         done += share * steps
-        if progress is not None:
-            progress(done / work)
         if fit.interrupted:
             break
     return problem.result(fit, numbers, starts)
@@ -154,21 +157,38 @@ class _Problem:
         columns = np.concatenate([columns, by_t[:, :, :, None]], axis=3)
         return Residuals(missed, columns, None, shared, shared_by_x)
 
-    def minimised(self, fit: LaneFit, numbers: IndexArray, steps: int, threads: int) -> LaneFit:
-        """Lanes after some steps."""
+    def minimised(
+        self,
+        fit: LaneFit,
+        numbers: IndexArray,
+        steps: int,
+        threads: int,
+        tell: Callable[[float], None],
+    ) -> LaneFit:
+        """Lanes after some steps; an interruption by ``tell`` leaves all of them where they are."""
         # parts of one size, so that results do not depend on the number of threads
         parts = [np.arange(k, min(k + _PART, len(fit))) for k in range(0, len(fit), _PART)]
         done: list[LaneFit] = [fit] * len(parts)
 
+        tried, stopped = 0, False
+
         def work(k: int) -> None:
-            own = numbers[parts[k]]
+            nonlocal stopped
+            own, begun = numbers[parts[k]], False
 
             def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
+                nonlocal tried, begun
+                if begun and stopped:
+                    raise KeyboardInterrupt
+                if begun:  # the starts themselves are measured in any case
+                    tell(min(1.0, tried / (steps * len(parts))))
+                tried, begun = tried + 1, True
                 return self.evaluate(x, t, own[lanes])
 
             done[k] = minimise(
                 evaluate, fit.take(parts[k]), self.box, steps, sequenced=self.sequenced
             )
+            stopped = stopped or done[k].interrupted
 
         share_out(work, range(len(parts)), threads)
         found = LaneFit.joined(done)

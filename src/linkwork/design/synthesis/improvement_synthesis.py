@@ -38,7 +38,7 @@ from linkwork.textfile.library import example_text, examples
 from linkwork.textfile.reader import read_text
 from linkwork.textfile.toml_text import bytes_of, text_of
 
-__all__ = ["improve_mechanism"]
+__all__ = ["improve_description", "improve_mechanism", "mechanism_of"]
 
 _ROWS = 360  # of a turn, unless the mechanism's table has steps
 _PARTS = 100  # of a range of lengths
@@ -54,7 +54,33 @@ def improve_mechanism(
     MechanismError
         For a mechanism that is not there, names that it does not have, or contradicting goals.
     """
-    description = _driven(_mechanism(task), task)
+    return improve_description(mechanism_of(task), task, wishes, progress)
+
+
+def mechanism_of(task: Task) -> Description:
+    """The mechanism that a task improves, with the driven range that it wants.
+
+    Raises
+    ------
+    MechanismError
+        If it is not there, or cannot be driven so.
+    """
+    return _driven(_mechanism(task), task)
+
+
+def improve_description(
+    description: Description,
+    task: Task,
+    wishes: Wishes,
+    progress: Callable[[float], None] | None,
+) -> tuple[tuple[ImprovedMechanism, ...], int, bool]:
+    """The same for a mechanism that is at hand.
+
+    Raises
+    ------
+    MechanismError
+        For names that it does not have, or contradicting goals.
+    """
     settings = task.improvement or Improvement()
     model = model_of(description)
     _refuse(task, _name_problems(model, settings))

@@ -18,8 +18,8 @@ from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.motion_synthesis import solve_motion
 from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
@@ -27,7 +27,6 @@ from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import Wanted
 from linkwork.design.synthesis.travel import Range
 from linkwork.design.synthesis.verdicts import judge
-from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.design.synthesis.watt_synthesis import solve_watt
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
@@ -49,7 +48,7 @@ SOLVERS: dict[str, Solver] = {
     "function": lambda task, wishes, progress: solve_function(task),
 }
 _RIGHT = math.pi / 2.0
-_Alone = TypeVar("_Alone", ImprovedMechanism, WattDesign)
+_Alone = TypeVar("_Alone", bound=JudgedDesign)
 
 
 def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:

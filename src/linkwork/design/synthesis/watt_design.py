@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.defect_messages import Defect
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
@@ -26,7 +26,6 @@ from linkwork.design.synthesis.watt_linkage import (
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
-from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["WattDesign"]
 
@@ -35,7 +34,7 @@ _ROUNDING = 1e-9  # of angles of positions [rad]
 
 @internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WattDesign:
+class WattDesign(JudgedDesign):
     """One Watt-II six-bar with its verdict.
 
     Parameters
@@ -50,18 +49,13 @@ class WattDesign:
         The change of circuit or branch of one of its loops, or that this is not decided.
     swept : ImprovedMechanism, optional
         Its motion through the driven range, of a design without such a change.
-    number : int
-        Its rank among the sound designs from 1, or its place among the refused ones.
-    delivered : bool
-        Whether it is sound and among the wanted number of designs.
-    score : float
-        The weighted score of the ranking, 0 to 1.
 
     Examples
     --------
+    >>> import linkwork as lw
     >>> from linkwork.design.synthesis.watt_design import WattDesign
-    >>> WattDesign.mechanism, WattDesign.driven
-    ('watt-ii', 'A0')
+    >>> issubclass(WattDesign, lw.JudgedDesign)
+    True
     """
 
     group: WattGroup
@@ -69,23 +63,29 @@ class WattDesign:
     wishes: Wishes
     changed: Defect | None
     swept: ImprovedMechanism | None
-    number: int = 0
-    delivered: bool = False
-    score: float = field(default=np.nan)
-
-    mechanism = WATT_II
-    driven = Drive.A0.value
 
     @classmethod
     def of(cls, group: WattGroup, k: int, wishes: Wishes) -> WattDesign:
         """The k-th six-bar, judged."""
         changed = group.defect(k)
         swept = None if changed else swept_mechanism(group, k, wishes)
-        return cls(group=group, index=k, wishes=wishes, changed=changed, swept=swept)
+        return cls(
+            task=group.task, group=group, index=k, wishes=wishes, changed=changed, swept=swept
+        )
 
     def __repr__(self) -> str:
         found = ", ".join(kind.value for kind in self.kinds) or "sound"
         return f"<WattDesign {self.number}: {found}>"
+
+    @property
+    def mechanism(self) -> str:
+        """The kind of mechanism."""
+        return WATT_II
+
+    @property
+    def driven(self) -> str:
+        """The fixed pivot of the driven link."""
+        return Drive.A0.value
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -98,16 +98,20 @@ class WattDesign:
         return self.group.points(self.index)
 
     @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        radians = self.group.inputs + first_angle(self.group, self.index)
+        return tuple(map(self.task.angle.from_radians, radians.tolist()))
+
+    @property
     def first_input(self) -> float:
         """The input at the first position [file units]."""
-        return self.group.task.angle.from_radians(first_angle(self.group, self.index))
+        return self.task.angle.from_radians(first_angle(self.group, self.index))
 
     @cached_property
     def linkage(self) -> Linkage:
         """The mechanism."""
-        refused = ", refused" if self.kinds else ""
-        name = f"{self.group.task.name}, design {self.number}{refused}"
-        return watt_linkage(self.group, self.index, self.wishes, name)
+        return watt_linkage(self.group, self.index, self.wishes, self._name)
 
     @property
     def transmission(self) -> float:
@@ -136,7 +140,7 @@ class WattDesign:
     @property
     def error_unit(self) -> str:
         """The unit of the error."""
-        return self.group.task.angle.value
+        return self.task.angle.value
 
     @property
     def kinds(self) -> tuple[DefectKind, ...]:
@@ -170,25 +174,3 @@ class WattDesign:
         if len(outside):
             told = f"position {outside[0] + 1} is outside the driven range"
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
-
-    def to_dict(self, file: str | None = None) -> dict[str, Any]:
-        """Plain data, as in the command line's JSON."""
-        return {
-            "file": file,
-            "mechanism": self.mechanism,
-            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
-            "drive": self.driven,
-            "delivered": self.delivered,
-            TRANSMISSION_ANGLE.word: self.transmission,
-            "size": self.size,
-            "error": self.error,
-            "score": self.score,
-            "defects": [
-                {
-                    "kind": defect.kind.name.lower(),
-                    "between": None if defect.between is None else list(defect.between),
-                    "message": defect.message,
-                }
-                for defect in self.defects
-            ],
-        }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from functools import singledispatch
 
 from linkwork.foundation.errors import InputError
@@ -16,12 +17,20 @@ from linkwork.viewer.live.exported_file import exported_file
 from linkwork.viewer.live.link_making import link_made
 from linkwork.viewer.live.subject import Subject
 
-__all__ = ["About", "GivenUpError", "check_quantities", "reply"]
+__all__ = ["About", "GivenUpError", "Hurry", "check_quantities", "reply"]
 
 _MOST_QUANTITIES = 40  # shown besides the usual ones
 _POSITION_DERIVATIVES = 2
 
 Events = list[tell.Event]
+
+
+class Hurry(IntEnum):
+    """Whether work should end: for a cancellation, which keeps its best results, or a change."""
+
+    NONE = 0
+    STOP = 1
+    CHANGE = 2
 
 
 class GivenUpError(Exception):

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.answers import Hurry
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
-from linkwork.viewer.live.opened_file import Events
+from linkwork.viewer.live.opened_file import Events, NoSign, WorkSign
 from linkwork.viewer.live.result_events import problems_found
 from linkwork.viewer.live.solvable import Read
 from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.workbench import Workbench
 
 if TYPE_CHECKING:
+    from linkwork.design.suggestion.suggested_design import Suggesting
     from linkwork.viewer.live.task.bench import TaskBench
     from linkwork.viewer.live.task.cycle import SolveTask
 
@@ -41,16 +43,24 @@ class Bench:
         Builds a solvable mechanism from a text; ``linkwork.loads``.
     solve : callable
         Solves a task.
+    suggesting : callable, optional
+        Imports what suggests designs for a task; without it there is the search alone.
     start : bool
         Offer the start page.
     """
 
     def __init__(
-        self, file: MechanismFile, read: Read, solve: SolveTask, *, start: bool = False
+        self,
+        file: MechanismFile,
+        read: Read,
+        solve: SolveTask,
+        suggesting: Callable[[], Suggesting] | None = None,
+        *,
+        start: bool = False,
     ) -> None:
-        self._read, self._solve = read, solve
-        self._hurried: Callable[[], bool] = lambda: False
-        self._working: Callable[[float], None] = lambda fraction: None
+        self._read, self._solve, self._suggesting = read, solve, suggesting
+        self._hurried: Callable[[], int] = lambda: Hurry.NONE
+        self._working: WorkSign = NoSign()
         self._behind: TaskBench | None = None
         self.current: Workbench | TaskBench = self._bench_of(file, start=start)
 
@@ -64,7 +74,7 @@ class Bench:
         behind = [] if self._behind is None else [tell.DesignOpened(task=self._behind.name)]
         return [*self.current.opened(), *behind]
 
-    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+    def listen(self, hurried: Callable[[], int], working: WorkSign) -> None:
         """Let long work end for a newer change, and report its progress."""
         self._hurried, self._working = hurried, working
         for bench in (self.current, self._behind):
@@ -152,7 +162,7 @@ class Bench:
             # with all of synthesis: the page of a mechanism does without it
             from linkwork.viewer.live.task.bench import TaskBench
 
-            bench = TaskBench(file, self._solve)
+            bench = TaskBench(file, self._solve, self._suggesting)
         else:
             bench = Workbench(file, self._read, start=start)
         bench.listen(self._hurried, self._working)

@@ -11,6 +11,7 @@ from urllib.parse import unquote
 
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.link import text_of_link
+from linkwork.viewer.live.answers import Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
@@ -21,6 +22,7 @@ from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.waiting import Waiting, WorkSigns, answer, answers_of
 
 if TYPE_CHECKING:
+    from linkwork.design.suggestion.suggested_design import Suggesting
     from linkwork.viewer.live.task.cycle import SolveTask
 
 __all__ = ["BrowserDesk"]
@@ -49,6 +51,8 @@ class BrowserDesk:
     pause : callable, optional
         Lets the browser deliver messages during long work. Without it a newer change cannot cancel
         a cycle that is being solved.
+    suggesting : callable, optional
+        Imports what suggests designs for a task.
     """
 
     def __init__(
@@ -59,9 +63,11 @@ class BrowserDesk:
         take: Callable[[], Iterable[str]],
         solve: SolveTask,
         pause: Callable[[], None] | None = None,
+        suggesting: Callable[[], Suggesting] | None = None,
     ) -> None:
         self._read, self._library, self._solve = read, library, solve
         self._tell, self._take, self._pause = tell, take, pause
+        self._suggesting = suggesting
         self._waiting = Waiting()
         self._signs = WorkSigns(self._send)
         self._workbench: Bench | None = None
@@ -121,12 +127,12 @@ class BrowserDesk:
         path = Path(Path(name).name[-_LONGEST_NAME:] or "mechanism.toml")
         path.unlink(missing_ok=True)
         file = MechanismFile(path, saved)
-        workbench = Bench(file, self._read, self._solve, start=start)
+        workbench = Bench(file, self._read, self._solve, self._suggesting, start=start)
         self._workbench, self._waiting = workbench, Waiting()
+        workbench.listen(self._hurried, self._signs)
         if text is not None and text != saved:
             answer(partial(workbench.handle, SetText(text=text)))
         self._send(answer(workbench.opened))
-        workbench.listen(self._hurried, self._signs)
 
     def work(self) -> bool:
         """Process the next request; returns whether there was one."""
@@ -146,14 +152,14 @@ class BrowserDesk:
             except MessageError as error:
                 self._send([Refused(message=str(error))], error.id)
 
-    def _hurried(self) -> bool:
+    def _hurried(self) -> Hurry:
         """Whether a newer change waits; called often during long work."""
         now = time.monotonic()
         if self._pause is not None and now - self._looked > _LOOK_FOR_MESSAGES:
             self._pause()
             self._receive()
             self._looked = time.monotonic()
-        return self._waiting.ends_work
+        return self._waiting.hurry
 
     def _send(self, events: list[Event], number: int | None = None) -> None:
         for event in events:

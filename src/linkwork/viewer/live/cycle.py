@@ -52,7 +52,7 @@ class Cycle:
     """
 
     def __init__(self, subject: Subject) -> None:
-        self.hurried: Callable[[], bool] = lambda: False
+        self.hurried: Callable[[], int] = lambda: False
         self.working: Callable[[float], None] = lambda fraction: None
         self.rates = True
         self._shown: tuple[str, ...] = ()  # quantities that the page needs besides the usual ones

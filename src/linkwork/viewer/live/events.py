@@ -42,6 +42,7 @@ from linkwork.viewer.live.task_events import (
     CognatesFound,
     DesignFound,
     DesignOpened,
+    DesignsSuggested,
     TaskSolved,
     TaskState,
     TaskUnsolved,
@@ -59,6 +60,7 @@ __all__ = [
     "ConfigurationsFound",
     "DesignFound",
     "DesignOpened",
+    "DesignsSuggested",
     "Drive",
     "DrivenInput",
     "EntryShown",
@@ -342,6 +344,7 @@ Event = (
     | TaskUnsolved
     | DesignFound
     | DesignOpened
+    | DesignsSuggested
     | CognatesFound
 )
 

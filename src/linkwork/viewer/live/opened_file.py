@@ -4,18 +4,37 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from pathlib import Path
+from typing import Protocol
 
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask
 from linkwork.viewer.live.history import History
 from linkwork.viewer.live.mechanism_file import MechanismFile, OnDisk
 
-__all__ = ["FILE_REQUESTS", "Events", "OpenedFile"]
+__all__ = ["FILE_REQUESTS", "Events", "NoSign", "OpenedFile", "WorkSign"]
 
 Events = list[tell.Event]
 
 #: Requests that are the same for every kind of file.
 FILE_REQUESTS = (ask.Undo, ask.Redo, ask.Save)
+
+
+class WorkSign(Protocol):
+    """Receives the finished fraction of long work, and what can be shown before its answer."""
+
+    def __call__(self, fraction: float) -> None: ...
+
+    def show(self, events: Events) -> None: ...
+
+
+class NoSign:
+    """Nobody waits for signs of work."""
+
+    def __call__(self, fraction: float) -> None:
+        """Nothing is told."""
+
+    def show(self, events: Events) -> None:
+        """Nothing is shown."""
 
 
 class OpenedFile(ABC):

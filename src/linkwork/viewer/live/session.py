@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from functools import partial
 
+from linkwork.viewer.live.answers import Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.requests import Request
 from linkwork.viewer.live.waiting import Tell, Waiting, WorkSigns, answer, answers_of
@@ -66,9 +67,9 @@ class Desk:
         self._thread.join(patience)
         return not self._thread.is_alive()
 
-    def _hurried(self) -> bool:
+    def _hurried(self) -> Hurry:
         with self._changed:
-            return self._closing or self._waiting.ends_work
+            return Hurry.CHANGE if self._closing else self._waiting.hurry
 
     def _work(self) -> None:
         while True:

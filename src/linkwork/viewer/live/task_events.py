@@ -12,8 +12,10 @@ __all__ = [
     "DesignFound",
     "DesignOpened",
     "DesignShown",
+    "DesignsSuggested",
     "DyadShown",
     "PositionShown",
+    "SkeletonShown",
     "TaskSolved",
     "TaskState",
     "TaskUnsolved",
@@ -62,10 +64,13 @@ class TaskState:
 class DesignShown:
     """A design in the list: numbers in file units, and why it is refused.
 
-    ``index``: its place in the whole list; ``transmission``: the smallest over the driven range.
+    ``index``: its place in the whole list, or below -1 for a suggested one, with its ``origin``
+    ("atlas", "improved", "as given"; otherwise ""); ``transmission``: the smallest over the driven
+    range.
     """
 
     index: int
+    origin: str
     number: int
     mechanism: str
     drive: str
@@ -79,6 +84,21 @@ class DesignShown:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SkeletonShown:
+    """What is drawn between the points of a mechanism, which are given by index.
+
+    ``blocks``: a sliding point and two points of its line; ``discs``: centre and radius [length].
+    """
+
+    bars: tuple[tuple[int, ...], ...]
+    driven: tuple[bool, ...]
+    fixed: tuple[int, ...]
+    pins: tuple[int, ...]
+    blocks: tuple[tuple[int, int, int], ...]
+    discs: tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class DesignFound:
     """A design at the positions and in between: x, y of A, B and P, one row after another.
 
@@ -87,9 +107,13 @@ class DesignFound:
     line from that of AB [rad]. ``at``: a row for
     each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
     each position in it. ``curve``: the points of P on the branch of the first position.
+
+    Mechanisms of other kinds have a ``skeleton``: their rows are x, y of all its points, which are
+    not told ``at`` the positions.
     """
 
     design: DesignShown
+    skeleton: SkeletonShown | None
     fixed: tuple[Point, ...]
     guided: str
     line: float | None
@@ -97,6 +121,16 @@ class DesignFound:
     rows: tuple[tuple[float, ...], ...]
     marks: tuple[float, ...]
     curve: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignsSuggested:
+    """Designs that the search has not found, as the present task judges them: of the atlas,
+    improved ones, and the mechanism that a task improves. ``note``: how they were compared.
+    """
+
+    designs: tuple[DesignShown, ...]
+    note: str
 
 
 @dataclass(frozen=True, kw_only=True)

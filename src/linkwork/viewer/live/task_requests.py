@@ -14,6 +14,8 @@ __all__ = [
     "TASK_EDITS",
     "AddTaskPoint",
     "DrawCurve",
+    "FindNearest",
+    "ImproveDesign",
     "MoveTaskPoint",
     "OpenDesign",
     "OpenTask",
@@ -125,6 +127,20 @@ class ShowCognates:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FindNearest:
+    """Find the designs of the atlas whose paths are nearest to the positions."""
+
+    count: int = 10
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImproveDesign:
+    """Improve a design, by its place in the list; a cancellation keeps the best so far."""
+
+    design: int
+
+
+@dataclass(frozen=True, kw_only=True)
 class SolveTask:
     """Solve the task again, after the search was ended."""
 
@@ -157,7 +173,7 @@ TaskEdit = (
 )
 
 #: A question about the designs of a task, which changes nothing.
-TaskQuestion = ShowDesign | ShowCognates | SolveTask
+TaskQuestion = ShowDesign | ShowCognates | FindNearest | ImproveDesign | SolveTask
 
 TaskRequest = TaskEdit | TaskQuestion | OpenTask | OpenDesign | ReturnToTask
 

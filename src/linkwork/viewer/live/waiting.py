@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from linkwork.viewer.live.answers import Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.events import Event, Refused, Working
@@ -37,11 +38,12 @@ class Waiting:
         return len(self._requests)
 
     @property
-    def ends_work(self) -> bool:
+    def hurry(self) -> Hurry:
         """Whether a change of the file or a cancellation waits."""
-        return any(
-            isinstance(request, (*EDITS, *TASK_EDITS, Cancel)) for request, _ in self._requests
-        )
+        if any(isinstance(request, (*EDITS, *TASK_EDITS)) for request, _ in self._requests):
+            return Hurry.CHANGE
+        cancelled = any(isinstance(request, Cancel) for request, _ in self._requests)
+        return Hurry.STOP if cancelled else Hurry.NONE
 
     def add(self, request: Request | None, number: int | None) -> None:
         """Queue a request."""
@@ -79,6 +81,10 @@ class WorkSigns:
             self._told_at = now
             self._tell([Working(fraction=min(1.0, max(0.0, fraction)))], self._number)
 
+    def show(self, events: list[Event]) -> None:
+        """Send what is known before the answer."""
+        self._tell(events, None)
+
 
 def answers_of(workbench: Workbench | Bench, request: Request | None) -> list[Event]:
     """The events that answer a request."""
@@ -91,6 +97,9 @@ def answer(work: Callable[[], list[Event]]) -> list[Event]:
     """
     try:
         return work()
+    except OSError as error:
+        told = f"a file that this needs cannot be read ({error}): check the connection, try again"
+        return [Refused(message=told)]
     except Exception as error:
         _log.exception("a request failed")
         mistake = f"{type(error).__name__}: {error}"

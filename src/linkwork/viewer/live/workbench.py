@@ -85,7 +85,7 @@ class Workbench(OpenedFile):
             events = [tell.Refused(message=str(error)), *self._after_refusal(request)]
         return [*events, *(self.cycle.events() if self.cycle.owed else [])]
 
-    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+    def listen(self, hurried: Callable[[], int], working: Callable[[float], None]) -> None:
         """Let long work end for a newer change, and report its progress."""
         self.cycle.hurried, self.cycle.working = hurried, working
 

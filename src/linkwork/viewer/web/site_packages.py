@@ -8,20 +8,27 @@ from collections.abc import Iterator, Mapping
 from importlib import metadata, resources
 from importlib.resources.abc import Traversable
 
-__all__ = ["site_packages"]
+__all__ = ["late_files", "site_packages"]
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
+#: Data that only some visits need: files of their own, loaded when they are read.
+_LATE = (
+    "design/atlas/paths.npz",
+    "design/precision/start_linkages.npz",
+    "numerics/homotopy/start_sets.npz",
+)
 #: What a page never imports: commands, studies, and the front end (but for the pages
 #: that it exports).
 _UNUSED = (
     "batch/study",
     "cli",
-    "design/atlas",
+    "design/atlas/stored_paths.py",
     "export/code",
     "kernels/gpu",
     "viewer/web",
     *(f"viewer/static/{name}.js" for name in ("live", "linkwork", "web", "web_worker", "widget")),
     "everyday.py",
+    "viewer/library.json",
     "__main__.py",
 )
 #: Parts of wheels that serve tests and compilers, or that a page never imports.
@@ -49,6 +56,12 @@ def site_packages(wheels: Mapping[str, bytes]) -> bytes:
     return content.getvalue()
 
 
+def late_files() -> dict[str, bytes]:
+    """The files that are not in the archive, by their places in it."""
+    package = resources.files("linkwork")
+    return {f"linkwork/{name}": (package / name).read_bytes() for name in _LATE}
+
+
 def _linkwork() -> Iterator[tuple[str, bytes]]:
     version = metadata.version("linkwork")
     head = f"Metadata-Version: 2.1\nName: linkwork\nVersion: {version}\n"
@@ -60,7 +73,7 @@ def _linkwork() -> Iterator[tuple[str, bytes]]:
 def _walk(folder: Traversable, where: str) -> Iterator[tuple[str, bytes]]:
     for entry in folder.iterdir():
         name = f"{where}{entry.name}"
-        if name in _UNUSED or entry.name == "__pycache__":
+        if name in _UNUSED or name in _LATE or entry.name == "__pycache__":
             continue
         if entry.is_dir():
             yield from _walk(entry, f"{name}/")

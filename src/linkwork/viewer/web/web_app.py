@@ -12,7 +12,7 @@ from importlib import metadata, resources
 
 from linkwork.viewer.live.served_pages import library_json
 from linkwork.viewer.web.pyodide_files import PACKAGES, PyodideFiles
-from linkwork.viewer.web.site_packages import site_packages
+from linkwork.viewer.web.site_packages import late_files, site_packages
 
 __all__ = ["MARK", "web_folder", "web_page"]
 
@@ -31,20 +31,22 @@ def web_folder(pyodide: PyodideFiles) -> dict[str, bytes]:
     """
     engine = _engine(pyodide)
     build = _build(engine)
-    places = {name: f"engine/{name}.bin" for name in engine}
-    urls = {name: f"{place}?{_digest(engine[name])}" for name, place in places.items()}
+    late = late_files()
+    places = {name: f"engine/{name.rpartition('/')[2]}.bin" for name in (*engine, *late)}
+    files = engine | late
+    urls = {name: f"{place}?{_digest(files[name])}" for name, place in places.items()}
     offline = f'const LINKWORK_BUILD="{build}";{_static("web_offline.js")}'
     return {
-        **{place: engine[name] for name, place in places.items()},
-        _SINGLE: _page(pyodide, engine, {}),
+        **{place: files[name] for name, place in places.items()},
+        _SINGLE: _page(pyodide, engine, late, {}),
         "sw.js": offline.encode(),
-        "index.html": _page(pyodide, engine, urls),
+        "index.html": _page(pyodide, engine, late, urls),
     }
 
 
 def web_page(pyodide: PyodideFiles) -> bytes:
     """One HTML file that loads no other."""
-    return _page(pyodide, _engine(pyodide), {})
+    return _page(pyodide, _engine(pyodide), late_files(), {})
 
 
 def _engine(pyodide: PyodideFiles) -> dict[str, bytes]:
@@ -60,20 +62,33 @@ def _engine(pyodide: PyodideFiles) -> dict[str, bytes]:
     }
 
 
-def _page(pyodide: PyodideFiles, engine: Mapping[str, bytes], urls: Mapping[str, str]) -> bytes:
+def _page(
+    pyodide: PyodideFiles,
+    engine: Mapping[str, bytes],
+    late: Mapping[str, bytes],
+    urls: Mapping[str, str],
+) -> bytes:
     """The HTML file; it contains the files of the engine that have no URL."""
-    listed = [
-        {"name": name, "url": urls.get(name, ""), "size": len(content)}
-        for name, content in engine.items()
-    ]
+
+    def listed(files: Mapping[str, bytes]) -> list[dict[str, str | int]]:
+        return [
+            {"name": name, "url": urls.get(name, ""), "size": len(content)}
+            for name, content in files.items()
+        ]
+
     info = json.loads(pyodide.contents["pyodide-lock.json"])["info"]
-    about = {"build": _build(engine), "lock": {"info": info, "packages": {}}, "files": listed}
+    about = {
+        "build": _build(engine),
+        "lock": {"info": info, "packages": {}},
+        "files": listed(engine),
+        "late": listed(late),
+    }
     script = _static("web.js").strip()
     style = "".join(map(_static, ("linkwork.css", "live.css", "web.css")))
     contained = (
         f'<script id="linkwork-{name}" type="text/plain">{base64.b64encode(content).decode()}'
         "</script>"
-        for name, content in engine.items()
+        for name, content in {**engine, **late}.items()
         if name not in urls
     )
     return "\n".join(

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import singledispatchmethod
 from pathlib import Path
 
+from linkwork.design.suggestion.suggested_design import Suggesting
+from linkwork.design.synthesis.task import Task
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.toml_text import data_of
 from linkwork.textfile.writer import write_text
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
+from linkwork.viewer.live.answers import GivenUpError
 from linkwork.viewer.live.drag import same_thing
 from linkwork.viewer.live.link_making import link_made
 from linkwork.viewer.live.mechanism_file import MechanismFile
-from linkwork.viewer.live.opened_file import FILE_REQUESTS, Events, OpenedFile
+from linkwork.viewer.live.opened_file import FILE_REQUESTS, Events, NoSign, OpenedFile, WorkSign
 from linkwork.viewer.live.task.cycle import SolveTask, TaskCycle
 from linkwork.viewer.live.task.designs import cognates_found, nearest_on
 from linkwork.viewer.live.task.edits import edit_task, task_edit_title
+from linkwork.viewer.live.task.suggestions import FIRST, Suggestions
 
 __all__ = ["TaskBench"]
+
+_MOST_NEAREST = 100
 
 
 class TaskBench(OpenedFile):
@@ -30,17 +37,28 @@ class TaskBench(OpenedFile):
     file : MechanismFile
     solve : callable
         Solves a task.
+    suggesting : callable, optional
+        Imports what suggests designs.
 
     Attributes
     ----------
     cycle : TaskCycle
         The task and its designs.
+    suggestions : Suggestions
+        Designs that the search has not found.
     """
 
-    def __init__(self, file: MechanismFile, solve: SolveTask) -> None:
+    def __init__(
+        self,
+        file: MechanismFile,
+        solve: SolveTask,
+        suggesting: Callable[[], Suggesting] | None = None,
+    ) -> None:
         super().__init__(file)
+        self.suggestions = Suggestions(suggesting or _none_suggested)
+        self._signs: WorkSign = NoSign()
         self.cycle = TaskCycle(solve, file.name, Path(file.name).parent)
-        self.cycle.take(file.text)
+        self._take(file.text)
         self._dragged = ""  # what a drag moves
         self._latest: tuple[str, str] | None = None  # its last text, and what it is called
 
@@ -53,9 +71,37 @@ class TaskBench(OpenedFile):
         """All events that a page needs at its start."""
         return self._everything()
 
-    def listen(self, hurried: Callable[[], bool], working: Callable[[float], None]) -> None:
+    def listen(self, hurried: Callable[[], int], working: WorkSign) -> None:
         """Let long work end for a newer change, and report its progress."""
+        self._signs = working
         self.cycle.hurried, self.cycle.working = hurried, working
+
+    def _suggested(self) -> Events:
+        """The suggested designs; the first one is looked at while there is no other."""
+        if not len(self.suggestions):
+            return []
+        chosen = FIRST if self.suggestions.chosen is None else self.suggestions.chosen
+        return [self.suggestions.listed(), self.suggestions.found(chosen)]
+
+    def _take(self, text: str) -> None:
+        self.cycle.take(text)
+        self.suggestions.renew(self.cycle.sketch.task)
+
+    def _solved(self, *, live: bool = False) -> Events:
+        """Solve the task, which is shown before; a suggested design in sight stays there."""
+        if not live:
+            self._signs.show([self._state(), *self._suggested()])
+        events, chosen = self.cycle.events(live=live), self.suggestions.chosen
+        looked = None if chosen is None else self.suggestions.found(chosen)
+        if looked is not None:
+            events = [
+                replace(event, chosen=looked) if isinstance(event, tell.TaskSolved) else event
+                for event in events
+            ]
+        if live or not len(self.suggestions):
+            return events
+        unsolved = any(isinstance(event, tell.TaskUnsolved) for event in events)
+        return [self.suggestions.listed(), *events, *(self._suggested()[1:] if unsolved else [])]
 
     def handle(self, request: ask.Request) -> Events:
         """Process a request and send its events; invalid requests are answered, not raised."""
@@ -66,7 +112,7 @@ class TaskBench(OpenedFile):
             events = self._handle(request)
         except InputError as error:
             events = [tell.Refused(message=str(error))]
-        return [*events, *(self.cycle.events() if owed and self.cycle.owed else [])]
+        return [*events, *(self._solved() if owed and self.cycle.owed else [])]
 
     def design_text(self, index: int) -> tuple[str, str]:
         """The text of a design as a mechanism file, and a name for it.
@@ -76,6 +122,10 @@ class TaskBench(OpenedFile):
         InputError
             If there is no such design.
         """
+        if index <= FIRST:
+            description, _, name = self.suggestions.description(index)
+            stem = Path(self._file.name).stem
+            return f"{stem}-{name.replace(' ', '-')}", write_text(description)
         design = self.cycle.design(index)
         refused = "-refused" if design.kinds else ""
         stem = Path(self._file.name).stem
@@ -93,14 +143,14 @@ class TaskBench(OpenedFile):
         live = bool(getattr(edit, "live", False))
         text = self._text_edits()
         edit_task(edit, text, self._snap)
-        self.cycle.take(text.text)
+        self._take(text.text)
         self._keep_on_curve(text)
         if live:
             self._dragged, self._latest = same_thing(edit), (text.text, task_edit_title(edit))
-            return self.cycle.events(live=True)
+            return self._solved(live=True)
         self._dragged, self._latest = "", None
         self._history.add(text.text, task_edit_title(edit))
-        return [self._state(), *self.cycle.events()]
+        return [self._state(), *self._solved()]
 
     def _keep_on_curve(self, text: TextEdits) -> None:
         """Let fixed pivots of four poses follow the centre-point curve of changed poses."""
@@ -112,7 +162,7 @@ class TaskBench(OpenedFile):
             text.put((*do.LISTS["fixed pivot"], k, 0), near.real)
             text.put((*do.LISTS["fixed pivot"], k, 1), near.imag)
         if text.text != task.text:
-            self.cycle.take(text.text)
+            self._take(text.text)
 
     def _text_edits(self) -> TextEdits:
         try:
@@ -146,14 +196,56 @@ class TaskBench(OpenedFile):
 
     @_handle.register
     def _(self, request: do.SolveTask) -> Events:
-        return self.cycle.events()
+        return self._solved()
 
     @_handle.register
     def _(self, request: do.ShowDesign) -> Events:
+        if request.design <= FIRST:
+            return self.suggestions.choose(request.design)
+        self.suggestions.chosen = None
         return self.cycle.choose(request.design)
 
     @_handle.register
+    def _(self, request: do.FindNearest) -> Events:
+        if not 1 <= request.count <= _MOST_NEAREST:
+            raise InputError(f"1 to {_MOST_NEAREST} designs are found, got {request.count}")
+        try:
+            return self.suggestions.find_nearest(self._complete(), request.count, self.cycle.go_on)
+        except (GivenUpError, KeyboardInterrupt):
+            raise InputError("the comparison was ended: ask for the nearest paths again") from None
+
+    @_handle.register
+    def _(self, request: do.ImproveDesign) -> Events:
+        task = self._complete()
+        if request.design <= FIRST:
+            description, mechanism, _ = self.suggestions.description(request.design)
+        else:
+            design = self.cycle.design(request.design)
+            description, mechanism = design.linkage, design.mechanism
+        try:
+            return self.suggestions.improve(task, description, mechanism, self._improving)
+        except MechanismError as error:
+            raise InputError("; ".join(problem.message for problem in error.problems)) from None
+        except (GivenUpError, KeyboardInterrupt):
+            raise InputError("the improvement was ended before it found anything") from None
+
+    def _improving(self, fraction: float) -> None:
+        """Report progress; a change or a cancellation ends it with the best so far."""
+        if self.cycle.hurried():
+            raise KeyboardInterrupt
+        self._signs(fraction)
+
+    def _complete(self) -> Task:
+        task = self.cycle.sketch.task
+        if task is None:
+            raise InputError("the task is not complete: complete it first")
+        return task
+
+    @_handle.register
     def _(self, request: do.ShowCognates) -> Events:
+        if request.design <= FIRST:
+            self.suggestions.found(request.design)
+            return [tell.CognatesFound(design=request.design, cognates=(), curve=())]
         self.cycle.design(request.design)
         return [cognates_found(self.cycle.found, request.design)]
 
@@ -175,11 +267,11 @@ class TaskBench(OpenedFile):
     def _everything(self) -> Events:
         self._end_drag()
         conflict = [] if self._conflict is None else [self._conflict]
-        return [self._state(), *self.cycle.events(), *conflict]
+        return [self._state(), *self._solved(), *conflict]
 
     def _went(self) -> Events:
-        self.cycle.take(self._history.text)
-        return [self._state(), *self.cycle.events()]
+        self._take(self._history.text)
+        return [self._state(), *self._solved()]
 
     def _taken_over(self) -> Events:
         self._end_drag()
@@ -194,6 +286,10 @@ class TaskBench(OpenedFile):
         return self.cycle.sketch.state(
             self._file.name, self.text, self._history, unsaved=self.unsaved
         )
+
+
+def _none_suggested() -> Suggesting:
+    raise InputError("no designs are suggested here")
 
 
 def _goes_on(request: ask.Request, dragged: str) -> bool:

@@ -10,6 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_file import located_task_error, read_task_text
@@ -17,7 +18,7 @@ from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError, MechanismError, Problem, key_text
 from linkwork.textfile.toml_text import data_of
 from linkwork.viewer.live import events as tell
-from linkwork.viewer.live.answers import GivenUpError
+from linkwork.viewer.live.answers import GivenUpError, Hurry
 from linkwork.viewer.live.file_state import ProblemShown
 from linkwork.viewer.live.opened_file import Events
 from linkwork.viewer.live.task.designs import alike, design_found, task_solved
@@ -27,6 +28,7 @@ __all__ = ["SolveTask", "TaskCycle"]
 
 _WHILE_DRAGGED = 0.12  # a task that takes longer is solved when the drag ends [s]
 _SIX_BARS = 'Six-bars are not drawn here: "linkwork synthesize {} -o designs --html" lists them.'
+_NOT_LOADED = "Data of the solver cannot be loaded: check the connection, then solve again."
 _CANCELLED = "The search was ended: no designs are shown."
 
 
@@ -47,7 +49,9 @@ class _Chosen:
     pivots: ComplexArray
 
     @classmethod
-    def of(cls, design: SynthesizedDesign) -> _Chosen:
+    def of(cls, design: JudgedDesign) -> _Chosen | None:
+        if not isinstance(design, SynthesizedDesign):
+            return None  # other starts find other designs: the best one is shown
         given, k = design.group.given, design.index
         ends = [given.fixed_a[k], given.fixed_b[k], given.moving_a[k, 0], given.moving_b[k, 0]]
         return cls(kind=given.kind.value, drive=design.drive.value, pivots=np.array(ends))
@@ -76,7 +80,7 @@ class TaskCycle:
     """
 
     def __init__(self, solve: SolveTask, name: str, folder: Path) -> None:
-        self.hurried: Callable[[], bool] = lambda: False
+        self.hurried: Callable[[], int] = lambda: Hurry.NONE
         self.working: Callable[[float], None] = lambda fraction: None
         self.owed = False
         self._solve, self._name, self._folder = solve, name, folder
@@ -113,7 +117,7 @@ class TaskCycle:
             raise InputError("this task is not solved: complete it, or solve it again")
         return self._found
 
-    def design(self, index: int) -> SynthesizedDesign:
+    def design(self, index: int) -> JudgedDesign:
         """A design by its place in the list.
 
         Raises
@@ -121,9 +125,9 @@ class TaskCycle:
         InputError
             If there is none.
         """
-        if not 0 <= index < len(self.found.of_loops):
+        if not 0 <= index < len(self.found.designs):
             raise InputError(f"there is no design {index + 1}: the task has been solved again")
-        return self.found.of_loops[index]
+        return self.found.designs[index]
 
     def events(self, *, live: bool = False) -> Events:
         """Solve the task, and find the chosen design again.
@@ -140,11 +144,13 @@ class TaskCycle:
         try:
             if self._found is None:
                 begun = time.perf_counter()
-                self._found = self._solve(task, progress=self._go_on)
+                self._found = self._solve(task, progress=self.go_on)
                 self._took = time.perf_counter() - begun
-        except GivenUpError:
+        except (GivenUpError, KeyboardInterrupt):
             self.owed = True
             return []
+        except OSError:
+            return [self._unsolved(live, _NOT_LOADED, ended=True)]
         except MechanismError as error:
             located = located_task_error(error, task, self._name)
             return [self._unsolved(live, "This task cannot be solved.", _shown(located.problems))]
@@ -170,7 +176,7 @@ class TaskCycle:
 
     def _found_again(self) -> int | None:
         """The place of the chosen design after a change; by default the best one."""
-        designs = self.found.of_loops
+        designs = self.found.designs
         if not designs:
             return None
         index, chosen = 0, self._chosen
@@ -179,8 +185,14 @@ class TaskCycle:
         self._chosen = _Chosen.of(designs[index])
         return index
 
-    def _go_on(self, fraction: float) -> None:
-        if self.hurried():
+    def go_on(self, fraction: float) -> None:
+        """Report progress, or end the work: where it is only cancelled, solvers that can do so
+        keep what they have.
+        """
+        hurry = self.hurried()
+        if hurry == Hurry.STOP:
+            raise KeyboardInterrupt
+        if hurry:
             raise GivenUpError
         self.working(fraction)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -10,6 +9,8 @@ import numpy as np
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
@@ -17,6 +18,7 @@ from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point
+from linkwork.viewer.live.task.mechanism_designs import finite, mechanism_found, pieces
 from linkwork.viewer.live.task_events import CognateShown, DesignShown, DyadShown
 
 __all__ = [
@@ -45,7 +47,7 @@ def task_solved(
     sound = found.sound
     listed = [] if live else [
         *range(min(sound, _MOST_SOUND)),
-        *range(sound, min(len(found.of_loops), sound + _MOST_REFUSED)),
+        *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
     ]  # fmt: skip
     wish, costs = found.costliest or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
@@ -55,7 +57,7 @@ def task_solved(
         live=live,
         solutions=solutions,
         linkages=found.linkages,
-        count=len(found.of_loops),
+        count=len(found.designs),
         sound=sound,
         delivered=len(found.delivered),
         completeness=found.completeness.name,
@@ -65,8 +67,8 @@ def task_solved(
         defects={kind.value: count for kind, count in found.defects.items()},
         costliest=wish,
         costs=costs,
-        designs=tuple(_shown(found.of_loops[k], k) for k in listed),
-        left_out=len(found.of_loops) - len(listed),
+        designs=tuple(_shown(found.designs[k], k) for k in listed),
+        left_out=len(found.designs) - len(listed),
         dyads=tuple(
             DyadShown(kind=dyad.kind, fixed=dyad.fixed, proved=dyad.proved)
             for dyad in (() if live else found.dyads[:_MOST_DYADS])
@@ -76,29 +78,29 @@ def task_solved(
     )
 
 
-def _shown(design: SynthesizedDesign, index: int) -> DesignShown:
+def _shown(design: JudgedDesign, index: int) -> DesignShown:
     return DesignShown(
         index=index,
+        origin="",
         number=design.number,
-        mechanism=design.group.given.kind.value,
-        drive=design.drive.value,
+        mechanism=design.mechanism,
+        drive=design.driven,
         sound=not design.kinds,
         delivered=design.delivered,
-        transmission=_finite(design.transmission),
-        size=_finite(design.size),
-        error=_finite(design.error),
-        score=_finite(design.score),
+        transmission=finite(design.transmission),
+        size=finite(design.size),
+        error=finite(design.error),
+        score=finite(design.score),
         reason=design.defects[0].message if design.kinds else "",
     )
 
 
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
-    design = found.of_loops[index]
+    design = found.designs[index]
+    if isinstance(design, ImprovedMechanism):
+        return mechanism_found(design, _shown(design, index))
+    assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
     one = np.array([k])
@@ -114,6 +116,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
         marks = tuple(((travel.place[k] - first) / span * (_ROWS - 1)).tolist())
     return tell.DesignFound(
         design=_shown(design, index),
+        skeleton=None,
         fixed=tuple(_fixed(own, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
         line=_line(own),
@@ -157,22 +160,13 @@ def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, .
     else:
         place = np.linspace(-np.pi, np.pi, _CURVE)
     points = pivots_at(own, drive, loops, place[None])[2][0]  # type: ignore[arg-type]
-    return tuple(_pieces(points))
+    return tuple(pieces(points))
 
 
 def _slider_range(own: Candidates) -> tuple[float, float]:
     other = own.fixed_a if own.kind.has_crank else own.fixed_b
     reach = abs(own.moving_a[0, 0] - other[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
     return -float(reach), float(reach)
-
-
-def _pieces(points: ComplexArray) -> Iterator[tuple[float, ...]]:
-    """Runs of finite points."""
-    whole = np.isfinite(points)
-    ends = np.flatnonzero(np.diff(whole)) + 1
-    for part, ok in zip(np.split(points, ends), np.split(whole, ends), strict=True):
-        if len(part) > 1 and ok[0]:
-            yield tuple(np.stack([part.real, part.imag], axis=1).ravel().tolist())
 
 
 def _point(z: complex) -> Point:
@@ -184,7 +178,8 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
     ``None`` without designs.
     """
     best: tuple[bool, float, int] | None = None
-    groups = {id(design.group): design.group for design in found.of_loops}
+    of_loops = [(k, d) for k, d in enumerate(found.designs) if isinstance(d, SynthesizedDesign)]
+    groups = {id(design.group): design.group for _, design in of_loops}
     distances: dict[int, Array] = {}
     for name, group in groups.items():
         given = group.given
@@ -192,7 +187,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
         off = np.abs(np.stack(own, axis=1) - pivots).sum(axis=1)
         other = (given.kind.value, group.drive.value) != (kind, drive)
         distances[name] = np.where(other, np.inf, off)
-    for k, design in enumerate(found.of_loops):
+    for k, design in of_loops:
         off = float(distances[id(design.group)][design.index])
         rank = (bool(design.kinds), off, k)
         if best is None or rank < best:
@@ -202,7 +197,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
 
 def centre_curve(task: Task) -> tuple[tuple[float, ...], ...]:
     """The centre-point curve of four poses as polylines; none for other tasks."""
-    return tuple(piece for run in _centre_runs(task) for piece in _pieces(run))
+    return tuple(piece for run in _centre_runs(task) for piece in pieces(run))
 
 
 def nearest_on(task: Task, point: complex) -> complex:
@@ -264,7 +259,9 @@ def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
 
 def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:
     """A four-bar and its two cognates, each with its verdict if it is among the designs."""
-    design = found.of_loops[index]
+    design = found.designs[index]
+    if not isinstance(design, SynthesizedDesign):
+        return tell.CognatesFound(design=index, cognates=(), curve=())
     own = design.group.given.take(slice(design.index, design.index + 1))
     curve = design_found(found, index).curve
     if own.kind is not LoopKind.FOUR_BAR or design.design.points["P"] in _joints(design):
@@ -295,8 +292,10 @@ def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> C
     """A cognate with the best verdict that the list has on it, in the names of its points."""
     wanted = np.array([complex(*points[name]) for name in ("A0", "B0", "A", "B")])
     size = np.abs(wanted - wanted.mean()).max()
-    for k in range(len(found.of_loops)) if index is None else (index,):
-        other = found.of_loops[k]
+    for k in range(len(found.designs)) if index is None else (index,):
+        other = found.designs[k]
+        if not isinstance(other, SynthesizedDesign):
+            continue
         given, j = other.group.given, other.index
         ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
         for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
