@@ -114,6 +114,7 @@ class DesignedMechanism(DynamicMechanism):
         vary: Sequence[str] = (),
         bounds: Mapping[str, tuple[float, float]] | None = None,
         fit: str = "least squares",
+        front: int = 0,
         starts: int = 16,
         spread: float = 0.05,
         seed: int = 1,
@@ -134,6 +135,9 @@ class DesignedMechanism(DynamicMechanism):
             By default lengths change by a factor of four at most.
         fit : str
             "least squares", or "minimax": the largest miss counts.
+        front : int
+            Instead of a sum: the largest number of designs between the goals (points, targets and
+            values, not bounds) of which no other one is better in every goal.
         starts, spread, seed : int, number, int
             Starts about the mechanism as it is, their relative spread, and their seed; the first
             one is the mechanism itself.
@@ -143,8 +147,9 @@ class DesignedMechanism(DynamicMechanism):
         Returns
         -------
         tuple of ImprovedDesign
-            Different local minima: those with all rows proved first, then by their misses. Ctrl-C
-            keeps the best so far.
+            Different local minima: those with all rows proved first, then by their misses. Of a
+            front its designs by rising miss of the first goal, then those that are not proved.
+            Ctrl-C keeps the best so far.
 
         Raises
         ------
@@ -159,12 +164,17 @@ class DesignedMechanism(DynamicMechanism):
         >>> best = bar.improve(goal, vary=["A B", "O4 B"], starts=4)[0]
         >>> best.sound
         True
+        >>> goals = [{"of": "stroke(rocker)", "target": 90}, {"of": "max(B.y)", "target": 50}]
+        >>> front = bar.improve(goals, vary=["O2 A", "O4 B"], front=3, starts=1)
+        >>> [design.goals["max(B.y)"] > 0 for design in front]
+        [True, True, True]
         """
         wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
         settings = design.Improvement(
             vary=(vary,) if isinstance(vary, str) else tuple(vary),
             bounds=bounds or {},
             fit=fit,
+            front=front,
             starts=starts,
             spread=spread,
             seed=seed,

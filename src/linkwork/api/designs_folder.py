@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
-from linkwork.design.synthesis.designs_table import designs_table
+from linkwork.design.synthesis.designs_table import designs_table, front_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.drawing import render
+from linkwork.drawing.charts.front_chart import front_chart
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path, unwritten
 from linkwork.results.csv_text import csv_text
-from linkwork.textfile.writer import save_text, write_text
+from linkwork.textfile.writer import save_bytes, save_text, write_text
 from linkwork.viewer.designs_page import designs_page
 
 __all__ = ["FolderOptions", "write_designs"]
@@ -22,7 +24,7 @@ __all__ = ["FolderOptions", "write_designs"]
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _REFUSED = "refused"
 _PICTURES = 24  # designs that a page shows
-_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|index\.html)")
+_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,11 +78,23 @@ def write_designs(
             progress((done + 1) / len(chosen))
     if options.csv:
         save_text(csv_text(designs_table(found, files)), root / "designs.csv")
+    front = _front_picture(found) if options.draw or options.html else b""
+    if options.draw and front:
+        save_bytes(front, root / "front.svg")
     if options.html:
         shown = found.delivered[:_PICTURES]
         scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
-        save_text(designs_page(found, scenes, files), root / "index.html")
+        save_text(designs_page(found, scenes, files, front), root / "index.html")
     return files
+
+
+def _front_picture(found: Synthesis) -> bytes:
+    """The trade-off between goals as SVG; none if there is no front of two designs."""
+    front = front_of(found)
+    numbers = [design.number for design in found.delivered]
+    if len(numbers) < 2 or not front:
+        return b""
+    return render(front_chart(found.task.name, front, numbers), "svg")
 
 
 def prepare_folder(root: Path, options: FolderOptions) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.foundation.errors import MechanismFileError
 
 _HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
@@ -87,7 +88,12 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
             "[[positions]]\npoint = [90, 500]\n",
             10, "is 508.035 from O2, out of reach: B comes at most 180 away",
         ),
-        (_HEAD + "[improve]\nfront = 9\n" + _GOAL, 5, "has no effect yet"),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL, 5, "between two goals or more, and 1 is given"),
+        (
+            _HEAD + "[improve]\nfront = 9\n" + _GOAL + _GOAL + "weight = 3\n",
+            14, "has no effect on a front",
+        ),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL + "[rank]\ndeliver = 2\n", 9, "as a whole"),
         (
             _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
             5, "excludes",
@@ -101,3 +107,31 @@ def test_a_wrong_task_is_refused_with_its_line(
     with pytest.raises(MechanismFileError, match=message) as caught:
         lw.Task.load(tmp_path / "task.toml").solve()
     assert line in [problem.line for problem in caught.value.problems]
+
+
+def test_a_front_is_delivered_in_its_order_and_drawn(tmp_path: Path) -> None:
+    crank = lw.example_text("slider-crank").replace("step = 1\n", "step = 30\n")
+    (tmp_path / "crank.toml").write_text(crank)
+    goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
+    task = lw.Task.improve(
+        tmp_path / "crank.toml", goals=goals, vary=["O2 A"], front=3, starts=1,
+        wanted={"lengths": {"least": 15}},
+    )  # fmt: skip
+    found = task.solve()
+    misses = [(d.goals["stroke(d)"], d.goals["max(d)"]) for d in found.delivered]
+    assert [design.number for design in found.delivered] == [1, 2, 3]
+    assert misses == sorted(misses)
+    assert [b for _, b in misses] == sorted((b for _, b in misses), reverse=True)
+    # the wish holds for every design, and ends the front
+    assert found.delivered[-1].numbers["O2 A"] == pytest.approx(15.0, abs=1e-6)
+    assert found.to_dict()["designs"][0]["goals"] == found.delivered[0].goals
+    assert list(found.table()["miss of max(d)"]) == [b for _, b in misses]
+    lines = synthesis_lines(found)
+    assert any("goal 1: the miss of stroke(d)" in line for line in lines)
+    assert max(map(len, lines)) <= 80
+    found.save(tmp_path / "designs", draw=True, html=True)
+    picture = (tmp_path / "designs" / "front.svg").read_text()
+    assert all(f">{text}<" in picture for text in ("1", "2", "3", "miss of max(d)"))
+    page = (tmp_path / "designs" / "index.html").read_text()
+    assert 'id="trade-off"' in page
+    assert "miss of stroke(d)" in page

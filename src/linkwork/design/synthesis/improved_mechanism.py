@@ -76,6 +76,11 @@ class ImprovedMechanism:
         return dict(self.improved.numbers)
 
     @property
+    def goals(self) -> dict[str, float]:
+        """The root mean squares of the misses of goals that are no bounds [file units]."""
+        return dict(self.improved.goals)
+
+    @property
     def _motion(self) -> Motion | None:
         return self.improved.motion
 
@@ -165,9 +170,10 @@ class ImprovedMechanism:
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
-        return tuple(
-            Defect(kind=kind, between=None, message=message) for kind, message in self._defects()
-        )
+        found = tuple(self._defects())
+        if not found and not self.improved.sound:
+            found = ((DefectKind.NOT_PROVED, self.improved.message),)
+        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in found)
 
     def _defects(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task
@@ -246,6 +252,7 @@ class ImprovedMechanism:
             "error": self.error,
             "score": self.score,
             "numbers": self.numbers,
+            "goals": self.goals,
             "inputs": list(self.improved.inputs),
             "misses": list(self.improved.misses),
             "total": self.improved.total,

@@ -93,17 +93,21 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
     measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
-    entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
+    front = (task.improvement or Improvement()).front
+    entries = sorted(
+        (bool(d.kinds), 0.0 if d.kinds or front else -scores[k], k) for k, d in enumerate(designs)
+    )
     ranked: list[ImprovedMechanism] = []
     for place, (refused, _, k) in enumerate(entries, start=1):
         sound = sum(not other[0] for other in entries)
         number = place - sound if refused else place
-        delivered = not refused and number <= task.rank.deliver
+        delivered = not refused and (bool(front) or number <= task.rank.deliver)
         ranked.append(
             replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
         )
     seed = (task.improvement or Improvement()).seed
-    told = f"a sample: different local minima from {starts} starts with seed {seed}"
+    kind = "a front of designs that surpass each other" if front else "different local minima"
+    told = f"a sample: {kind} from {starts} starts with seed {seed}"
     return Synthesis(
         task=task,
         complex=len(designs),
