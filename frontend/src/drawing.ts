@@ -50,6 +50,8 @@ export class Drawing {
   private motion!: MotionView;
   /** The view chosen by zooming or panning; null: that of the data. */
   private chosen: View | null = null;
+  /** Height on the screen [px]. */
+  private height = 0;
   /** Called after the view has changed. */
   viewed: () => void = () => {};
 
@@ -133,6 +135,15 @@ export class Drawing {
     const air = places.length ? 0.08 * Math.max(right - left, top - bottom) : 0;
     this.more.set(what, near.flatMap(([x, y]) => [[x - air, y - air] as const, [x + air, y + air] as const]));
     this.renew(this.data);
+  }
+
+  /** The drawing has another height: in a chosen view everything stays at its place below the upper edge. */
+  resized(): void {
+    const { width, height } = this.size;
+    const lower = this.height ? this.height - height : 0;
+    this.height = height;
+    if (this.chosen && lower) this.pan(0, (lower / 2) * (this.chosen.width / width));
+    this.fit();
   }
 
   /** Enlarge names in small drawings for legibility. */

@@ -304,6 +304,14 @@ export interface OpenExample {
   discard?: boolean;
 }
 
+export interface OpenFile {
+  kind: "open_file";
+  id?: number;
+  name: string;
+  content: string;
+  discard?: boolean;
+}
+
 export interface Undo {
   kind: "undo";
   id?: number;
@@ -610,6 +618,16 @@ export interface FileChanged {
   reloaded: boolean;
   unsaved: boolean;
   missing: boolean;
+}
+
+export interface FileOpened {
+  kind: "file_opened";
+  answers: number | null;
+  source: string;
+  format: string;
+  carried: Record<string, number>;
+  renamed: Record<string, string>;
+  left_out: readonly (string)[];
 }
 
 export interface Saved {
@@ -995,6 +1013,7 @@ export type LiveRequest =
   | Export
   | MakeLink
   | OpenExample
+  | OpenFile
   | Undo
   | Redo
   | Save
@@ -1032,6 +1051,7 @@ export type LiveEvent =
   | Refused
   | LinkMade
   | FileChanged
+  | FileOpened
   | Saved
   | StartOffered
   | TaskState

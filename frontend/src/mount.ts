@@ -151,7 +151,7 @@ class Page implements Mounted {
   private turn: number | null = null;
   private spoken = 0;
   private readonly gone = new AbortController();
-  private readonly sized = new ResizeObserver(() => this.drawing.fit());
+  private readonly sized = new ResizeObserver(() => this.drawing.resized());
 
   constructor(
     element: HTMLElement,

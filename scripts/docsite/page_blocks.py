@@ -36,7 +36,7 @@ _BLOCK = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 _EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-_LONGEST = 60  # seconds that a block may take
+_LONGEST = 300  # seconds that a block may take; the first one of an installation compiles kernels
 _INSTALLS = ("pip ", "pipx ", "uvx ", "uv ", "python3 -m venv", "scripts/", "eval ")
 
 

@@ -10,7 +10,8 @@ from linkwork.api import Mechanism
 from linkwork.design.synthesis.by_circuits import branches_of_positions
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
-from linkwork.design.synthesis.task import PrecisionPosition, Task
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import PrecisionPosition
 from linkwork.design.synthesis.verdicts import DefectKind, judge
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array

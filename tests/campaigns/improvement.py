@@ -81,6 +81,7 @@ def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.Synthesis:
     improve: dict[str, Any] = {"bounds": curve.bounds} if curve.bounds else {}
     if starts is not None:
         improve["starts"] = starts
+    further: dict[str, Any] = {"improve": improve} if improve else {}
     task = lw.Task.path(
         curve.points,
         inputs=inputs,
@@ -88,7 +89,7 @@ def solve_curve_task(curve: Curve, starts: int | None = None) -> lw.Synthesis:
         mechanism="four-bar",
         wanted=curve.wanted,
         rank={"by": {"error": 1}, "deliver": 1000},
-        **({"improve": improve} if improve else {}),
+        **further,
     )
     return task.solve()
 

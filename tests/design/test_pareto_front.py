@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -82,7 +84,7 @@ def test_equal_goals_and_goals_met_together_have_one_design() -> None:
 def test_a_bound_ends_a_front_and_one_that_nothing_keeps_is_told() -> None:
     crank = lw.loads(CRANK)
     goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
-    given = {"vary": ["O2 A"], "starts": 1, "front": 3}
+    given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 3}
     front = crank.improve([*goals, {"of": "stroke(d)", "least": 50}], **given)
     strokes = [70 - design.goals["stroke(d)"] for design in front]
     assert min(strokes) == pytest.approx(50.0, abs=1e-4)
@@ -116,8 +118,13 @@ def test_points_and_a_goal_have_a_front() -> None:
     inputs = [0.0, 60.0, 120.0, 200.0, 290.0]
     points = {"point": "B", "points": [wanted.solve(at=a).points["B"] for a in inputs]}
     stroke = {"of": "stroke(rocker)", "target": 30}
-    given = {"vary": ["O2 A", "A B"], "bounds": {"O2 A": (20, 45)}, "front": 4, "starts": 1}
-    front = bar.improve([{**points, "inputs": inputs}, stroke], **given)
+    front = bar.improve(
+        [{**points, "inputs": inputs}, stroke],
+        vary=["O2 A", "A B"],
+        bounds={"O2 A": (20, 45)},
+        front=4,
+        starts=1,
+    )
     assert len(front) == 4
     assert front[0].goals["B"] < 1e-4 < front[-1].goals["B"]
     assert not _dominated(_values(front))
@@ -150,5 +157,6 @@ def test_fronts_without_a_meaning_are_refused() -> None:
         ([rocker, rocker], {"front": 1}, "2 designs or more"),
         ([rocker, rocker], {"front": 4, "fit": "minimax"}, "count by themselves"),
     ):
+        own: dict[str, Any] = given
         with pytest.raises(MechanismError, match=message):
-            bar.improve(goals, **given)
+            bar.improve(goals, **own)

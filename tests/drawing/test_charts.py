@@ -15,8 +15,10 @@ from matplotlib.lines import Line2D
 import linkwork as lw
 from linkwork.drawing import LIGHT, circuit_chart, render
 from linkwork.drawing.charts import chart as chart_module, circuit_chart as circuit_chart_module
+from linkwork.drawing.charts.branch_chart import branch_chart
 from linkwork.drawing.charts.chart import Chart, Curve
 from linkwork.drawing.charts.matplotlib_page import chart_figure
+from linkwork.drawing.charts.motion_chart import motion_chart
 from linkwork.drawing.charts.theme import LIGHT_CHART
 from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.drawing.pages import assert_page_is_clear, printed_texts, size_in_inches, svg_texts
@@ -466,3 +468,16 @@ def test_an_svg_names_its_texts_curves_and_marks() -> None:
 def test_the_same_chart_gives_the_same_bytes(kind: str) -> None:
     chart = circuit_chart(circuits_of("four-bar"))
     assert render(chart, kind) == render(circuit_chart(circuits_of("four-bar")), kind)
+
+
+@pytest.mark.parametrize("name", ["balanced-lamp", "pendulum"])
+def test_charts_of_a_mechanism_without_unknowns_show_its_traced_points(name: str) -> None:
+    mechanism = lw.example(name)
+    motion, circuits = mechanism.sweep(), mechanism.circuits()
+    coordinates = [f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy"]
+    assert len(coordinates) == 2
+    drawn = [curve.name for panel in motion_chart(motion).panels for curve in panel.curves]
+    assert drawn == coordinates
+    assert len(circuit_chart(circuits).panels) == 2
+    assert len(branch_chart(circuits).panels) == 1
+    assert "closest to a dead point" not in str(circuits)

@@ -314,6 +314,7 @@ def test_a_motion_ends_at_a_change_point_unless_it_goes_straight() -> None:
     [
         ({"masses": {}}, {}, "nothing in .* has mass"),
         ({}, {"until": -1}, "until must be a positive time"),
+        ({}, {"until": 5e-324}, "until must be at least 1e-100 s, got 5e-324"),
         ({}, {"step": 0}, "step must be a part of until, 1 s, that makes 1 to"),
         ({}, {"step": 2}, "step must be a part of until, 1 s, that makes 1 to"),
         ({}, {"start_speed": "3 mm/s"}, "start speed: must be a number and a unit"),

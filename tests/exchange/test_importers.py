@@ -188,7 +188,10 @@ _WRONG = {
     "bracket.pyslvs": (b"M[J[R, P[0, 0], L[a]]", 'expected ",", got the end'),
     "loose.pmks": (b"a,b,R,0,0\nb,c,R,1,1\nc,a,R,2,0", "has no fixed point: nothing is joined"),
     "other.sam": (b"\0\1", "files of SAM (ARTAS) have no published format: export a DXF drawing"),
-    "photo.png": (b"\x89PNG", "is in no format that is known: name it (formats: pmks, pylinkage"),
+    "photo.png": (
+        b"\x89PNG",
+        "is in no known format: give it the right suffix, or name the format (formats: ",
+    ),
     "large.pmks": (b"x" * 4_000_001, "has more than 4 MB: more is not read"),
     "words.pmks": (b"\xff", "byte 0 (0xff) is not UTF-8"),
 }

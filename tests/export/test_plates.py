@@ -86,7 +86,7 @@ def test_half_the_kerf_goes_outside_outlines_and_inside_holes() -> None:
     found = hole.as_circle
     assert found is not None
     assert found[1] == pytest.approx(stack.sizes.hole / 2.0 - 0.25, rel=1e-15)
-    grown = rounded(crank.core, stack.sizes.width / 2.0 + 0.25)
+    grown = rounded(crank.core[0], stack.sizes.width / 2.0 + 0.25)
     assert outline.area == pytest.approx(grown.area, rel=1e-14)
 
 

@@ -153,6 +153,14 @@ def test_a_table_that_falls_or_winds_is_no_other(start: float, both: Sweep) -> N
     assert_same(*both(mechanism), mechanism)
 
 
+def test_a_table_out_of_reach_has_its_statuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(by_kernels, "kernels_pay", lambda model, rows: True)
+    motion = (
+        lw.example("four-bar").with_dimensions({"O2 A": 150}).sweep(start=170, stop=190, step=1)
+    )
+    assert {*motion.status} == {lw.Status.OUT_OF_REACH}
+
+
 def test_two_inputs_move_together(both: Sweep) -> None:
     mechanism = lw.example("five-bar-robot")
     ranges = mechanism.model.rows_in_file_units

@@ -110,6 +110,29 @@ def test_lost_paths_are_replaced_by_mirror_images_and_detours(solved: Member) ->
     assert np.sort_complex(found.x[:, 0]) == pytest.approx(np.sort_complex(expected[:, 0]))
 
 
+@pytest.mark.parametrize(("c", "detours"), [((1.0, -3.0), 3), ((1.5, -2.5), 1)])
+def test_detours_of_special_tasks_end_when_one_finds_nothing(
+    solved: Member, c: tuple[float, float], detours: int
+) -> None:
+    """A real solution that no path reaches; the second member has a double solution as well."""
+    expected = roots_of(solved, *c).x
+    lost = float(expected[np.abs(expected.imag) < 1e-9].real.min())
+    calls = []
+
+    def blind(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
+        paths = track_in_batches(path, start, options)
+        calls.append(len(start))
+        paths.state[np.abs(paths.w[:, 0] - lost) < 1e-3] = 2
+        return paths
+
+    goal = np.array(c, dtype=complex)
+    found = roots_at(Quintic(), solved, goal, blind, np.random.default_rng(3))
+    assert calls == [5, 1, *[5, 5] * detours]
+    assert (len(found.x), found.lost, found.by_detour, found.complete) == (
+        len(expected) - 1, 1, 0, False,
+    )  # fmt: skip
+
+
 def test_of_paths_that_meet_one_is_followed_again(solved: Member) -> None:
     """A tracker that jumps once: both ends are the same."""
     calls = []

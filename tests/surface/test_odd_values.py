@@ -11,6 +11,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import batch
+from linkwork.batch.study import summary_of
 from tests.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")
@@ -45,6 +46,8 @@ PRESS = lw.example("crank-press")
             'the motion belongs to "Four-bar linkage, open", not to "Crank press with forces"',
         ),
         (lambda: batch.from_table("\0"), "'\\x00' cannot be read: embedded null"),
+        (lambda: batch.from_table({"A": 1}, 1.5), "the columns must be a list of names, got 1.5"),  # type: ignore[arg-type]
+        (lambda: summary_of("x" * 5000), "cannot be read: File name too long"),
         (lambda: batch.designs_of("A", {}), "the mechanism of a family must be a Model, got 'A'"),  # type: ignore[arg-type]
         (lambda: BAR.iterates(1.5), "a guess is given by name, as "),  # type: ignore[arg-type]
         (lambda: BAR.inversion(slice(3)), "a name must be a text, got slice(None, 3, None)"),  # type: ignore[arg-type]

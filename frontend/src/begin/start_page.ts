@@ -27,12 +27,17 @@ const TASKS: Readonly<Record<string, readonly [string, string]>> = {
 export interface StartHooks {
   /** Open a mechanism of the library, "" is the blank sheet, or a task. */
   readonly open: (name: string, of: "example" | "task") => void;
+  /** Choose a file of the visitor; absent while there is no program to open it. */
+  readonly file?: () => void;
   /** Leave the page as it is; absent where there is nothing to go back to. */
   readonly close?: () => void;
 }
 
 export class StartPage {
   readonly element = html("section", { class: "lw-start", "aria-label": "Begin" });
+  private readonly message: HTMLElement;
+  private readonly file: HTMLButtonElement;
+  private own!: StartHooks;
   private readonly list: HTMLElement;
   private readonly count: HTMLElement;
   private readonly moving = new Map<Element, Thumbnail>();
@@ -43,7 +48,7 @@ export class StartPage {
 
   constructor(
     private readonly entries: readonly Entry[],
-    public hooks: StartHooks,
+    hooks: StartHooks,
   ) {
     this.seen = new IntersectionObserver((changes) => {
       for (const { target, isIntersecting } of changes) {
@@ -56,10 +61,13 @@ export class StartPage {
     html("p", {}, head, "Draw a mechanism, begin with one of the library, or design one for a task.");
     if (hooks.close) {
       const close = html("button", { type: "button" }, head, "Back");
-      close.addEventListener("click", () => this.hooks.close?.());
+      close.addEventListener("click", () => this.own.close?.());
     }
+    this.message = html("p", { class: "lw-start-note", role: "alert", hidden: "" }, this.element);
     const first = html("div", { class: "lw-cards" }, this.element);
     this.blank(first);
+    this.file = this.fileCard(first);
+    this.hooks = hooks;
     for (const [name, title] of Object.entries(TEMPLATES)) {
       const entry = entries.find((one) => one.name === name);
       if (entry) this.card(first, { ...entry, title });
@@ -74,6 +82,18 @@ export class StartPage {
     this.list = html("div", { class: "lw-families" }, this.element);
     this.find("");
     if (!this.calm) this.frame = requestAnimationFrame((now) => this.tick(now));
+  }
+
+  set hooks(hooks: StartHooks) {
+    this.own = hooks;
+    this.file.disabled = !hooks.file;
+  }
+
+  /** Why nothing was opened. */
+  note(text: string): void {
+    this.message.textContent = text;
+    this.message.hidden = !text;
+    this.element.scrollTop = 0;
   }
 
   destroy(): void {
@@ -111,14 +131,23 @@ export class StartPage {
     const card = html("button", { type: "button", class: "lw-card lw-blank" }, box);
     html("span", { class: "lw-plus", "aria-hidden": "true" }, card, "+");
     html("strong", {}, card, "Blank sheet");
-    card.addEventListener("click", () => this.hooks.open("", "example"));
+    card.addEventListener("click", () => this.own.open("", "example"));
+  }
+
+  private fileCard(box: Element): HTMLButtonElement {
+    const card = html("button", { type: "button", class: "lw-card lw-open-file" }, box);
+    html("span", { class: "lw-plus", "aria-hidden": "true" }, card, "↥");
+    html("strong", {}, card, "Open a file");
+    html("span", {}, card, "Or drop it on the page: also of PMKS+, GeoGebra, DXF and others.");
+    card.addEventListener("click", () => this.own.file?.());
+    return card;
   }
 
   private task(box: Element, name: string, title: string, purpose: string): void {
     const card = html("button", { type: "button", class: "lw-card", "data-task": name }, box);
     html("strong", {}, card, title);
     html("span", {}, card, purpose);
-    card.addEventListener("click", () => this.hooks.open(name, "task"));
+    card.addEventListener("click", () => this.own.open(name, "task"));
   }
 
   private card(box: Element, { name, title, purpose, picture }: Entry): void {
@@ -131,7 +160,7 @@ export class StartPage {
     } else html("span", { class: "lw-formula-card", "aria-hidden": "true" }, card, "F(q) = 0");
     html("strong", {}, card, title);
     html("span", {}, card, purpose);
-    card.addEventListener("click", () => this.hooks.open(name, "example"));
+    card.addEventListener("click", () => this.own.open(name, "example"));
   }
 
   private tick(now: number): void {

@@ -26,6 +26,8 @@ export class Dimensions {
   readonly element = html("div", { class: "lw-dimensions" });
   private rows = new Map<string, Row>();
   private layout = "";
+  /** The groups of the last layout, by their headings. */
+  private groups = new Map<string, HTMLDetailsElement>();
 
   private readonly units: Units;
 
@@ -45,11 +47,15 @@ export class Dimensions {
   private build(file: FileState): void {
     this.rows.clear();
     this.element.replaceChildren(this.units.element);
+    const before = this.groups;
+    this.groups = new Map();
     let first = true;
     for (const [title, tables, open] of GROUPS) {
       const own = file.numbers.filter((one) => tables.includes(one.table));
       if (!own.length) continue;
-      const box = html("details", { class: "lw-group", ...(open || first ? { open: "" } : {}) }, this.element);
+      const box = html("details", { class: "lw-group" }, this.element) as HTMLDetailsElement;
+      box.open = before.get(title)?.open ?? (open || first); // as the user left it
+      this.groups.set(title, box);
       first = false;
       html("summary", {}, box, title);
       for (const number of own) {

@@ -4,9 +4,7 @@ import type { CannotClose, FileState, LiveEvent, LiveRequest, MotionFound, Sketc
 import { mount, type Mounted, type PageData } from "../mount";
 import { html, svg } from "../svg";
 import type { Desk } from "./asking";
-import { Bar } from "./bar";
 import { Build } from "./build";
-import { Busy } from "./busy";
 import { CircuitsPanel } from "./circuits";
 import { blank, closing } from "./closing";
 import { Dimensions } from "./dimensions";
@@ -16,21 +14,19 @@ import { Readiness } from "./draw/readiness";
 import { ExportMenu } from "./export_menu";
 import { firstHint } from "./first_hint";
 import { ForceForms } from "./force_forms";
-import { Latest } from "./latest";
 import { moved } from "./moved";
 import { Newton } from "./newton";
-import { Notices } from "./notices";
 import { Plots } from "./plots";
 import { presentNewton } from "./presented";
+import { Shell } from "./shell";
 import { SimulatePanel } from "./simulate";
-import { Starting } from "./starting";
 import { drawGaps } from "./schematic";
 import { Tabs } from "./tabs";
 import type { Connect, Transport } from "./transport";
 import { Ways } from "./ways";
 
 /** Events that answer a request, so that the next can be sent. */
-const ANSWERS = new Set(["motion_found", "cannot_close", "position_found", "sketch_shown", "newton_shown", "refused", "problems_found"]);
+const ANSWERS: ReadonlySet<LiveEvent["kind"]> = new Set(["motion_found", "cannot_close", "position_found", "sketch_shown", "newton_shown", "refused", "problems_found"]);
 
 /** Widths of a blank sheet by unit; otherwise 240. */
 const SHEETS: Readonly<Record<string, number>> = { mm: 240, cm: 24, m: 0.24, in: 10, ft: 1 };
@@ -40,9 +36,7 @@ const RESIZED = 0.2;
 
 export class LivePage {
   private readonly connection: Transport;
-  private readonly latest: Latest<LiveRequest>;
-  private readonly bar: Bar;
-  private readonly notices = new Notices();
+  private readonly shell: Shell;
   private readonly dimensions: Dimensions;
   private readonly ways: Ways;
   private readonly newton: Newton;
@@ -55,7 +49,6 @@ export class LivePage {
   private readonly simulate: SimulatePanel;
   private readonly plots: Plots;
   private readonly exports: ExportMenu;
-  private readonly busy = new Busy();
   /** The row at which the motion of the file was left for a circuit. */
   private left: number | null = null;
   /** The last motion of the file. */
@@ -69,7 +62,6 @@ export class LivePage {
   /** Whether the page was made with plots. */
   private charted = false;
   private hint: Element | null = null;
-  private readonly starting: Starting;
   private readonly first = firstHint();
   /** The width of the sheet that was told last. */
   private width = 1;
@@ -78,9 +70,13 @@ export class LivePage {
   private rowless = false;
 
   constructor(private readonly element: HTMLElement, connect: Connect) {
+    this.shell = new Shell(() => this.connection, {
+      file: () => this.file,
+      restore: () => this.restore(),
+      answers: ANSWERS,
+      dragged: (request) => this.withRates(request),
+    });
     const desk = this.desk();
-    this.starting = new Starting(desk);
-    this.bar = new Bar(desk, () => this.starting.offer(true));
     this.dimensions = new Dimensions(desk);
     this.ways = new Ways(desk);
     this.newton = new Newton(desk);
@@ -105,9 +101,8 @@ export class LivePage {
       goToRow: (row) => this.page?.goToRow(row),
       form: (name) => this.openForm(name),
     });
-    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.notices.done(text));
-    this.bar.element.append(this.exports.element);
-    document.body.append(this.busy.element);
+    this.exports = new ExportMenu(desk, () => this.row(), (text) => this.shell.notices.done(text));
+    this.shell.bar.element.append(this.exports.element);
     this.tabs = new Tabs([
       { title: "Dimensions", element: this.dimensions.element },
       { title: "Configurations", element: this.ways.element, shown: (on) => this.ways.shown(on) },
@@ -120,7 +115,6 @@ export class LivePage {
       event: (event) => this.told(event),
       lost: (message) => this.lost(message),
     });
-    this.latest = new Latest((request) => this.send(this.withRates(request)));
   }
 
   /** Intermediate answers have rates of points only while they are shown. */
@@ -131,25 +125,13 @@ export class LivePage {
 
   private desk(): Desk {
     return {
-      ask: (request) => {
-        this.latest.clear();
-        this.notices.clear();
-        this.send(request);
-      },
-      background: (request) => {
-        this.send(request);
-      },
-      latest: (request) => this.latest.put(request),
+      ask: (request) => this.shell.ask(request),
+      background: (request) => void this.shell.background(request),
+      latest: (request) => this.shell.drag(request),
       file: () => this.file!,
       here: () => this.here(),
       values: () => this.page?.values ?? {},
     };
-  }
-
-  private send(request: LiveRequest): number {
-    const id = this.connection.ask(request);
-    if (!this.element.classList.contains("lw-lost")) this.busy.asked(id);
-    return id;
   }
 
   /** The displayed row of the motion of the file. */
@@ -173,7 +155,7 @@ export class LivePage {
     if (page !== null) {
       this.circuits.left();
       if (this.editor.edited) this.editor.choose("move");
-      this.notices.calm();
+      this.shell.notices.calm();
     }
     this.plots.simulated = page !== null;
     this.look(page);
@@ -203,7 +185,7 @@ export class LivePage {
   private told(event: LiveEvent): void {
     switch (event.kind) {
       case "start_offered":
-        this.starting.offer(false);
+        this.shell.starting.offer(false);
         break;
       case "palette_shown":
         this.forms.kinds = event.forms;
@@ -241,66 +223,43 @@ export class LivePage {
         void this.exports.show(event);
         break;
       case "working":
-        this.busy.progress(event.fraction);
         this.simulate.working(event.fraction);
-        return;
+        break;
       case "newton_shown":
         this.newton.show(event);
         break;
       case "point_moved":
-        if (event.answers !== null && this.element.dataset.live !== "true") this.notices.done(moved(event));
-        break;
-      case "problems_found":
-        this.notices.problems(event);
-        if (this.file) this.dimensions.show(this.file);
+        if (event.answers !== null && this.element.dataset.live !== "true") this.shell.notices.done(moved(event));
         break;
       case "refused":
-        this.refused(event.message);
-        break;
-      case "file_changed":
-        this.notices.changed(event, this.decisions());
+        this.simulate.refused(event.message);
         break;
       case "design_opened":
-        this.bar.behind(event.task);
-        break;
-      case "link_made":
-        this.bar.link.show(event);
-        break;
-      case "saved":
-        this.notices.done(`Saved in ${event.file}.`);
+        this.shell.bar.behind(event.task);
         break;
     }
-    this.busy.answered(event.answers);
-    if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
+    this.shell.told(event);
   }
 
-  private decisions(): Record<string, () => void> {
-    return {
-      Reload: () => this.send({ kind: "reload" }),
-      Overwrite: () => this.send({ kind: "save", overwrite: true }),
-    };
-  }
-
-  private refused(message: string): void {
-    this.simulate.refused(message);
-    if (this.bar.link.opened) {
-      this.bar.link.refuse(message);
-      return;
-    }
-    const conflict = /overwrite/.test(message);
-    this.notices.say(message, conflict ? this.decisions() : {});
+  /** Show the numbers as they are, where a change of one was refused. */
+  private restore(): void {
     if (this.file) this.dimensions.show(this.file);
   }
 
   private state(file: FileState): void {
-    if (this.file !== null && this.file.file !== file.file) this.another();
+    const before = this.file;
+    if (before !== null && before.file !== file.file) this.another();
+    const saved = before?.file === file.file && before.text === file.text && before.configuration === file.configuration;
     this.file = file;
-    this.bar.show(file);
+    this.shell.bar.show(file);
     this.dimensions.show(file);
     this.build.show(file);
-    this.ways.renew();
-    this.circuits.renew();
-    this.simulate.renew(file);
+    if (!saved) {
+      // a file that was only saved keeps what was found of it
+      this.ways.renew();
+      this.circuits.renew();
+      this.simulate.renew(file);
+    }
     this.plots.renew();
     this.newton.renew();
     this.editor.renew(file);
@@ -310,7 +269,7 @@ export class LivePage {
 
   /** Another file: nothing of the page stays. */
   private another(): void {
-    this.bar.behind("");
+    this.shell.bar.behind("");
     this.page?.destroy();
     [this.page, this.moving, this.sketched, this.charted] = [null, null, null, false];
     this.editor.rest();
@@ -337,7 +296,7 @@ export class LivePage {
   }
 
   private limits(found: MotionFound): void {
-    this.notices.limits(found, this.file!.inputs[0]?.unit ?? "", (input) => this.page?.goToInput(input));
+    this.shell.notices.limits(found, this.file!.inputs[0]?.unit ?? "", (input) => this.page?.goToInput(input));
   }
 
   /** Count updates, for whoever waits for one. */
@@ -363,8 +322,8 @@ export class LivePage {
     const still = data.motions[0]!.columns.length === 0;
     const page = (this.page = mount(this.element, data, { row: () => this.rowShown(), changing: true, still }));
     const { head, canvas, side } = page.places;
-    head.insertBefore(this.bar.element, head.querySelector(".lw-corner"));
-    canvas.after(this.readiness.element, this.notices.element);
+    head.insertBefore(this.shell.bar.element, head.querySelector(".lw-corner"));
+    canvas.after(this.readiness.element, this.shell.notices.element);
     side.querySelector(".lw-questions")!.after(this.tabs.element);
     this.hint = head.closest(".lw")!.querySelector(".lw-hint")!;
     this.hint.textContent = "Drag a pin or a link.";
@@ -420,7 +379,7 @@ export class LivePage {
     const { lacks, readable, points } = this.file!;
     if (lacks.length) {
       this.moving = null;
-      this.notices.calm();
+      this.shell.notices.calm();
     }
     this.display();
     // what does not move is there to be edited
@@ -434,7 +393,7 @@ export class LivePage {
     this.moving = null;
     if (page !== null) this.display();
     else this.instead();
-    if (text) this.notices.open(text, []);
+    if (text) this.shell.notices.open(text, []);
   }
 
   /** Show equations if there is nothing to draw. */
@@ -453,8 +412,8 @@ export class LivePage {
     if (event.page === null) return;
     if (!drawn) this.gaps(event);
     const { text, remedies } = closing(event, this.file!);
-    const choices = remedies.map(({ label, title, request }) => [label, title, () => this.send(request)] as const);
-    this.notices.open(text, choices);
+    const choices = remedies.map(({ label, title, request }) => [label, title, () => void this.shell.background(request)] as const);
+    this.shell.notices.open(text, choices);
     this.updated();
   }
 
@@ -467,17 +426,8 @@ export class LivePage {
   }
 
   private lost(message: string): void {
-    this.busy.stop();
-    this.bar.close();
-    if (this.page === null) {
-      this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));
-      return;
-    }
-    this.element.classList.add("lw-lost");
-    for (const input of this.tabs.element.querySelectorAll<HTMLInputElement>("input, button, select, textarea")) {
-      input.disabled = true;
-    }
-    this.notices.say(message, { "Reload": () => location.reload() }, false);
+    this.shell.lost(message, this.element, this.tabs.element);
+    if (this.page === null) this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));
   }
 }
 

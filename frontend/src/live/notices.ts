@@ -1,6 +1,6 @@
 // Notices next to the drawing: limits of the motion, problems, and decisions.
 
-import type { FileChanged, LimitFound, MotionFound, ProblemsFound } from "../messages";
+import type { FileChanged, FileOpened, LimitFound, MotionFound, ProblemsFound } from "../messages";
 import { html } from "../svg";
 
 /** Maximum number of listed dead points. */
@@ -51,10 +51,12 @@ export class Notices {
     this.motion.hidden = true;
   }
 
-  problems(found: ProblemsFound): void {
+  /** Problems of the present file, or of `another` one that was not opened. */
+  problems(found: ProblemsFound, another: string): void {
     this.clear();
     const several = found.problems.length > 1;
-    html("strong", {}, this.message, several ? `${found.problems.length} problems; nothing was changed.` : "Not changed:");
+    const unchanged = several ? `${found.problems.length} problems; nothing was changed.` : "Not changed:";
+    html("strong", {}, this.message, another ? `${another} is not opened; everything stays as it was:` : unchanged);
     const list = html("ul", {}, this.message);
     for (const problem of found.problems) {
       const entry = html("li", {}, list);
@@ -63,6 +65,20 @@ export class Notices {
       entry.append(` ${problem.message}`);
     }
     this.closable();
+  }
+
+  /** A file of the visitor was opened: what was carried over of it, and what was not. */
+  opened(event: FileOpened): void {
+    if (!event.format) {
+      this.done(`Opened ${event.source}.`);
+      return;
+    }
+    const carried = Object.entries(event.carried).map(([what, count]) => `${count} ${count === 1 ? what.replace(/s$/, "") : what}`);
+    const notes = [...Object.entries(event.renamed).map(([old, name]) => `renamed: ${old} is now ${name}`), ...event.left_out.map((what) => `not carried over: ${what}`)];
+    this.done(`Imported ${event.source} (${event.format}): ${carried.join(", ")}.${notes.length ? "" : " Everything was carried over."}`);
+    if (!notes.length) return;
+    const list = html("ul", { tabindex: 0, "aria-label": "What was not carried over" }, this.message);
+    for (const note of notes) html("li", {}, list, note);
   }
 
   changed(event: FileChanged, choices: Choices): void {
@@ -86,6 +102,11 @@ export class Notices {
       });
     }
     if (lasting) this.closable();
+  }
+
+  /** The message in words. */
+  get text(): string {
+    return [...this.message.children].flatMap((part) => (part.matches("button") ? [] : [part.textContent])).join(" ");
   }
 
   clear(): void {

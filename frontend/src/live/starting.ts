@@ -1,7 +1,7 @@
 // Another mechanism in place of the present one: the library, or a blank sheet.
 
 import { libraryOf } from "../begin/library";
-import { StartPage } from "../begin/start_page";
+import { StartPage, type StartHooks } from "../begin/start_page";
 import type { FileState, TaskState } from "../messages";
 import type { Desk } from "./asking";
 
@@ -20,8 +20,9 @@ export interface Chosen {
 let chosen: Chosen | null = null;
 
 /** Show the start page, or let another function open what is chosen on it, or was chosen already. */
-export function offerStart(open: (name: string, of: Chosen["of"]) => void, close?: () => void): void {
-  const hooks = { open, ...(close ? { close } : {}) };
+export function offerStart(open: (name: string, of: Chosen["of"]) => void, hooksOf: Pick<StartHooks, "file" | "close"> = {}): void {
+  const { close } = hooksOf;
+  const hooks = { open, ...hooksOf };
   const early = chosen;
   chosen = null;
   if (early !== null && !close) {
@@ -45,6 +46,11 @@ export function chooseEarly(early: Chosen): void {
   leaveStart();
 }
 
+/** Say something on the start page, if it covers the place where messages are. */
+export function noteAtStart(text: string): void {
+  current?.note(text);
+}
+
 export function leaveStart(): void {
   if (current === null) return;
   current.destroy();
@@ -54,11 +60,14 @@ export function leaveStart(): void {
 }
 
 export class Starting {
-  constructor(private readonly desk: Pick<Desk, "ask"> & { readonly file: () => FileState | TaskState | null }) {}
+  constructor(
+    private readonly desk: Pick<Desk, "ask"> & { readonly file: () => FileState | TaskState | null },
+    private readonly pick: () => void,
+  ) {}
 
   /** Offer the library; `back`: the present file may stay. */
   offer(back: boolean): void {
-    offerStart((name, of) => this.open(name, of), back ? leaveStart : undefined);
+    offerStart((name, of) => this.open(name, of), { file: this.pick, ...(back ? { close: leaveStart } : {}) });
   }
 
   private open(name: string, of: Chosen["of"]): void {

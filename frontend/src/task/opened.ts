@@ -7,7 +7,7 @@ import { html } from "../svg";
 import { TaskPage } from "./task_page";
 
 /** Events that both pages show. */
-const SHARED = new Set<LiveEvent["kind"]>(["refused", "problems_found", "file_changed", "link_made", "saved", "working"]);
+const SHARED = new Set<LiveEvent["kind"]>(["refused", "problems_found", "file_changed", "link_made", "saved", "working", "file_opened"]);
 
 /** Both pages over one connection; the element is that of mechanisms. */
 export function openPages(element: HTMLElement, connect: Connect): void {

@@ -1,11 +1,7 @@
 // The page of a task: its canvas, its designs, and what they cost.
 
 import { declareKeys, press, showKeys, type Command } from "../keys";
-import { Bar } from "../live/bar";
-import { Busy } from "../live/busy";
-import { Latest } from "../live/latest";
-import { Notices } from "../live/notices";
-import { Starting } from "../live/starting";
+import { Shell } from "../live/shell";
 import { Tabs } from "../live/tabs";
 import type { Transport } from "../live/transport";
 import type { DesignFound, LiveEvent, LiveRequest, TaskSolved, TaskState, TaskUnsolved } from "../messages";
@@ -19,16 +15,15 @@ import { TaskCanvas } from "./task_canvas";
 import { TaskForm } from "./task_form";
 import { TOOLS } from "./tools";
 
-const ANSWERS = new Set(["task_solved", "task_unsolved", "refused"]);
+const ANSWERS: ReadonlySet<LiveEvent["kind"]> = new Set(["task_solved", "task_unsolved", "refused"]);
 const KINDS: Readonly<Record<string, string>> = { motion: "pose", path: "point", mixed: "position", improve: "point" };
 
 export class TaskPage {
   private readonly root: HTMLElement;
+  private readonly side: HTMLElement;
   private readonly title: HTMLElement;
   private readonly summary: HTMLElement;
-  private readonly bar: Bar;
-  private readonly busy = new Busy();
-  private readonly notices = new Notices();
+  private readonly shell: Shell;
   private readonly canvas: TaskCanvas;
   private readonly player: PositionPlayer;
   private readonly chosen = html("div", { class: "lw-t-chosen" });
@@ -40,33 +35,28 @@ export class TaskPage {
   private readonly cognates: Cognates;
   private readonly form: TaskForm;
   private readonly tabs: Tabs;
-  private readonly latest: Latest<LiveRequest>;
   private task: TaskState | null = null;
   private solved: TaskSolved | null = null;
   private design: DesignFound | null = null;
-  private lost_ = false;
 
   constructor(
     private readonly element: HTMLElement,
-    private readonly transport: Transport,
+    transport: Transport,
   ) {
     this.root = html("div", { class: "lw lw-full lw-task", tabindex: -1 }, element);
-    this.latest = new Latest((request) => this.send(request));
-    const desk = { ask: (request: LiveRequest) => this.ask(request), file: () => this.task };
-    const starting = new Starting(desk);
-    this.bar = new Bar(desk, () => starting.offer(true));
+    this.shell = new Shell(() => transport, { file: () => this.task, restore: () => this.restore(), answers: ANSWERS });
     const head = html("header", { class: "lw-head" }, this.root);
     this.title = html("h1", {}, head);
     this.summary = html("p", { class: "lw-summary" }, head);
-    head.append(this.bar.element);
+    head.append(this.shell.bar.element);
     const corner = html("div", { class: "lw-corner" }, head);
     themeButton(corner, this.root);
     const keys = html("button", { type: "button", class: "lw-keys-button", "aria-label": "Keys", title: "All keys (?)" }, corner, "?");
     keys.addEventListener("click", () => showKeys(this.root));
     const stage = html("section", { class: "lw-stage", "aria-label": "Canvas" }, this.root);
-    this.canvas = new TaskCanvas({ ask: (request) => this.ask(request), drag: (request) => this.latest.put(request), picked: (thing) => this.form.mark(thing) });
+    this.canvas = new TaskCanvas({ ask: (request) => this.ask(request), drag: (request) => this.shell.drag(request), picked: (thing) => this.form.mark(thing) });
     this.player = new PositionPlayer((row, at) => this.canvas.stand(row, at));
-    stage.append(this.canvas.element, this.waiting, this.notices.element, this.player.element);
+    stage.append(this.canvas.element, this.waiting, this.shell.notices.element, this.player.element);
     this.open = html("button", { type: "button", class: "lw-t-open" }, this.chosen, "Open as mechanism");
     this.line = html("p", {}, this.chosen);
     this.open.addEventListener("click", () => this.design && this.ask({ kind: "open_design", design: this.design.design.index }));
@@ -81,9 +71,8 @@ export class TaskPage {
       { title: "Cognates", element: this.cognates.element, shown: (on) => on && this.askCognates() },
       { title: "Task", element: this.form.element },
     ]);
-    const side = html("section", { class: "lw-side", "aria-label": "Designs" }, this.root);
-    side.append(this.chosen, this.tabs.element);
-    document.body.append(this.busy.element);
+    this.side = html("section", { class: "lw-side", "aria-label": "Designs" }, this.root);
+    this.side.append(this.chosen, this.tabs.element);
     document.addEventListener("keydown", (event) => this.key(event));
     this.chosen.hidden = this.player.element.hidden = true;
   }
@@ -107,55 +96,26 @@ export class TaskPage {
         break;
       case "working":
         this.working(event.fraction);
-        return;
-      case "refused":
-        this.refused(event.message);
-        break;
-      case "problems_found":
-        this.notices.problems(event);
-        break;
-      case "file_changed":
-        this.notices.changed(event, this.decisions());
-        break;
-      case "link_made":
-        this.bar.link.show(event);
-        break;
-      case "saved":
-        this.notices.done(`Saved in ${event.file}.`);
         break;
     }
-    this.busy.answered(event.answers);
-    if (ANSWERS.has(event.kind)) this.latest.answered(event.answers);
+    this.shell.told(event);
   }
 
   lost(message: string): void {
-    this.lost_ = true;
-    this.busy.stop();
+    this.player.play(false);
     this.waiting.hidden = true;
-    this.root.classList.add("lw-lost");
-    this.element.classList.add("lw-lost");
-    this.bar.close();
-    this.open.disabled = true;
-    this.notices.say(message, { "Reload this page": () => location.reload() }, false);
+    this.shell.lost(message, this.element, this.side);
   }
 
   private ask(request: LiveRequest): void {
-    this.latest.clear();
-    this.notices.clear();
-    this.send(request);
-  }
-
-  private send(request: LiveRequest): number {
-    const id = this.transport.ask(request);
-    if (!this.lost_) this.busy.asked(id);
-    return id;
+    this.shell.ask(request);
   }
 
   private state(task: TaskState): void {
     if (this.task?.file !== task.file) this.another();
     declareKeys("Task", this.commands);
     this.task = task;
-    this.bar.show(task);
+    this.shell.bar.show(task);
     say(this.title, task.title);
     this.canvas.show(task);
     this.form.show(task);
@@ -182,7 +142,7 @@ export class TaskPage {
     this.design = solved.chosen;
     this.canvas.solve(solved);
     this.player.show(solved.chosen, solved.live);
-    this.notices.calm();
+    this.shell.notices.calm();
     this.describe();
     this.root.dataset.live = String(solved.live);
     this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
@@ -208,7 +168,7 @@ export class TaskPage {
     const lines = event.problems.map(({ line, key, message }) => [line === null ? "" : `line ${line}, `, key, " ", message].join(""));
     const text = [event.message, ...lines.slice(0, 3)].join(" ");
     const choices: [string, string, () => void][] = event.ended ? [["Solve", "Search for designs again", () => this.ask({ kind: "solve_task" })]] : [];
-    this.notices.open(text, choices);
+    this.shell.notices.open(text, choices);
     this.root.dataset.solved = String(Number(this.root.dataset.solved ?? 0) + 1);
     if (event.live) return;
     this.table.show(this.task!, null, text);
@@ -219,7 +179,6 @@ export class TaskPage {
 
   /** A search that takes long has a button to end it. */
   private working(fraction: number): void {
-    this.busy.progress(fraction);
     if (this.waiting.hidden) {
       this.waiting.replaceChildren();
       html("span", {}, this.waiting);
@@ -246,7 +205,7 @@ export class TaskPage {
   }
 
   private askCognates(): void {
-    if (this.design && ["path", "mixed"].includes(this.task!.task)) this.send({ kind: "show_cognates", design: this.design.design.index });
+    if (this.design && ["path", "mixed"].includes(this.task!.task)) this.shell.background({ kind: "show_cognates", design: this.design.design.index });
     else this.cognates.show(null);
   }
 
@@ -269,17 +228,11 @@ export class TaskPage {
     this.summary.title = solved ? `${solved.solutions}; ${solved.message}` : "";
   }
 
-  private decisions(): Record<string, () => void> {
-    return { Reload: () => this.ask({ kind: "reload" }), Overwrite: () => this.ask({ kind: "save", overwrite: true }) };
-  }
-
-  private refused(message: string): void {
-    if (this.bar.link.opened) this.bar.link.refuse(message);
-    else this.notices.say(message, /overwrite/.test(message) ? this.decisions() : {});
-    if (this.task && !this.canvas.dragging) {
-      this.canvas.show(this.task);
-      this.form.show(this.task);
-    }
+  /** Show the task as it is, where a change of it was refused. */
+  private restore(): void {
+    if (!this.task || this.canvas.dragging) return;
+    this.canvas.show(this.task);
+    this.form.show(this.task);
   }
 
   private readonly commands: readonly Command[] = [

@@ -10,13 +10,13 @@ from pathlib import Path
 
 from linkwork import exchange, textfile
 from linkwork.api.mechanism import Mechanism
+from linkwork.exchange.formats import carried
 from linkwork.exchange.source import LARGEST, LeftOut
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.internal import internal
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.mechanism.linkage import Linkage
-from linkwork.mechanism.part.index import PARTS
 
 __all__ = ["Imported", "imported"]
 
@@ -87,10 +87,7 @@ class Imported:
     @property
     def carried(self) -> dict[str, int]:
         """The numbers of points, links, parts by their table, and inputs."""
-        tables = ("points", "links", *PARTS)
-        counts = {table: len(getattr(self.description, table)) for table in tables}
-        found = {what: count for what, count in counts.items() if count}
-        return found | {"inputs": len(self.description.inputs)}
+        return carried(self.description)
 
     def __str__(self) -> str:
         counted = [

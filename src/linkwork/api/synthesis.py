@@ -53,12 +53,13 @@ class Task:
         *,
         inputs: Sequence[float] | None = None,
         order: str = "as given",
+        tolerance: float = 0.0,
         **tables: Any,
     ) -> Self:
         """A task of points (x, y), passed in their order or, with ``order="any"``, in any.
 
         ``inputs``: angles of the crank at the points. Timed points, and more than nine of them, are
-        met by least squares.
+        met by least squares. ``tolerance``: how far every point may be missed [length].
         """
         wanted = {"order": order, **tables.pop("wanted", {})}
         positions: list[dict[str, Any]] = [{"point": list(point)} for point in _rows(points, 2)]
@@ -67,6 +68,8 @@ class Task:
                 raise InputError(f"{len(positions)} points need as many inputs, got {len(inputs)}")
             for position, value in zip(positions, inputs, strict=True):
                 position["input"] = value
+        for position in positions if tolerance else ():
+            position["tolerance"] = tolerance
         return cls._of("path", positions=positions, wanted=wanted, **tables)
 
     @classmethod

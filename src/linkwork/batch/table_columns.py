@@ -12,6 +12,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
+from linkwork.foundation.names import as_names
 from linkwork.foundation.plain_numbers import as_told
 
 __all__ = ["numbers", "read_columns"]
@@ -27,10 +28,12 @@ def read_columns(table: object, columns: Sequence[str] | None) -> dict[str, Arra
     Raises
     ------
     InputError
-        If the table has no columns, or a cell is not a number (names its line).
+        If the table has no columns, a cell is not a number (names its line), or ``columns`` is not
+        a list of names.
     UnknownNameError
         If a column does not exist.
     """
+    columns = None if columns is None else as_names("the columns", columns)
     if isinstance(table, str | PathLike):
         return _read_csv(Path(table), columns)
     return {name: numbers(name, cells) for name, cells in _pick_columns(table, columns).items()}

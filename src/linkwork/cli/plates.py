@@ -37,6 +37,7 @@ __all__ = ["plates"]
 
 _SIZES = (
     ("width", "Width of bars."),
+    ("fillet", "Radius of inner corners between the arms of plates."),
     ("pin", "Diameter of pins."),
     ("clearance", "Diameter of holes minus that of pins."),
     ("kerf", "Width of the cut, halved on either side."),
@@ -88,10 +89,11 @@ def plates(
 ) -> None:
     """Write the links as plates to cut or print.
 
-    Links are bars or rounded plates with holes, the ground is a base plate.
-    They lie in layers in which nothing collides over the whole table, which is
-    proved if possible. Sizes are in the length unit of the file, by default in
-    proportion to the mechanism. Without --layout the plates are assembled.
+    Links are bars, or plates with arms between three or more holes, the
+    ground is a base plate. They lie in layers in which nothing collides over
+    the whole table, which is proved if possible. Sizes are in the length unit
+    of the file, by default in proportion to the mechanism. Without --layout
+    the plates are assembled.
 
     \b
       linkwork plates fourbar.toml -o fourbar.dxf --layout --kerf 0.15

@@ -31,6 +31,7 @@ __all__ = ["Start", "simulate", "start_of"]
 
 _ROWS = 400
 _MOST_ROWS = 10_000_000
+_LEAST = 1e-100  # seconds: the square of a short step does not vanish
 Start = tuple[Reduction, PositionCurve]
 
 
@@ -124,6 +125,8 @@ def _times(until: float, step: float | None) -> Array:
     until = finite_number("until", until)
     if until <= 0.0:
         raise InputError(f"until must be a positive time, got {as_told(until)}")
+    if until < _LEAST:
+        raise InputError(f"until must be at least {_LEAST:g} s, got {as_told(until)}")
     if step is None:
         return np.linspace(0.0, until, _ROWS + 1)[1:]
     step = finite_number("step", step)

@@ -12,8 +12,9 @@ from linkwork.exchange.drawn import Drawn, Exported
 from linkwork.exchange.source import LeftOut, Source
 from linkwork.foundation.errors import InputError, UnknownNameError, choices
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.index import PARTS
 
-__all__ = ["FORMATS", "WRITERS", "Reading", "read_foreign", "write_foreign"]
+__all__ = ["FORMATS", "WRITERS", "Reading", "carried", "read_foreign", "write_foreign"]
 
 #: Modules by the name of their format; each has ``TITLE``, ``SUFFIXES``, ``matches`` and ``read``.
 FORMATS: Mapping[str, ModuleType] = {
@@ -44,6 +45,19 @@ class Reading:
     format: str
     left_out: tuple[LeftOut, ...]
     renamed: Mapping[str, str]
+
+    @property
+    def carried(self) -> dict[str, int]:
+        """The numbers of points, links, parts by their table, and inputs."""
+        return carried(self.linkage)
+
+
+def carried(linkage: Linkage) -> dict[str, int]:
+    """The numbers of points, links, parts by their table, and inputs, where there are any."""
+    tables = ("points", "links", *PARTS)
+    counts = {table: len(getattr(linkage, table)) for table in tables}
+    found = {what: count for what, count in counts.items() if count}
+    return found | {"inputs": len(linkage.inputs)}
 
 
 def read_foreign(data: bytes, name: str, wanted: str | None = None) -> Reading:
@@ -92,7 +106,10 @@ def _recognized(source: Source) -> str:
     by_content = [name for name, module in FORMATS.items() if module.matches(head)]
     found = [name for name in by_content if name in by_suffix] or by_content or by_suffix
     if not found:
-        source.refuse(f"is in no format that is known: name it {choices('formats', FORMATS)}")
+        known = choices("formats", FORMATS)
+        source.refuse(
+            f"is in no known format: give it the right suffix, or name the format {known}"
+        )
     return found[0]
 
 

@@ -313,7 +313,7 @@ class _RowSolver:
         nodes = np.array([node.t for node in track.nodes])
         # the last steps before a limit are short, and its rows are close together
         coarse = np.flatnonzero(np.diff(nodes) >= _COARSE * np.diff(nodes).max(initial=0.0))
-        if len(coarse) < 2:
+        if len(coarse) < 2 or not len(t):
             return None
         inside = (t > nodes[coarse[0]]) & (t < nodes[coarse[-1] + 1])
         # rows whole turns apart may lie at one place

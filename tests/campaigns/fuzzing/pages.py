@@ -19,7 +19,7 @@ from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import ProblemsFound, Refused
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.messages import decoded, encoded, kind_of
-from linkwork.viewer.live.requests import REQUESTS, Picked
+from linkwork.viewer.live.requests import REQUESTS, Picked, Simulate
 from tests.campaigns.fuzzing.loads import LOADED, loaded_text, names_in
 from tests.campaigns.fuzzing.odd import FORMULAS, NAMES, NUMBERS, pick
 from tests.campaigns.fuzzing.texts import changed_bytes, changed_text, library_text, task_text
@@ -121,6 +121,8 @@ def _asked(witness: Witness, bench: Bench, text: str, limit: float) -> None:
     asked = witness.call(f"decoded {text[:200]}", lambda: decoded(text))
     if asked is None:
         return
+    # simulations show their progress on every page, and can be cancelled
+    limit = SHOWS_PROGRESS if isinstance(asked[0], Simulate) else limit
     events = witness.call(f"handle {text[:200]}", lambda: bench.handle(asked[0]), limit)
     for event in events or ():
         told = witness.call("encoded", partial(encoded, event))

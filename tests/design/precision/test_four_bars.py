@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,10 +11,17 @@ import pytest
 import linkwork as lw
 from linkwork import Completeness
 from linkwork.design.precision.linkage_proof import prove_linkages
-from linkwork.design.precision.path_tracking import CompiledTracker, tracker_for
+from linkwork.design.precision.path_tracking import (
+    CompiledTracker,
+    SparingTracker,
+    compiled_pays,
+)
+from linkwork.design.precision.problem import PrecisionProblem
 from linkwork.design.precision.sampling import positions_with_samples
 from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
-from linkwork.numerics.homotopy.parameter_path import track_in_batches
+from linkwork.marching.solution_path import LOST
+from linkwork.numerics.homotopy.parameter_path import QUICK, ParameterPath, track_in_batches
+from linkwork.numerics.homotopy.path_tracking import Paths
 from tests.design.precision.four_bar_tasks import (
     GROUND,
     LINE,
@@ -147,15 +155,37 @@ def test_wrong_tasks_are_refused(
         list(positions_with_samples(*given, 1, np.random.default_rng(1)))
 
 
+_MODULE = "linkwork.design.precision.path_tracking"
+
+
 def test_few_paths_need_no_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
-    module = "linkwork.design.precision.path_tracking"
-    monkeypatch.setattr(f"{module}._FOLLOWED", [0])
-    assert tracker_for(30) is track_in_batches
-    monkeypatch.setattr(f"{module}.find_spec", lambda name: None)
-    assert tracker_for(100_000) is track_in_batches
-    monkeypatch.undo()
-    monkeypatch.setattr(f"{module}._FOLLOWED", [0])
-    assert isinstance(tracker_for(100_000), CompiledTracker)
+    monkeypatch.setattr(f"{_MODULE}._FOLLOWED", [0.0])
+    assert not compiled_pays(30)
+    assert compiled_pays(100_000)
+    monkeypatch.setattr(f"{_MODULE}.find_spec", lambda name: None)
+    assert not compiled_pays(100_000)
+
+
+def test_paths_that_creep_in_numpy_make_compiled_code_pay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rounds count: a batch of one path may take thousands of them."""
+    followed = []
+
+    def creeping(path: Any, start: Any, options: Any, progress: Any = None) -> Paths:
+        followed.append("NumPy")
+        return Paths(w=start, near=start, state=np.full(len(start), LOST), steps=5000)
+
+    monkeypatch.setattr(f"{_MODULE}._FOLLOWED", [0.0])
+    monkeypatch.setattr(f"{_MODULE}.is_loaded", lambda loop: False)
+    monkeypatch.setattr(f"{_MODULE}.is_compiled", lambda loop: True)
+    monkeypatch.setattr(f"{_MODULE}.track", creeping)
+    monkeypatch.setattr(CompiledTracker, "__call__", lambda *given: followed.append("compiled"))
+    tracker = SparingTracker(243)
+    ends, start = np.ones(14, dtype=complex), np.ones((4, 6), dtype=complex)
+    problem = PrecisionProblem(poses=0, points=6, pivots=1)
+    path = ParameterPath(system=problem, start=ends, goal=ends)
+    for _ in range(3):
+        tracker(path, start, QUICK)
+    assert followed == ["NumPy", "compiled", "compiled"]
 
 
 @pytest.mark.extended

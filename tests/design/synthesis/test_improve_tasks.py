@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.foundation.errors import MechanismFileError
 
@@ -93,7 +94,7 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
             _HEAD + "[improve]\nfront = 9\n" + _GOAL + _GOAL + "weight = 3\n",
             14, "has no effect on a front",
         ),
-        (_HEAD + "[improve]\nfront = 9\n" + _GOAL + "[rank]\ndeliver = 2\n", 9, "as a whole"),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL + "[rank]\ndeliver = 2\n", 10, "as a whole"),
         (
             _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
             5, "excludes",
@@ -129,7 +130,7 @@ def test_a_front_is_delivered_in_its_order_and_drawn(tmp_path: Path) -> None:
     lines = synthesis_lines(found)
     assert any("goal 1: the miss of stroke(d)" in line for line in lines)
     assert max(map(len, lines)) <= 80
-    found.save(tmp_path / "designs", draw=True, html=True)
+    write_designs(found, tmp_path / "designs", FolderOptions(draw=True, html=True))
     picture = (tmp_path / "designs" / "front.svg").read_text()
     assert all(f">{text}<" in picture for text in ("1", "2", "3", "miss of max(d)"))
     page = (tmp_path / "designs" / "index.html").read_text()

@@ -23,6 +23,11 @@ _MOTION = f"format = 1\ntask = 'motion'\n{_POSES}"
 _FUNCTION = "format = 1\ntask = 'function'\n[function]\n"
 
 
+def _points(count: int, entry: str = "") -> str:
+    rows = "".join(f"[[positions]]\npoint = [{k * k}, {k}]\n{entry}\n" for k in range(count))
+    return "format = 1\ntask = 'path'\n" + rows.replace("\n\n", "\n")
+
+
 @pytest.mark.parametrize("path", _EXAMPLES, ids=lambda path: path.stem)
 def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
@@ -80,8 +85,22 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),
         (_MOTION + "[given]\nfixed_pivots = [[0, 0]]\n", 18, "given",
          "leaves no freedom for 5 poses"),
-        (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "tolerance = 1\n"), 11,
-         "positions[3].tolerance", "has no effect on points"),
+        (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "angle_tolerance = 1\n"),
+         11, "positions[3].angle_tolerance", "has no effect on points"),
+        (_points(10, "tolerance = 0.5") + "[[positions]]\npoint = [99, 0]\n", 33,
+         "positions[11].tolerance", "is missing: points that are met by least squares all have"),
+        (_points(4) + "[given]\nlengths = { 'A0 C' = 4 }\n", 12, 'given.lengths."A0 C"',
+         'is no length: these are "A0 A", "A B", "B0 B", "A0 B0", "A P", "B P"'),
+        (_points(10) + "[given]\nlengths = { 'A P' = 4 }\n", 24, 'given.lengths."A P"',
+         'is no length of a fit: these are "A0 A", "A B", "B0 B"'),
+        (_points(4) + "[given]\nlengths = { 'A0 A' = -4 }\n", 12, 'given.lengths."A0 A"',
+         "must be positive, got -4"),
+        (_points(4) + "[given]\nlengths = { 'A0 A' = 4 }\n[wanted]\nlengths = { most = 3 }\n", 12,
+         'given.lengths."A0 A"', "4 is out of the bounds that are wanted"),
+        (_points(4) + "[given]\nfixed_pivots = [[0, 9], [5, 9]]\nlengths = { 'A0 B0' = 5 }\n", 13,
+         'given.lengths."A0 B0"', "is fixed by the given pivots"),
+        (_MOTION + "[given]\nlengths = { 'A0 A' = 4 }\n", 19, "given.lengths",
+         "belongs to points: leave it out"),
         (_MOTION + "[curve]\nfile = 'foot.csv'\n", 18, "curve",
          'has no effect on task = "motion"'),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\n[given]\nfixed_pivots = [[0, 0]]\n", 6,

@@ -141,6 +141,34 @@ def test_a_crank_rocker_with_a_path_takes_eight_actions(
     assert sheet.actions <= 8
 
 
+def test_a_first_mechanism_keeps_its_place_its_open_panel_and_its_circuits(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    """The tutorial's steps: nothing jumps away between two clicks."""
+    sheet = open_sheet()
+    for start, end in (((-80, -20), (-60, 20)), ((-60, 20), (30, 50)), ((30, 50), (40, -20))):
+        sheet.drag(start, end)
+    page = sheet.page
+    sheet.settle()
+    place = sheet._on_screen((0, 0))
+    page.set_viewport_size({"width": 1440, "height": 878})  # as by a message of two lines
+    sheet.settle()
+    assert sheet._on_screen((0, 0)) == pytest.approx(place, abs=0.5)
+    sheet.remedy("Fix A and D")
+    sheet.remedy("Drive link2")
+    page.get_by_role("button", name="Show the motion").click()
+    for name in ("A B", "B C", "C D"):  # all of one open group, which gets another heading
+        page.get_by_label(f"{name} [mm], value").fill("70")
+        sheet._done(lambda: page.keyboard.press("Enter"))
+    page.get_by_role("tab", name="Circuits").click()
+    listed = page.locator(".lw-circuit-list > *")
+    listed.first.wait_for()
+    page.get_by_role("button", name="Save").click()
+    page.locator(".lw-file", has_not_text="•").wait_for()
+    page.wait_for_timeout(200)
+    assert listed.count() > 0
+
+
 def test_a_slider_crank_takes_eight_actions(open_sheet: Callable[..., Sheet]) -> None:
     sheet = open_sheet()
     sheet.drag((-80, -20), (-60, 20))

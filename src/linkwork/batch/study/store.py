@@ -26,6 +26,7 @@ from linkwork.batch.study.study import DESIGN, Study
 from linkwork.batch.study.zarr_files import LEDGER, METADATA, ZarrFiles
 from linkwork.foundation.errors import InputError, key_text
 from linkwork.foundation.paths import unwritten
+from linkwork.foundation.plain_numbers import as_told
 
 if sys.platform == "win32":
     import msvcrt
@@ -93,10 +94,10 @@ def open_store(study: Study, path: Path, *, fresh: bool = False) -> Iterator[Sto
         If the path contains another study or other files, or another run is writing to it.
     """
     files = _files_of(study)
-    if fresh and path.exists():
+    if fresh and _exists(path):
         check_is_store(path)  # delete nothing but the store of a study
         _take_away(path)
-    if not path.exists():
+    if not _exists(path):
         _make(path, files.first, study)
     check_is_store(path)  # only stores have a lock
     with _lock_store(path):
@@ -145,11 +146,18 @@ def check_is_store(path: Path) -> None:
     InputError
         If it is not there, or something else.
     """
-    if not path.exists():
+    if not _exists(path):
         raise InputError(f'there is no "{path}"')
     known = (path / LEDGER / _LOCK).exists() or _read_attributes(path) is not None
     if not known and Metadata.read(path) is None:
         raise InputError(f'"{path}" exists and is not the store of a study: choose another name')
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError as error:  # such as a name that is too long
+        raise InputError(f"{as_told(str(path))} cannot be read: {error.strerror}") from None
 
 
 def _repair(path: Path, files: Mapping[str, bytes], study: Study) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwork.design.improvement.coupler_curves import CouplerCurves, FourBarCurves
 from linkwork.design.improvement.curve_goal import CurveGoal
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["CurveConstraints"]
 
@@ -31,7 +31,7 @@ class CurveConstraints:
         self._curves = kind(np.ones(1))
         #: The weight of the residuals of constraints, which grows.
         self.weight = 1.0
-        self._point_shift = np.zeros((lanes, len(goal.points)))
+        self._point_shift, self._reach_shift = np.zeros((2, lanes, len(goal.points)))
         self._shift = np.zeros(
             (lanes, self._constraints(np.ones((1, len(kind.names) + 1)))[0].shape[1])
         )
@@ -46,7 +46,7 @@ class CurveConstraints:
 
     def weigh(self, weight: float) -> None:
         """Change the weight; the multipliers, weight² times the shifts, stay."""
-        for shift in (self._shift, self._point_shift):
+        for shift in (self._shift, self._point_shift, self._reach_shift):
             shift *= (self.weight / weight) ** 2
         self.weight = weight
 
@@ -69,8 +69,35 @@ class CurveConstraints:
             np.where(broken, by_angle * sign, 0.0),
         )
 
-    def update(self, x: Array, angles: Array, lanes: IndexArray) -> None:
-        """New shifts for lanes that are at x."""
+    def beyond(
+        self, missed: ComplexArray, by_x: ComplexArray, by_angle: ComplexArray, lanes: IndexArray
+    ) -> tuple[Array, Array, Array] | None:
+        """How far points are missed beyond their tolerances, (D, N), by the dimensions and by the
+        angles, from the same of P - the points; ``None`` without tolerances.
+        """
+        if self.goal.reach is None:
+            return None
+        h = self._excess(missed) + self._reach_shift[lanes]
+        broken, weight = h > 0.0, self.weight
+        with np.errstate(all="ignore"):
+            along = np.nan_to_num(missed.conj() / np.abs(missed)) * weight
+            return (
+                np.where(broken, weight * h, 0.0 * h),
+                np.where(broken[:, :, None], (along[:, :, None] * by_x).real, 0.0),
+                np.where(broken, (along * by_angle).real, 0.0),
+            )
+
+    def _excess(self, missed: ComplexArray) -> Array:
+        assert self.goal.reach is not None
+        # a narrow tolerance keeps a narrow margin
+        margin = np.minimum(_MARGIN * self.goal.size, _MARGIN * self.goal.reach)
+        return np.asarray(np.abs(missed) - self.goal.reach + margin)
+
+    def update(self, x: Array, angles: Array, missed: ComplexArray, lanes: IndexArray) -> None:
+        """New shifts for lanes that are at x, where points are missed by P - the points (D, N)."""
+        if self.goal.reach is not None:
+            shift = self._excess(missed) + self._reach_shift[lanes]
+            self._reach_shift[lanes] = np.maximum(0.0, np.nan_to_num(shift))
         self._shift[lanes] = np.maximum(0.0, self._constraints(x)[0] + self._shift[lanes])
         points = self.at_points(x[:, : len(self.kind.names)], angles, lanes)
         if points is not None:

@@ -137,8 +137,12 @@ class _Problem:
         p, by_x, by_angle = curves.with_derivatives(x[:, :count], angles)
         missed, by_t = _split(p - goal.points), _split(by_angle)
         columns = np.stack([by_x.real, by_x.imag], axis=2)
-        more = self.constraints.at_points(x[:, :count], angles, lanes)
-        if more is not None:
+        for more in (
+            self.constraints.at_points(x[:, :count], angles, lanes),
+            self.constraints.beyond(p - goal.points, by_x, by_angle, lanes),
+        ):
+            if more is None:
+                continue
             missed = np.concatenate([missed, more[0][:, :, None]], axis=2)
             columns = np.concatenate([columns, more[1][:, :, None, :]], axis=2)
             by_t = np.concatenate([by_t, more[2][:, :, None]], axis=2)
@@ -168,7 +172,9 @@ class _Problem:
 
         share_out(work, range(len(parts)), threads)
         found = LaneFit.joined(done)
-        self.constraints.update(found.x, self.angles(found.x, found.t, numbers), numbers)
+        angles, count = self.angles(found.x, found.t, numbers), len(self.kind.names)
+        p = self.curves.take(numbers).points(found.x[:, :count], angles).guided
+        self.constraints.update(found.x, angles, p - self.goal.points, numbers)
         return found
 
     def result(self, fit: LaneFit, numbers: IndexArray, starts: int) -> FittedCurves:

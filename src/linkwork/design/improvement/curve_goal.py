@@ -44,6 +44,8 @@ class CurveGoal:
         Bounds of dimensions by name [length], of ``input`` and ``direction`` [rad].
     shortest, longest, ratio : float
         Bounds of all lengths of links, ground included, and of their ratio.
+    reach : (N,), optional
+        The largest distances from the points that are allowed [length].
     """
 
     points: ComplexArray
@@ -56,6 +58,7 @@ class CurveGoal:
     shortest: float = 0.0
     longest: float = np.inf
     ratio: float = np.inf
+    reach: Array | None = None
 
     @property
     def must_turn(self) -> bool:

@@ -7,6 +7,11 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.design.precision.four_bar_positions import FourBarPositions as FourBarPositions
+    from linkwork.design.precision.given_lengths import (
+        four_bars_with_lengths as four_bars_with_lengths,
+    )
+    from linkwork.design.precision.position_equations import GivenLength as GivenLength
     from linkwork.design.precision.positions import PrecisionPositions as PrecisionPositions
     from linkwork.design.precision.sampling import positions_with_samples as positions_with_samples
     from linkwork.design.precision.solving import (

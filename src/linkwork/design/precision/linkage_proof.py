@@ -13,7 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.precision.position_equations import PositionEquations, position_equations
+from linkwork.design.precision.position_equations import (
+    FurtherConditions,
+    PositionEquations,
+    position_equations,
+)
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.products import matrix_vector
@@ -51,10 +55,13 @@ class ProvedLinkages:
     error: Array
 
 
-def prove_linkages(given: PrecisionPositions, linkage: ComplexArray) -> ProvedLinkages:
+def prove_linkages(
+    given: PrecisionPositions, linkage: ComplexArray, further: FurtherConditions | None = None
+) -> ProvedLinkages:
     """Refine real linkages x, x̄, a, ā, y, ȳ, b, b̄ (B, 8) [length], and prove them."""
-    equations, bits = position_equations(given), _BITS - math.frexp(given.size)[1]
-    data, count = _given_numbers(given, bits), len(linkage)
+    further = further or FurtherConditions()
+    equations, bits = position_equations(given, further), _BITS - math.frexp(given.size)[1]
+    data, count = _given_numbers(given, further, bits), len(linkage)
     guess = _start(given, equations, linkage)
     whole = [[_whole(z, bits) for z in row] + data for row in guess.tolist()]
     n, unit = equations.unknowns, 0.5**bits
@@ -147,8 +154,8 @@ def _turn(
     return np.asarray(e / np.abs(e))
 
 
-def _given_numbers(given: PrecisionPositions, bits: int) -> list[int]:
-    """Pivots, turns, distances and 1, as whole numbers."""
+def _given_numbers(given: PrecisionPositions, further: FurtherConditions, bits: int) -> list[int]:
+    """Pivots, turns, distances, lengths, held values and 1, as whole numbers."""
     start = complex(given.start)
     whole = [_whole(start.real, bits), _whole(start.imag, bits)]
 
@@ -160,6 +167,8 @@ def _given_numbers(given: PrecisionPositions, bits: int) -> list[int]:
         numbers += _exact_turn(angle, bits)
     for z in (*given.poses.tolist(), *given.points.tolist()):
         numbers += from_start(z)
+    for value in (*(x.length for x in further.lengths), *(x for _, x in further.held)):
+        numbers += [_whole(value, bits), 0]
     return [*numbers, 1 << bits, 0]
 
 

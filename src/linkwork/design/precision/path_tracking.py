@@ -1,4 +1,8 @@
-"""The tracker of solution paths: compiled where that saves time, else in batches of NumPy."""
+"""The tracker of solution paths: compiled where that saves time, else in batches of NumPy.
+
+NumPy steps all paths of a batch at once, and a round takes nearly as long for one path as for many:
+of paths that creep towards infinity, rounds tell the cost, not their number.
+"""
 
 from __future__ import annotations
 
@@ -17,20 +21,19 @@ from linkwork.numerics.homotopy.parameter_path import (
     ParameterPath,
     ParametrizedSystem,
     StraightHomotopy,
-    Tracker,
-    track_in_batches,
 )
 from linkwork.numerics.homotopy.path_tracking import Paths, track
 
-__all__ = ["CompiledTracker", "ReportingTracker", "tracker_for"]
+__all__ = ["CompiledTracker", "SparingTracker", "compiled_pays"]
 
-# A path takes about 0.3 ms compiled and 2 ms in NumPy.
+# A path takes about 0.3 ms compiled and 2 ms in NumPy, where a round of a batch takes 0.8 ms.
 _FEW = 100  # paths: recording a program takes as long in NumPy
 _LOADING = 500  # paths in NumPy take as long as loading compiled code,
 _COMPILING = 4000  # and these as long as compiling it
 _AT_A_TIME = 400  # compiled, between reports
+_ROUND = 0.4  # paths in NumPy: the least time of a round
 _KERNELS = dict[ParametrizedSystem, "paths.PathKernel"]()
-_FOLLOWED = [0]  # paths that a process has asked for
+_FOLLOWED = [0.0]  # paths that a process has followed in NumPy
 
 
 class CompiledTracker:
@@ -48,27 +51,36 @@ class CompiledTracker:
         return Paths(w=w, near=near, state=state, steps=int(attempts.max(initial=0)))
 
 
-class ReportingTracker:
-    """Follows paths by another tracker and reports the finished fraction: compiled code some at a
-    time, NumPy after every round.
+class SparingTracker:
+    """Follows paths in NumPy until compiled code saves time: asked anew before every batch.
 
-    ``progress`` may raise an error to end the work.
+    Parameters
+    ----------
+    expected : int
+        Paths that will be followed, unless some need more care.
+    progress : callable, optional
+        Told the finished fraction of each batch; may raise an error to end the work.
     """
 
-    def __init__(self, tracker: Tracker, progress: Callable[[float], None]) -> None:
-        self._tracker, self._progress = tracker, progress
+    def __init__(self, expected: int, progress: Callable[[float], None] | None = None) -> None:
+        self._expected, self._progress = expected, progress
 
     def __call__(self, path: ParameterPath, start: ComplexArray, options: PathOptions, /) -> Paths:
         """Follow every start (B, n), a solution at σ = 1, to σ = 0."""
-        if self._tracker is track_in_batches:
-            return track(path, start, options, self._progress)
-        if len(start) <= _AT_A_TIME:
-            return self._tracker(path, start, options)
-        parts = np.array_split(start, math.ceil(len(start) / _AT_A_TIME))
+        if compiled_pays(self._expected):
+            return self._compiled(path, start, options)
+        found = track(path, start, options, self._progress)
+        _FOLLOWED[0] += max(len(start), _ROUND * found.steps)
+        return found
+
+    def _compiled(self, path: ParameterPath, start: ComplexArray, options: PathOptions) -> Paths:
+        follow, count = CompiledTracker(), math.ceil(len(start) / _AT_A_TIME)
+        if self._progress is None or count < 2:
+            return follow(path, start, options)
         found = []
-        for part in parts:
-            found.append(self._tracker(path, part, options))
-            self._progress(len(found) / len(parts))
+        for part in np.array_split(start, count):
+            found.append(follow(path, part, options))
+            self._progress(len(found) / count)
         return Paths(
             w=np.concatenate([one.w for one in found]),
             near=np.concatenate([one.near for one in found]),
@@ -77,15 +89,14 @@ class ReportingTracker:
         )
 
 
-def tracker_for(count: int) -> Tracker:
-    """The tracker that takes less time for this many paths, and those asked for before.
+def compiled_pays(expected: int) -> bool:
+    """Whether compiled code saves time for this many paths, after those followed in NumPy so far.
 
     Where there is no Numba, NumPy follows all of them.
     """
-    _FOLLOWED[0] += count
-    if count < _FEW or find_spec("numba") is None:
-        return track_in_batches
+    if expected < _FEW or find_spec("numba") is None:
+        return False
     if is_loaded(PATH_LOOP):
-        return CompiledTracker()
+        return True
     least = _LOADING if is_compiled(PATH_LOOP) else _COMPILING
-    return CompiledTracker() if _FOLLOWED[0] >= least else track_in_batches
+    return expected + _FOLLOWED[0] >= least

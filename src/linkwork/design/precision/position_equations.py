@@ -19,9 +19,34 @@ import numpy as np
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["PositionEquations", "position_equations"]
+__all__ = ["FurtherConditions", "GivenLength", "PositionEquations", "position_equations"]
 
 _Complex = tuple[int, int]  # the places in v of a real and an imaginary part
+
+
+@dataclass(frozen=True)
+class GivenLength:
+    """The distance of two of A0, B0, A, B and the traced point P [length]."""
+
+    one: str
+    other: str
+    length: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class FurtherConditions:
+    """Conditions besides positions.
+
+    Parameters
+    ----------
+    lengths : tuple of GivenLength
+    held : tuple of (int, float)
+        Coordinates of pivots that keep a value: their place among x, [a], y, [b], seen from the
+        first position [length].
+    """
+
+    lengths: tuple[GivenLength, ...] = ()
+    held: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,16 +133,27 @@ class _Writer:
         """|A|² = |x|²."""
         self.equation(*[(1, k, k) for k in one], *[(-1, k, k) for k in other])
 
+    def given_length(self, one: _Complex, other: _Complex | None, length: int) -> None:
+        """|A - B|² = L²; ``None`` is the traced point, from which all is seen."""
+        terms = [(1, k, k) for k in one]
+        if other is not None:
+            terms += [(1, k, k) for k in other]
+            terms += [(-2, k, i) for k, i in zip(one, other, strict=True)]
+        self.equation(*terms, (-1, length, length))
+
     def equal_products(self, a: _Complex, b: _Complex, c: _Complex, d: _Complex) -> None:
         """a b = c d."""
         self.equation((1, a[0], b[0]), (-1, a[1], b[1]), (-1, c[0], d[0]), (1, c[1], d[1]))
         self.equation((1, a[0], b[1]), (1, a[1], b[0]), (-1, c[0], d[1]), (-1, c[1], d[0]))
 
 
-def position_equations(given: PrecisionPositions) -> PositionEquations:
+def position_equations(
+    given: PrecisionPositions, further: FurtherConditions | None = None
+) -> PositionEquations:
     """The equations; v is x, [a], y, [b], all A_j and B_j, then a, b as far as they are given,
-    e of all poses, δ of all positions, 1 and 0.
+    e of all poses, δ of all positions, given lengths and held values, each with 0, then 1 and 0.
     """
+    further = further or FurtherConditions()
     free = iter(range(0, 10_000, 2))
 
     def place() -> _Complex:
@@ -134,6 +170,8 @@ def position_equations(given: PrecisionPositions) -> PositionEquations:
     b = place() if pivots > 1 else b
     turns = [place() for _ in given.poses]
     deltas = [place() for _ in range(count)]
+    lengths = [place()[0] for _ in further.lengths]
+    values = [place()[0] for _ in further.held]
     one = place()
     writer = _Writer()
     for k, ((left, right), delta) in enumerate(zip(moving, deltas, strict=True)):
@@ -145,6 +183,12 @@ def position_equations(given: PrecisionPositions) -> PositionEquations:
         else:
             writer.equal_lengths(left, x)
             writer.equal_products(right, x, left, y)
+    named = {"A": x, "A0": a, "B": y, "B0": b}
+    for entry, length in zip(further.lengths, lengths, strict=True):
+        ends = [named[end] for end in (entry.one, entry.other) if end in named]
+        writer.given_length(ends[0], ends[1] if len(ends) > 1 else None, length)
+    for (k, _), value in zip(further.held, values, strict=True):
+        writer.equation((1, k, one[0]), (-1, value, one[0]))
     terms = np.array(writer.rows, dtype=np.intp).T
     return PositionEquations(
         unknowns=unknowns,

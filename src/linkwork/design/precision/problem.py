@@ -66,6 +66,11 @@ class PrecisionProblem:
         return CONDITIONS - 2 * self.pivots
 
     @property
+    def freedoms(self) -> int:
+        """Conditions that are missing until a finite number of four-bars is left."""
+        return CONDITIONS - 2 * self.poses - self.points - 2 * self.pivots
+
+    @property
     def parameters(self) -> int:
         """P."""
         return 3 * self.poses + 2 * self.points + 2 * self.pivots

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.design.precision.cognates import cognates
+from linkwork.design.precision.four_bar_positions import FourBarPositions
 from linkwork.design.precision.linkage_proof import prove_linkages
-from linkwork.design.precision.path_tracking import ReportingTracker, tracker_for
+from linkwork.design.precision.path_tracking import SparingTracker
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.start_sets import start_member
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.arrays import IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import ALMOST_REAL
 from linkwork.numerics.homotopy.parameter_path import Tracker
@@ -24,21 +25,12 @@ _SEED = 19_920_301  # of detours; every run gives the same answer
 _LEAST_SIZE = 0.1  # of the size of the positions: numbers are compared relative to at least this
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PrecisionFourBars:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class PrecisionFourBars(FourBarPositions):
     """Real four-bars through positions, and how many solutions there are.
 
     Parameters
     ----------
-    fixed_a, fixed_b : (D,) complex
-        Fixed pivots A0, B0 [length].
-    moving_a, moving_b : (D, J) complex
-        Moving pivots A, B in all positions, in the order of the task [length].
-    guided : (D, J) complex
-        The traced point there [length].
-    proved : (D,) bool
-    error : (D,)
-        A bound of the error of every pivot [length]; infinite where it is not proved.
     triple : (D,) int
         Equal for four-bars that are cognates of each other.
     real : int
@@ -47,19 +39,9 @@ class PrecisionFourBars:
         All complex solutions, and the outcome of every path.
     """
 
-    fixed_a: ComplexArray
-    fixed_b: ComplexArray
-    moving_a: ComplexArray
-    moving_b: ComplexArray
-    guided: ComplexArray
-    proved: BoolArray
-    error: Array
     triple: IndexArray
     real: int
     roots: ParameterRoots
-
-    def __len__(self) -> int:
-        return len(self.fixed_a)
 
     def __repr__(self) -> str:
         roots = self.roots
@@ -71,13 +53,6 @@ class PrecisionFourBars:
             f"  four-bars {len(self):5}   {int(self.proved.sum())} of them proved\n"
             f"  {self.completeness.value}"
         )
-
-    @property
-    def lengths(self) -> Array:
-        """Ground, crank at A0, coupler and rocker at B0, (D, 4) [length]."""
-        a, b = self.moving_a[:, 0], self.moving_b[:, 0]
-        ends = (self.fixed_b - self.fixed_a, a - self.fixed_a, b - a, b - self.fixed_b)
-        return np.abs(np.stack(ends, axis=1))
 
     @property
     def completeness(self) -> Completeness:
@@ -93,6 +68,7 @@ def four_bars_through(
     given: PrecisionPositions,
     tracker: Tracker | None = None,
     *,
+    alike: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> PrecisionFourBars:
     """All four-bars through positions that determine a finite number of them.
@@ -104,15 +80,15 @@ def four_bars_through(
         the first position: eight in all, at least one of them a point.
     tracker : Tracker, optional
         By default compiled where that saves time.
+    alike : int
+        How many tasks of this kind will be solved, this one included.
     progress : callable, optional
         Told the finished fraction of the paths; may raise an error to end the work.
     """
     problem, size = given.problem, given.size
     member = start_member(problem)
     goal, rng = given.parameters(size), np.random.default_rng(_SEED)
-    tracker = tracker or tracker_for(len(member.x))
-    if progress is not None:
-        tracker = ReportingTracker(tracker, progress)
+    tracker = tracker or SparingTracker(alike * len(member.x), progress)
     roots = roots_at(problem, member, goal, tracker, rng)
     apart = np.abs(problem.mirrored(roots.x) - roots.x) / (_LEAST_SIZE + np.abs(roots.x))
     real = problem.linkages(roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL], goal)
@@ -123,20 +99,4 @@ def four_bars_through(
         others = cognates(real)[: 2 - problem.pivots]
         real, triple = np.concatenate([real, *others]), np.tile(triple, 1 + len(others))
     proofs = prove_linkages(given, real * size)
-    x, a, y, b = proofs.legs.T
-    points = np.concatenate([[given.start], given.poses, given.points])
-    moving = np.concatenate([np.stack([x, y], axis=1)[:, None], proofs.moving], axis=1)
-    places = np.argsort(given.order)[: given.wanted]
-    moving = (moving + points[:, None])[:, places]
-    return PrecisionFourBars(
-        fixed_a=given.start + a,
-        fixed_b=given.start + b,
-        moving_a=moving[:, :, 0],
-        moving_b=moving[:, :, 1],
-        guided=np.broadcast_to(points[places], moving.shape[:2]).copy(),
-        proved=proofs.holds,
-        error=proofs.error,
-        triple=triple,
-        real=count,
-        roots=roots,
-    )
+    return PrecisionFourBars.of(given, proofs, triple=triple, real=count, roots=roots)

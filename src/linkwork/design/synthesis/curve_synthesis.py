@@ -96,6 +96,7 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         shortest=wishes.shortest,
         longest=wishes.longest,
         ratio=wishes.ratio,
+        reach=wishes.reach if wishes.reach.any() else None,
     )
 
 
@@ -115,6 +116,8 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
     for name, pivot in zip(("A0", "B0"), task.given.fixed_pivots, strict=False):
         for axis, value in zip("xy", pivot, strict=True):
             yield f"{name}.{axis}", (value, value)
+    for name, length in task.given.lengths.items():
+        yield _BOUNDED[name], (length, length)
     given: Mapping[str, tuple[float, float]] = {}
     if task.improvement is not None:
         given = task.improvement.bounds
@@ -130,11 +133,13 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
                 told = 'belongs to task = "improve": leave it out'
                 raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
     for name, (low, high) in given.items():
+        told = ""
         if name not in _BOUNDED:
-            known = ", ".join(f'"{own}"' for own in _BOUNDED)
-            problem = Problem(
-                key=("improve", "bounds", name), message=f"is no dimension: these are {known}"
-            )
+            told = "is no dimension: these are " + ", ".join(f'"{own}"' for own in _BOUNDED)
+        elif name in task.given.lengths:
+            told = "is given in [given] lengths already: leave one out"
+        if told:
+            problem = Problem(key=("improve", "bounds", name), message=told)
             raise MechanismError([problem], f'task "{task.name}"')
         scale = task.angle.radians if name == INPUT else 1.0
         yield _BOUNDED[name], (low * scale, high * scale)

@@ -10,8 +10,9 @@ import numpy as np
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
+from linkwork.foundation.arrays import Array
 
-__all__ = ["Defect", "defects_of"]
+__all__ = ["Defect", "defects_of", "tolerance_message"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +49,12 @@ def defects_of(
     return tuple(words.defects())
 
 
+def tolerance_message(away: Array, reach: Array, unit: str) -> str:
+    """Which position is missed most beyond its tolerance; distances (N,) and tolerances (N,)."""
+    k = int((away - reach).argmax())
+    return f"position {k + 1} is missed by {away[k]:.4g} {unit}, tolerance {reach[k]:g} {unit}"
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Words:
     task: Task
@@ -65,6 +72,7 @@ class _Words:
             DefectKind.TRANSMISSION: self._transmission,
             DefectKind.PIVOTS: self._pivots,
             DefectKind.LENGTHS: self._lengths,
+            DefectKind.TOLERANCE: self._tolerance,
             DefectKind.OBSTACLE: self._obstacle,
             DefectKind.NOT_PROVED: self._not_proved,
         }
@@ -127,6 +135,13 @@ class _Words:
         if arm > self.task.wanted.longest:
             return f"an arm of the coupler is {arm:.4g} long, which is out of bounds", None
         return f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds", None
+
+    def _tolerance(self) -> tuple[str, None]:
+        positions = self.task.positions
+        points = np.array([complex(*position.point) for position in positions])
+        reach = np.array([position.tolerance for position in positions])
+        away = np.abs(self.given.guided[self.k] - points)
+        return tolerance_message(away, reach, self.task.length), None
 
     def _obstacle(self) -> tuple[str, None]:
         return "a link meets an obstacle, or passes it too closely to exclude that", None

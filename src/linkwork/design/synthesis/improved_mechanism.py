@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
-from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
@@ -189,6 +189,9 @@ class ImprovedMechanism:
         misses = np.array(self.improved.misses)
         for k in np.flatnonzero(~np.isfinite(misses))[:1]:
             yield DefectKind.BRANCH, f"position {k + 1} is not on the branch of the table"
+        reach = self.wishes.reach
+        if reach.size and (np.nan_to_num(misses) > reach).any():
+            yield DefectKind.TOLERANCE, tolerance_message(misses, reach, task.length)
         if self.wishes.ordered and task.positions and not _is_in_order(self.improved.inputs):
             order = np.argsort(self.improved.inputs, kind="stable") + 1
             told = f"the input passes the positions in the order {', '.join(map(str, order))}"

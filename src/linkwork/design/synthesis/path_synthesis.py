@@ -2,21 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.design.precision import PrecisionFourBars, four_bars_through, positions_with_samples
+from linkwork.design.precision import (
+    FourBarPositions,
+    GivenLength,
+    PrecisionFourBars,
+    PrecisionPositions,
+    four_bars_through,
+    four_bars_with_lengths,
+    positions_with_samples,
+)
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
 from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.pose_tolerance import drawn_within, is_tolerant
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import MechanismError, Problem
 
 __all__ = ["solve_path"]
 
-_SAMPLES = 8  # tasks, where conditions are missing
+_SAMPLES = 8  # tasks, where conditions are missing,
+_NEAR = 16  # and those within tolerances
 _SEED = 1
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Near:
+    """Positions within the tolerances, tasks with eight conditions that contain them, and what
+    solves these.
+    """
+
+    given: PrecisionPositions
+    tasks: tuple[PrecisionPositions, ...]
+    solved: list[PrecisionFourBars] = field(default_factory=list)
 
 
 def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> Found:
@@ -25,49 +49,102 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
     Raises
     ------
     InputError
-        For more than eight conditions, or a kind of mechanism other than the four-bar.
+        For more than eight conditions.
     """
     points = np.array([complex(*position.point) for position in task.positions])
+    lengths = [
+        GivenLength(one, other, length)
+        for (one, other), length in ((name.split(), x) for name, x in task.given.lengths.items())
+    ]
+    near = list(_near(task, points, wishes))
+    _check_lengths(task, near[0])
+    count = sum(len(part.tasks) for part in near)
+    whole, done = count + (len(near) if lengths else 0), 0
+
+    def tell(fraction: float) -> None:
+        if progress is not None:
+            progress((done + fraction) / whole)
+
+    follow = None if progress is None else tell
+    for part in near:
+        for given in part.tasks:
+            part.solved.append(four_bars_through(given, alike=count - done, progress=follow))
+            done += 1
+            tell(0.0)
+    solved = [found for part in near for found in part.solved]
+    if not lengths:
+        grade, message = _completeness(solved, near)
+        return Found(
+            candidates=_candidates(points, solved),
+            complex=sum(len(part.roots.x) for part in solved),
+            real=sum(part.real for part in solved),
+            proved=sum(map(_proved, solved)),
+            triples=sum(part.real for part in solved if len(part) > part.real),
+            completeness=grade,
+            message=message,
+        )
+    fitted = []
+    for part in near:
+        fitted.append(four_bars_with_lengths(part.given, lengths, part.solved, follow))
+        done += 1
+    number = sum(map(len, fitted))
+    return Found(
+        candidates=_candidates(points, fitted),
+        complex=number,
+        real=number,
+        proved=sum(int(part.proved.sum()) for part in fitted),
+        completeness=Completeness.SAMPLED,
+        message=f"a sample: four-bars with the given lengths, from those of {len(solved)} tasks",
+    )
+
+
+def _near(task: Task, points: ComplexArray, wishes: Wishes) -> Iterator[_Near]:
+    """The wanted positions, and a sample of others within their tolerances."""
     angles = np.array(
         [np.nan if p.angle is None else task.in_radians(p.angle) for p in task.positions]
     )
     pivots = np.array([complex(*pivot) for pivot in task.given.fixed_pivots], dtype=complex)
     region = wishes.region if wishes.region.size else None
     rng = np.random.default_rng(_SEED)
-    solved: list[PrecisionFourBars] = []
-    tasks = list(positions_with_samples(points, angles, pivots, _SAMPLES, rng, region))
-
-    def go_on(fraction: float) -> None:
-        if progress is not None:
-            progress((len(solved) + fraction) / len(tasks))
-
-    for given in tasks:
-        solved.append(four_bars_through(given, progress=None if progress is None else go_on))
-        go_on(0.0)
-    grade, message = _completeness(solved)
-    return Found(
-        candidates=tuple(_candidates(part) for part in solved if len(part)),
-        complex=sum(len(part.roots.x) for part in solved),
-        real=sum(part.real for part in solved),
-        proved=sum(map(_proved, solved)),
-        triples=sum(part.real for part in solved if len(part) > part.real),
-        completeness=grade,
-        message=message,
-    )
+    tolerant = is_tolerant(task)
+    # without tolerances the only shifts are 0
+    shifts, turns = drawn_within(task, _NEAR if tolerant else 1, np.random.default_rng(_SEED))
+    samples = 1 if tolerant else _SAMPLES
+    for shift, turn in zip(shifts, turns, strict=True):
+        own, turned = points + shift, angles + turn
+        tasks = tuple(positions_with_samples(own, turned, pivots, samples, rng, region))
+        yield _Near(given=PrecisionPositions.of(own, turned, pivots), tasks=tasks)
 
 
-def _candidates(found: PrecisionFourBars) -> Candidates:
-    count = len(found)
-    return Candidates(
-        kind=LoopKind.FOUR_BAR,
-        fixed_a=found.fixed_a,
-        fixed_b=found.fixed_b,
-        direction=np.zeros(count, dtype=complex),
-        moving_a=found.moving_a,
-        moving_b=found.moving_b,
-        guided=found.guided,
-        error=found.error,
-        miss=np.zeros(count),
+def _check_lengths(task: Task, near: _Near) -> None:
+    """Refuse more lengths than the positions leave freedoms.
+
+    Raises
+    ------
+    MechanismError
+    """
+    freedoms = near.given.problem.freedoms
+    if len(task.given.lengths) > freedoms:
+        told = f"are {len(task.given.lengths)}, but positions and pivots leave {freedoms} freedoms"
+        problem = Problem(key=("given", "lengths"), message=f"{told}: leave some out")
+        raise MechanismError([problem], f'task "{task.name}"')
+
+
+def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tuple[Candidates, ...]:
+    return tuple(
+        Candidates(
+            kind=LoopKind.FOUR_BAR,
+            fixed_a=found.fixed_a,
+            fixed_b=found.fixed_b,
+            direction=np.zeros(len(found), dtype=complex),
+            moving_a=found.moving_a,
+            moving_b=found.moving_b,
+            guided=found.guided,
+            error=found.error,
+            miss=np.abs(found.guided - points).max(axis=1),
+        )
+        for found in solved
+        if len(found)
     )
 
 
@@ -76,12 +153,14 @@ def _proved(found: PrecisionFourBars) -> int:
     return found.real - len(np.unique(found.triple[~found.proved]))
 
 
-def _completeness(solved: list[PrecisionFourBars]) -> tuple[Completeness, str]:
+def _completeness(
+    solved: Sequence[PrecisionFourBars], near: Sequence[_Near]
+) -> tuple[Completeness, str]:
     if len(solved) > 1:
-        return (
-            Completeness.SAMPLED,
-            f"a sample: {len(solved)} tasks, in which the missing conditions were drawn",
-        )
+        drawn = near[0].given.problem.freedoms > 0
+        told = " within the tolerances" if len(near) > 1 else ""
+        told += ", in which the missing conditions were drawn" if drawn else ""
+        return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{told}"
     roots, grade = solved[0].roots, solved[0].completeness
     message = (
         f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost)"

@@ -12,7 +12,7 @@ from linkwork.design.synthesis.dyads import FIVE
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
-__all__ = ["NearTasks", "near_tasks", "with_misses"]
+__all__ = ["NearTasks", "drawn_within", "is_tolerant", "near_tasks", "with_misses"]
 
 _SAMPLES = 400
 _SEED = 1
@@ -32,28 +32,41 @@ def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
 
     Of more than five poses each task takes five: the first, all exact ones, and a random choice.
     """
-    reach = np.array([position.tolerance for position in task.positions])
-    swing = np.array([position.angle_tolerance for position in task.positions])
-    swing = swing * task.angle.radians
     count = len(points)
-    if count == FIVE and not (reach.any() or swing.any()):
+    if count == FIVE and not is_tolerant(task):
         return NearTasks(points=points[None], angles=angles[None], is_exact=True)
     rng = np.random.default_rng(_SEED)
-    shape = (_SAMPLES, count)
-    # evenly in discs; the first task is the wanted one
-    radius, direction = np.sqrt(rng.random(shape)), rng.uniform(0.0, 2.0 * np.pi, shape)
-    shift, turn = radius * np.exp(1j * direction), rng.uniform(-1.0, 1.0, shape)
-    shift[0], turn[0] = 0.0, 0.0
-    index = _choices(rng, (reach == 0) & (swing == 0), count)
+    shift, turn = drawn_within(task, _SAMPLES, rng)
+    exact = [p.tolerance == 0 and p.angle_tolerance == 0 for p in task.positions]
+    index = _choices(rng, np.array(exact), count)
     rows = np.arange(_SAMPLES)[:, None]
     if count > FIVE:
         # the others are compared at the wanted angle of the first
         turn[:] = 0.0
     return NearTasks(
-        points=(points + reach * shift)[rows, index],
-        angles=(angles + swing * turn)[rows, index],
+        points=(points + shift)[rows, index],
+        angles=(angles + turn)[rows, index],
         is_exact=False,
     )
+
+
+def is_tolerant(task: Task) -> bool:
+    """Whether a position may be missed."""
+    return any(position.tolerance or position.angle_tolerance for position in task.positions)
+
+
+def drawn_within(task: Task, count: int, rng: np.random.Generator) -> tuple[ComplexArray, Array]:
+    """Shifts [length] and turns [rad] of positions within their tolerances, (T, N).
+
+    Shifts are spread evenly in discs; the first task has none.
+    """
+    reach = np.array([position.tolerance for position in task.positions])
+    swing = np.array([position.angle_tolerance for position in task.positions])
+    shape = (count, len(reach))
+    radius, direction = np.sqrt(rng.random(shape)), rng.uniform(0.0, 2.0 * np.pi, shape)
+    shift, turn = radius * np.exp(1j * direction), rng.uniform(-1.0, 1.0, shape)
+    shift[0], turn[0] = 0.0, 0.0
+    return reach * shift, swing * task.angle.radians * turn
 
 
 def _choices(rng: np.random.Generator, exact: Array, count: int) -> IndexArray:

@@ -30,6 +30,7 @@ _WISHES = {
     DefectKind.TRANSMISSION: "the least transmission angle",
     DefectKind.PIVOTS: "the region of fixed pivots",
     DefectKind.LENGTHS: "the bounds of lengths",
+    DefectKind.TOLERANCE: "the tolerances",
     DefectKind.OBSTACLE: "clear_of",
 }
 

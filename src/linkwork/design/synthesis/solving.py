@@ -22,7 +22,8 @@ from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
 from linkwork.design.synthesis.motion_synthesis import solve_motion
 from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
-from linkwork.design.synthesis.task import Task, Wanted
+from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import Wanted
 from linkwork.design.synthesis.travel import Range
 from linkwork.design.synthesis.verdicts import judge
 from linkwork.design.synthesis.wishes import Wishes
@@ -127,6 +128,10 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
 def wishes_of(task: Task, drive: Drive) -> Wishes:
     """The wishes of a task in radians, lengths and complex points, for one driven link."""
     wanted = task.wanted
+    reach = np.array([position.tolerance for position in task.positions])
+    # five poses are met within their tolerances, of more no others are kept
+    judged = task.kind != "motion" and reach.any()
+    points = np.array([complex(*position.point) for position in task.positions])
     return Wishes(
         ordered=wanted.ordered and not _is_timed_around(task),
         range=_range(task, wanted, drive),
@@ -136,6 +141,8 @@ def wishes_of(task: Task, drive: Drive) -> Wishes:
         longest=wanted.longest,
         ratio=wanted.ratio,
         obstacles=np.array(wanted.obstacles, dtype=float).reshape(-1, 3),
+        points=points[: len(points) * judged],
+        reach=reach[: len(reach) * judged],
     )
 
 

@@ -15,6 +15,14 @@ import numpy as np
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.task_conditions import (
+    LENGTHS,
+    Given,
+    Point,
+    PrecisionPosition,
+    Ranking,
+    Wanted,
+)
 from linkwork.design.synthesis.task_keys import KINDS
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit
@@ -22,90 +30,16 @@ from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["Given", "PrecisionPosition", "Ranking", "Task", "Wanted"]
+__all__ = ["MECHANISMS", "Task"]
 
 _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
+_FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
 MECHANISMS = ("four-bar", "slider-crank", "inverted-slider-crank")
 
-Point = tuple[float, float]
 _Item = TypeVar("_Item")
-
-
-@dataclass(frozen=True, kw_only=True)
-class PrecisionPosition:
-    """A position through which the guided body, or its point, passes.
-
-    Parameters
-    ----------
-    point : (float, float)
-        Where the guided point is [length].
-    angle : float, optional
-        The angle of the body: with it, a pose [file's angle unit].
-    input : float, optional
-        The crank's angle at this position, of which differences count [file's angle unit].
-    tolerance, angle_tolerance : float
-        How far point and angle may miss.
-    """
-
-    point: Point
-    angle: float | None = None
-    input: float | None = None
-    tolerance: float = 0.0
-    angle_tolerance: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given:
-    """Pivots that the author fixes; moving pivots as they are at the first position [length]."""
-
-    fixed_pivots: tuple[Point, ...] = ()
-    moving_pivots: tuple[Point, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wanted:
-    """Wishes, each proved over the whole driven range.
-
-    Parameters
-    ----------
-    turns_fully : bool
-        Whether the driven link makes whole turns.
-    range : (float, float), optional
-        The driven range [file's angle unit, or length].
-    transmission : float
-        The smallest transmission angle allowed [file's angle unit].
-    ordered : bool
-        Whether the positions are passed in their order.
-    region : tuple of points
-        Corners of the polygon that contains all fixed pivots [length].
-    shortest, longest, ratio : float
-        Bounds of lengths, and of the longest over the shortest.
-    obstacles : tuple of (x, y, radius)
-        Circles that no link may meet [length].
-    """
-
-    turns_fully: bool = False
-    range: tuple[float, float] | None = None
-    transmission: float = 0.0
-    ordered: bool = True
-    region: tuple[Point, ...] = ()
-    shortest: float = 0.0
-    longest: float = math.inf
-    ratio: float = math.inf
-    obstacles: tuple[tuple[float, float, float], ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Ranking:
-    """Weights of the ranking, and the largest number of designs that are delivered."""
-
-    transmission: float = 1.0
-    size: float = 1.0
-    error: float = 1.0
-    deliver: int = 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -217,6 +151,12 @@ class Task:
                 if getattr(position, name) < 0:
                     yield ("positions", k, name), "must not be negative"
         yield from self._repeated_positions()
+        bare = [k for k, position in enumerate(self.positions) if not position.tolerance]
+        if self.is_approximate and 0 < len(bare) < count:
+            yield (
+                ("positions", bare[0], "tolerance"),
+                "is missing: points that are met by least squares all have tolerances, or none",
+            )
         exact = all(p.tolerance == p.angle_tolerance == 0 for p in self.positions)
         if self.kind == "motion" and count > _MOST_EXACT and exact:
             yield (
@@ -246,10 +186,12 @@ class Task:
             )
         if self.kind in ("path", "mixed", "improve"):
             for k, position in enumerate(self.positions):
-                refused = () if self.is_approximate else ("input",)
-                for name in (*refused, "tolerance", "angle_tolerance"):
-                    if getattr(position, name):
+                refused = {"input": not self.is_approximate}
+                refused["angle_tolerance"] = position.angle is None
+                for name, without_effect in refused.items():
+                    if without_effect and getattr(position, name):
                         yield ("positions", k, name), "has no effect on points: leave it out"
+        yield from self._length_problems()
         if self.kind == "function" and fixed:
             level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
             if not level:
@@ -258,6 +200,27 @@ class Task:
                     "must be two pivots on a level line, A0 to the left of B0: angles are measured "
                     "from it",
                 )
+
+    def _length_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Given lengths that are none, or that the kind of task cannot use."""
+        lengths, wanted = self.given.lengths, self.wanted
+        if lengths and self.kind not in ("path", "mixed"):
+            yield ("given", "lengths"), "belongs to points: leave it out"
+            return
+        known = LENGTHS[:_FITTED] if self.is_approximate else LENGTHS
+        for name, length in lengths.items():
+            key = ("given", "lengths", name)
+            if name not in known:
+                fitted = " of a fit" if self.is_approximate else ""
+                yield key, f"is no length{fitted}: these are " + ", ".join(f'"{n}"' for n in known)
+            elif length <= 0.0:
+                yield key, f"must be positive, got {length:g}"
+            elif not length <= wanted.longest or (
+                "P" not in name and not length >= wanted.shortest
+            ):
+                yield key, f"{length:g} is out of the bounds that are wanted for lengths"
+        if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
+            yield ("given", "lengths", "A0 B0"), "is fixed by the given pivots: leave it out"
 
     def _repeated_positions(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         turn = self.angle.turn
@@ -341,6 +304,7 @@ class Task:
         if self.kind != "path":
             return self.kind == "improve"
         conditions = len(self.positions) - 1 + 2 * len(self.given.fixed_pivots)
+        conditions += len(self.given.lengths)
         return (
             self.curve is not None
             or self.improvement is not None

@@ -13,14 +13,8 @@ import numpy as np
 from linkwork.design.improvement.settings import Goal, Improvement
 from linkwork.design.synthesis.curve_file import read_curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
-from linkwork.design.synthesis.task import (
-    MECHANISMS,
-    Given,
-    PrecisionPosition,
-    Ranking,
-    Task,
-    Wanted,
-)
+from linkwork.design.synthesis.task import MECHANISMS, Task
+from linkwork.design.synthesis.task_conditions import Given, PrecisionPosition, Ranking, Wanted
 from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
@@ -118,7 +112,7 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         angle=AngleUnit(content.get("angle", "deg")),
         mechanisms=(mechanism,) if isinstance(mechanism, str) else tuple(mechanism),
         positions=tuple(map(_position, content.get("positions", ()))),
-        given=Given(**{k: _points(v) for k, v in content.get("given", {}).items()}),
+        given=_given(content.get("given", {})),
         function=_function(content["function"]) if "function" in content else None,
         wanted=_wanted(content.get("wanted", {})),
         rank=_ranking(content.get("rank", {})),
@@ -183,6 +177,11 @@ def _points(listed: list[list[float]]) -> tuple[Any, ...]:
 
 def _position(table: dict[str, Any]) -> PrecisionPosition:
     return PrecisionPosition(**{**table, "point": tuple(table["point"])})
+
+
+def _given(table: dict[str, Any]) -> Given:
+    pivots = {key: _points(entry) for key, entry in table.items() if key != "lengths"}
+    return Given(**pivots, lengths=table.get("lengths", {}))
 
 
 def _function(table: dict[str, Any]) -> FunctionGoal:

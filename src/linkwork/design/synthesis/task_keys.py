@@ -55,6 +55,7 @@ _GIVEN = Key(
                 ListOf(_POINT, "pivot", 1, 2),
                 "Pivots of the guided body, as they are at the first position",
             ),
+            Key("lengths", Named(PlainNumber(), 2), 'Lengths of a task of points: { "A0 A" = 40 }'),
         )
     ),
     "What the author of the task fixes",

@@ -34,6 +34,7 @@ class DefectKind(Enum):
     TRANSMISSION = "transmission angle too small"
     PIVOTS = "fixed pivot outside its region"
     LENGTHS = "length out of bounds"
+    TOLERANCE = "tolerance exceeded"
     OBSTACLE = "meets an obstacle"
     NOT_PROVED = "not proved"
 
@@ -114,6 +115,7 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
     )
     found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
+    found[DefectKind.TOLERANCE] = open_ & wishes.exceeds(given.guided, given.error).any(axis=1)
     # a design with one other defect tells what that wish costs, if nothing else is wrong
     nearly = open_ & ~found[DefectKind.RANGE] & (np.sum(list(found.values()), axis=0) <= 1)
     met = np.zeros(len(given), dtype=bool)

@@ -8,6 +8,7 @@ import numpy as np
 
 from linkwork.design.synthesis.travel import Range
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
 _LEAST = 1e-300  # in place of 0, of which no multiple is large
 
@@ -32,6 +33,8 @@ class Wishes:
         Bounds of all lengths, and of the longest over the shortest.
     obstacles : (M, 3)
         Circles x, y, radius, which no link may meet [length].
+    points, reach : (N,) complex, (N,)
+        The wanted points, and how far each may be missed; none: not asked here [length].
     """
 
     ordered: bool = True
@@ -42,6 +45,8 @@ class Wishes:
     longest: float = np.inf
     ratio: float = np.inf
     obstacles: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    points: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    reach: Array = field(default_factory=lambda: np.zeros(0))
 
     def allows(self, shortest: Array, longest: Array) -> BoolArray:
         """Whether lengths (D,) are within the bounds."""
@@ -51,6 +56,16 @@ class Wishes:
             # a ratio of infinity allows a length of zero
             & (longest <= self.ratio * np.maximum(shortest, _LEAST))
         )
+
+    def exceeds(self, guided: ComplexArray, error: Array) -> BoolArray:
+        """Which positions of guided points (D, N) miss theirs by more than allowed, beyond errors
+        (D,).
+        """
+        if not self.reach.size:
+            return np.zeros(guided.shape, dtype=bool)
+        away = np.abs(guided - self.points)
+        rounding = 8.0 * UNIT_ROUNDOFF * np.abs(guided)
+        return np.asarray(~(away <= self.reach + rounding + error[:, None]))
 
     def within_region(self, points: ComplexArray, error: Array) -> BoolArray:
         """Whether points (D,) are inside the region, or on its border to their errors."""

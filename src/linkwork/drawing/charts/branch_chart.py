@@ -24,7 +24,8 @@ def branch_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     Parameters
     ----------
     names : sequence of str
-        The quantities to show, one below the other; by default the first unknown.
+        The quantities to show, one below the other; by default the first of those of
+        :func:`circuit_chart`.
 
     Raises
     ------

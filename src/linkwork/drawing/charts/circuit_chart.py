@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from linkwork.drawing.charts.chart import Axis, Chart, Curve, Mark, Panel
+from linkwork.drawing.charts.columns import usual_columns
 from linkwork.drawing.charts.labels import axis_label
 from linkwork.drawing.charts.overlap import layered
 from linkwork.drawing.charts.scales import finite_ends
@@ -21,7 +22,7 @@ from linkwork.results.quantity import Kind
 
 __all__ = ["MOST_PANELS", "circuit_chart"]
 
-#: Maximum number of unknowns shown by default.
+#: Maximum number of quantities shown by default.
 MOST_PANELS = 6
 
 
@@ -34,12 +35,12 @@ def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     Parameters
     ----------
     names : sequence of str
-        The quantities to show; by default the first :data:`MOST_PANELS` unknowns.
+        The quantities to show; by default the first :data:`MOST_PANELS` of :func:`usual_columns`.
 
     Raises
     ------
     InputError
-        If there is no circuit.
+        If there is no circuit, or nothing to show by default.
     UnknownNameError
         If a quantity does not exist.
     """
@@ -51,7 +52,7 @@ def circuit_chart(circuits: Circuits, names: Sequence[str] = ()) -> Chart:
     turn = units.angle.turn if turning else 0.0
     count = len(circuits)
     asked = [motions[0].series(name).quantity.name for name in names]
-    shown = tuple(dict.fromkeys(asked)) or tuple(motions[0].unknowns)[:MOST_PANELS]
+    shown = tuple(dict.fromkeys(asked)) or usual_columns(motions[0])[:MOST_PANELS]
     return Chart(
         title=circuits.mechanism,
         caption=f"{count} circuit{'' if count == 1 else 's'}",

@@ -17,7 +17,7 @@ from linkwork.results.motion import Motion
 from linkwork.results.quantities.asked import Asked, Group
 from linkwork.results.quantity import Kind, Rate
 
-__all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of"]
+__all__ = ["TIME", "Column", "abscissa_of", "column_of", "lead_of", "usual_columns"]
 
 #: Name of the time in ``against``.
 TIME = "time"
@@ -79,6 +79,21 @@ def lead_of(motion: Motion) -> str:
     rows = motion.asked
     moving = (name for name, values in motion.inputs.items() if np.ptp(values[rows]))
     return next(moving, next(iter(motion.inputs)))
+
+
+def usual_columns(motion: Motion) -> tuple[str, ...]:
+    """The unknowns; without unknowns the outputs, or else the coordinates of the traced points.
+
+    Raises
+    ------
+    InputError
+        If there are none of these.
+    """
+    traced = [f"{point}.{axis}" for point in motion.skeleton.traced for axis in "xy"]
+    found = tuple(motion.unknowns) or tuple(motion.outputs) or tuple(traced)
+    if not found:
+        raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
+    return found
 
 
 def column_of(motion: Motion, name: str) -> Column:

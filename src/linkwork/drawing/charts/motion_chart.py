@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.drawing.captions import reached_caption
 from linkwork.drawing.charts.chart import Axis, Chart, Curve, Mark, Panel, Pen, Rule, Scale
-from linkwork.drawing.charts.columns import Column, abscissa_of, column_of, lead_of
+from linkwork.drawing.charts.columns import Column, abscissa_of, column_of, lead_of, usual_columns
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.lines import breaks, broken, limit_marks, runs
 from linkwork.drawing.charts.overlap import layered
@@ -41,7 +41,7 @@ def motion_chart(
     Parameters
     ----------
     names : sequence of str
-        The columns; by default unknowns and outputs.
+        The columns; by default those of :func:`usual_columns` and the outputs.
     against : str
         The column of the abscissa, or ``time``; by default the leading input.
     wrapped : bool
@@ -56,7 +56,7 @@ def motion_chart(
     """
     check_found(motion)
     across = abscissa_of(motion, against)
-    columns = columns_of(motion, names or [*motion.unknowns, *motion.outputs])
+    columns = columns_of(motion, names or [*usual_columns(motion), *motion.outputs])
     panels = shared_panels(motion, across, columns, wrapped=wrapped)
     named = [curve.name for p in panels if len(p.curves) > 1 for curve in p.curves]
     kinds = [mark.kind for p in panels for mark in p.marks]
@@ -78,8 +78,6 @@ def check_found(motion: Motion) -> None:
 
 def columns_of(motion: Motion, names: Sequence[str]) -> list[Column]:
     """The columns with these names, without duplicates."""
-    if not names:
-        raise InputError(f'"{motion.mechanism}" has no unknowns: name the columns to plot')
     found = {column.name: column for column in (column_of(motion, name) for name in names)}
     return list(found.values())
 

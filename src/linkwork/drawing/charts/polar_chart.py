@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.drawing.captions import reached_caption
 from linkwork.drawing.charts.chart import Axis, Chart, Panel, Rule, Scale, Shape
-from linkwork.drawing.charts.columns import abscissa_of
+from linkwork.drawing.charts.columns import abscissa_of, usual_columns
 from linkwork.drawing.charts.labels import with_unit
 from linkwork.drawing.charts.motion_chart import check_found, columns_of, shared_panels
 from linkwork.drawing.charts.scales import angle_ends, round_step
@@ -64,10 +64,11 @@ def polar_chart(motion: Motion, names: Sequence[str] = (), *, against: str = "")
 
 
 def _usual(motion: Motion) -> list[str]:
-    """The default columns: unknown lengths, else rates of traced points, else all unknowns."""
+    """The default columns: unknown lengths, else rates of traced points, else the usual ones."""
     lengths = [n for n, series in motion.unknowns.items() if series.quantity.kind is Kind.LENGTH]
     rate = Rate.FIRST if motion.speed is None else Rate.VELOCITY
-    return lengths or [f"{p}.{rate.value}" for p in motion.skeleton.traced] or [*motion.unknowns]
+    rates = [f"{point}.{rate.value}" for point in motion.skeleton.traced]
+    return lengths or rates or list(usual_columns(motion))
 
 
 def _an_angle(motion: Motion) -> str:

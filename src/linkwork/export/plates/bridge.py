@@ -21,7 +21,11 @@ def columns_around(
 ) -> tuple[complex, ...]:
     """Places of columns at the corners of the box in which all moving plates stay [mm]."""
     places = [
-        (poses[plate.body][0][:, None] + poses[plate.body][1][:, None] * plate.core, plate.radius)
+        (
+            poses[plate.body][0][:, None]
+            + poses[plate.body][1][:, None] * np.concatenate(plate.core),
+            plate.radius,
+        )
         for plate in made.plates
         if plate.body != GROUND
     ]

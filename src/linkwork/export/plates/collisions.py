@@ -87,17 +87,20 @@ class Collisions:
         return self.plates[part].name if part >= 0 else f"pin {self.pins[-1 - part].name}"
 
     @cached_property
-    def _shapes(self) -> dict[int, tuple[str, ComplexArray, float]]:
+    def _shapes(self) -> dict[int, tuple[str, tuple[ComplexArray, ...], float]]:
         """Body, core and radius of every part."""
         own = {k: (x.body, x.core, x.radius) for k, x in enumerate(self.plates)}
         for p, pin in enumerate(self.pins):
-            own[-1 - p] = (pin.body, np.array([pin.place]), self.spacer)
+            own[-1 - p] = (pin.body, (np.array([pin.place]),), self.spacer)
         return own
 
     @cached_property
     def _reach(self) -> dict[int, float]:
         """How far parts extend from the origin of their body [mm]."""
-        return {k: float(np.abs(z).max()) + r for k, (_, z, r) in self._shapes.items()}
+        return {
+            k: float(np.abs(np.concatenate(core)).max()) + radius
+            for k, (_, core, radius) in self._shapes.items()
+        }
 
     def distances(
         self, pairs: Iterable[Conflict], poses: Mapping[str, tuple[ComplexArray, ComplexArray]]
@@ -109,7 +112,7 @@ class Collisions:
                 if part not in made:
                     body, core, _ = self._shapes[part]
                     origin, turn = poses[body]
-                    made[part] = _geometries(origin[:, None] + turn[:, None] * core)
+                    made[part] = _geometries(origin, turn, core)
             radii = self._shapes[a][2] + self._shapes[b][2]
             distance = shapely().distance(made[a], made[b]) - radii
             for ring, other in ((a, b), (b, a)):
@@ -124,8 +127,9 @@ class Collisions:
         (origin, turn), plate = poses[self.plates[ring].body], self.plates[ring]
         body, core, radius = self._shapes[other]
         there, by = poses[body]
-        center = origin + turn * plate.core[0]
-        away = np.abs(there[:, None] + by[:, None] * core - center[:, None]).max(axis=1)
+        center = origin + turn * plate.core[0][0]
+        places = there[:, None] + by[:, None] * np.concatenate(core)
+        away = np.abs(places - center[:, None]).max(axis=1)
         found: Array = plate.inner - away - radius
         return found
 
@@ -167,7 +171,15 @@ class Collisions:
         return moved + self._reach[part] * turned
 
 
-def _geometries(z: ComplexArray) -> Any:
+def _geometries(origin: ComplexArray, turn: ComplexArray, core: Sequence[ComplexArray]) -> Any:
+    """A core in positions (B,): a geometry, or a collection of those of its pieces."""
+    pieces = [_convex(origin[:, None] + turn[:, None] * piece) for piece in core]
+    if len(pieces) == 1:
+        return pieces[0]
+    return shapely().geometrycollections(np.stack(pieces, axis=-1))
+
+
+def _convex(z: ComplexArray) -> Any:
     """Points, lines or polygons with corners (B, n)."""
     coordinates = np.stack([z.real, z.imag], axis=-1)
     if z.shape[1] == 1:

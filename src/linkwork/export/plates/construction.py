@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linkwork.drawing.link_symbols import convex_outline
+from linkwork.export.plates.arms import arms_between
 from linkwork.export.plates.gears import GearMesh, Wheel, gear_meshes
 from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
@@ -171,7 +172,7 @@ class Construction:
                 body=carrier.name,
                 outline=circle(center, radius),
                 openings=(hole,),
-                core=np.array([center]),
+                core=(np.array([center]),),
                 radius=radius,
             )
             self.plates.append(plate)
@@ -244,7 +245,7 @@ class Construction:
         return self._plate(name, GROUND, holes, slotted=name == BASE)
 
     def _plate(self, name: str, body: str, holes: Mapping[str, complex], *, slotted: bool) -> Plate:
-        sizes, core, openings = self.sizes, [], []
+        sizes, core, openings, slots = self.sizes, [], [], []
         for point, place in (dict(holes) | (self.more.get(body, {}) if slotted else {})).items():
             core.append(place)
             openings.append(Opening(name=point, outline=circle(place, sizes.hole / 2.0)))
@@ -256,18 +257,22 @@ class Construction:
                     openings.append(Opening(name=f"{way.name} {k}", outline=hole))
             if way.on == body:
                 ends = self.slot_ends(way)
+                slots.append((len(core), len(core) + 1))
                 core += ends
                 openings.append(Opening(name=way.name, outline=rounded(ends, sizes.hole / 2.0)))
         if not core:
             raise InputError(f'nothing is joined to "{body}": it has no plate')
-        hull = convex_outline(core)
+        hull, radius = convex_outline(core), sizes.width / 2.0
+        with_arms = len(hull) > 2 and body != GROUND
+        arms = arms_between(core, slots, radius, sizes.fillet) if with_arms else None
+        filled = np.array(hull if hull[0] != hull[-1] else hull[:1])
         return Plate(
             name=name,
             body=body,
-            outline=rounded(hull, sizes.width / 2.0),
+            outline=rounded(hull, radius) if arms is None else arms.outline,
             openings=tuple(openings),
-            core=np.array(hull if hull[0] != hull[-1] else hull[:1]),
-            radius=sizes.width / 2.0,
+            core=(filled,) if arms is None else arms.core,
+            radius=radius,
         )
 
     def slot_ends(self, way: Guideway) -> tuple[complex, complex]:

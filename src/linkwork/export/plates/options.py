@@ -23,7 +23,9 @@ class PlateOptions:
     Parameters
     ----------
     width : number, optional
-        Width of bars; plates around three or more holes are rounded with half of it.
+        Width of bars, and of the arms of plates with three or more holes.
+    fillet : number, optional
+        Radius of inner corners between arms; plates whose arms have no room for it are filled.
     pin : number, optional
         Diameter of pins.
     clearance : number, optional
@@ -51,6 +53,7 @@ class PlateOptions:
     """
 
     width: float | None = None
+    fillet: float | None = None
     pin: float | None = None
     clearance: float | None = None
     kerf: float = 0.0
@@ -78,6 +81,7 @@ class Sizes:
     """All sizes in millimetres; ``web`` is the least material between two openings."""
 
     width: float
+    fillet: float
     pin: float
     clearance: float
     kerf: float
@@ -132,7 +136,7 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
     Raises
     ------
     InputError
-        If a hole is wider than its bar.
+        If a hole is wider than its bar, or the cut than a hole or an inner corner.
     """
     own = {
         field.name: None if getattr(options, field.name) is None
@@ -143,6 +147,7 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
     pin = own["pin"] or _preferred(_PIN * width)
     sizes = Sizes(
         width=width,
+        fillet=own["fillet"] or width,
         pin=pin,
         clearance=_CLEARANCE * pin if own["clearance"] is None else own["clearance"],
         kerf=own["kerf"] or 0.0,
@@ -161,6 +166,11 @@ def sizes_of(options: PlateOptions, millimetres: float, longest: float, nearest:
     if sizes.kerf >= sizes.hole:
         raise InputError(
             f"a kerf of {sizes.kerf:g} mm leaves nothing of holes of {sizes.hole:g} mm"
+        )
+    if sizes.kerf >= 2.0 * sizes.fillet:
+        raise InputError(
+            f"a cut of {sizes.kerf:g} mm is too wide for inner corners with a radius of "
+            f"{sizes.fillet:g} mm: choose a larger fillet"
         )
     return sizes
 

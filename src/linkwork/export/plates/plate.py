@@ -41,15 +41,15 @@ class Opening:
 class Plate:
     """A plate of a body, in the body's frame [mm].
 
-    ``core`` and ``radius``: the plate lies within this distance of the convex hull of the core, and
-    farther than ``inner`` from the middle of a ring.
+    ``core`` and ``radius``: the plate lies within this distance of the convex hulls of the pieces
+    of its core, and farther than ``inner`` from the middle of a ring.
     """
 
     name: str
     body: str
     outline: Outline
     openings: tuple[Opening, ...]
-    core: ComplexArray
+    core: tuple[ComplexArray, ...]
     radius: float
     inner: float = 0.0
 
@@ -171,9 +171,10 @@ class PlateStack:
         pairs = (" and ".join(pair) for pair in self.contacts)
         but = f" but {'; '.join(pairs)}" if self.contacts else ""
         if self.proved:
-            return f"no two parts touch{but}: proved for every position of the table"
+            where = "proved for every position of the table, for pins without play"
+            return f"no two parts touch{but}: {where}"
         what = f"no two parts touch{but} in {self.checked} positions of the table"
-        return f"{what}: checked, not proved" + (
+        return f"{what}: checked for pins without play, not proved" + (
             f" for {', '.join(self.open)}" if self.open else ""
         )
 

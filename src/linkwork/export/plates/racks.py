@@ -140,7 +140,7 @@ def rack_plate(
         openings=tuple(
             Opening(name=own, outline=circle(z, sizes.hole / 2.0)) for own, z in fastened.items()
         ),
-        core=placed(core),
+        core=(placed(core),),
         radius=0.0,
     )
     return WheelPlate(plate=plate, fastened=fastened, whole=False)

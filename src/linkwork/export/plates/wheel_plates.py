@@ -34,7 +34,7 @@ class Blank:
     center: complex
     outline: Outline
     low: float
-    core: ComplexArray
+    core: tuple[ComplexArray, ...]
     radius: float
 
 
@@ -58,7 +58,7 @@ def gear_blank(wheel: Wheel, body: RigidBody) -> Blank:
         center=center,
         outline=involute_outline(wheel, center),
         low=low,
-        core=np.array([center]),
+        core=(np.array([center]),),
         radius=high,
     )
 
@@ -72,7 +72,7 @@ def cam_blank(center: complex, points: ComplexArray) -> Blank:
         center=center,
         outline=Outline(corners=corners, bulges=np.zeros(len(corners))),
         low=float(np.abs(points).min()),
-        core=np.array(convex_outline(corners.tolist())),
+        core=(np.array(convex_outline(corners.tolist())),),
         radius=0.0,
     )
 

@@ -29,6 +29,7 @@ __all__ = [
 
 #: Relative tolerance of redundant numbers.
 AGREE = 1e-9
+_MOST_TIMES = 1e6  # the size of a wheel, of that of the other
 _MOST_UNEVEN = 1e6  # distances of neighbouring points of a curve, from the smallest to the largest
 
 POINT, LINK, SLIDER = Text(of="point"), Text(of="link"), Text(of="slider")
@@ -335,13 +336,18 @@ class PartChecks:
         return amount
 
     def positive(self, number: Number, noun: str, *field: str | int) -> float:
-        """A positive number."""
-        amount = self.number(number, *field)
+        """A positive number, limited so that products with it are finite."""
+        amount = self.amount(number, *field)
         if amount <= 0:
             what = "positive" if noun == "radii" else f"a positive {noun}"
             what = "positive whole numbers" if noun == "teeth" else what
             self.add(f"must be {what}, got {amount:g}", *field)
         return amount
+
+    def comparable(self, first: float, second: float, field: str, what: str = "") -> None:
+        """Two positive sizes whose ratio leaves room for rounding."""
+        if first > _MOST_TIMES * second or second > _MOST_TIMES * first:
+            self.add(f"{what}differ by a factor of more than {_MOST_TIMES:,.0f}", field)
 
     def outline(self, points: Sequence[Sequence[Number]], field: str, *, closed: bool) -> None:
         """Check for enough distinct consecutive points."""

@@ -201,6 +201,8 @@ class Rolling(NamedPart):
         size = checks.positive(self.circle_radius, "radius", "circle_radius")
         if self.inside and radius == size:
             checks.add("equals circle_radius: a wheel inside a circle must be smaller", "radius")
+        elif radius > 0 and size > 0:
+            checks.comparable(radius, size, "circle_radius", "and radius ")
 
     def figures(self, linkage: Bodies, outlines: Outlines) -> Iterator[Figure]:
         small = linkage.numbers(self.radius)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -161,19 +161,22 @@ def _in_file_units(model: Model, path: InputPath, lead: int, edge: _Edge, turns:
 def _circuit(leads: ParametrizedTable, v: Array, side: float) -> list[TracedCurve]:
     """The whole circuit through a position (N,): one curve if it closes, else one each way."""
     try:
-        aside = _proved(lambda care: _off_dead_point(leads, v, care))
+        aside = _proved(lambda care: _off_dead_point(leads, v, care), _CARES)
         start = v if aside is None else aside.curve.legs[-1].v[-1]
-        walks = [_proved(lambda care: _walk(leads, start, side, care))]
+        # all of it is proved or nothing is: after one part without proof more care is in vain
+        cares = _CARES if aside is None or aside.certified else _CARES[:1]
+        walks = [_proved(lambda care: _walk(leads, start, side, care), cares)]
         if not walks[0].curve.end.closed:
-            walks.append(_proved(lambda care: _walk(leads, start, -side, care)))
+            cares = cares if walks[0].certified else _CARES[:1]
+            walks.append(_proved(lambda care: _walk(leads, start, -side, care), cares))
     except (ValueError, np.linalg.LinAlgError):
         return []
     return [walk for walk in (*walks, aside) if walk is not None and walk.curve.legs]
 
 
-def _proved(follow: Callable[[TrackOptions], _T]) -> _T:
+def _proved(follow: Callable[[TrackOptions], _T], cares: Sequence[TrackOptions]) -> _T:
     """What is followed with the least care that proves it, or else with the most that is cheap."""
-    for care in _CARES:
+    for care in cares:
         found = follow(care)
         if found is None or found.certified or _size(found) > _MOST_AGAIN:
             break

@@ -121,6 +121,9 @@ class _Search:
                 if closed is not None:
                     found, mirrored, closed = self._close(found)
                     by_mirror += mirrored
+            elif settled > paths - settled - len(found):
+                # in a special task what is missing creeps to where the other paths ended
+                break
         # a mirror image may have shown that an end is regular after all
         singular = self._apart(found, ends.x[ends.singular])
         return ParameterRoots(

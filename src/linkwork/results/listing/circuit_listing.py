@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.results.circuits import Circuit, Circuits
@@ -57,7 +58,8 @@ def circuit_fields(found: Circuits, circuit: Circuit) -> Iterator[tuple[str, str
     for limit in (*circuit.dead_points, *circuit.change_points):
         yield limit.kind.word, limit.told(found.input, found.input_unit)
     yield from redundant_lines(redundant)
-    if not (circuit.dead_points or circuit.change_points):
+    dead = circuit.dead_points or circuit.change_points
+    if not dead and isfinite(circuit.smallest_singular_value):  # infinite without unknowns
         where = f"{found.input} = {circuit.weakest:.3g} {found.input_unit}".rstrip()
         yield (
             "closest to a dead point",

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.opened_file import Events
+from linkwork.viewer.live.result_events import problems_found
 from linkwork.viewer.live.solvable import Read
 from linkwork.viewer.live.task.templates import task_template
 from linkwork.viewer.live.workbench import Workbench
@@ -95,10 +96,14 @@ class Bench:
                 case ask.OpenExample() if self._behind or not isinstance(self.current, Workbench):
                     self._check_saved(request.discard)
                     return self._open(new_file(request.name))
+                case ask.OpenFile():
+                    return self._visitor_file(request)
                 case do.OpenDesign():
                     return self._design(request.design)
                 case do.ReturnToTask():
                     return self._task(request.discard)
+        except MechanismError as error:
+            return [problems_found(error)]
         except InputError as error:
             return [tell.Refused(message=str(error))]
         if isinstance(self.current, Workbench) and isinstance(request, do.OF_TASKS):
@@ -114,6 +119,14 @@ class Bench:
     def _open(self, file: MechanismFile) -> Events:
         self.current, self._behind = self._bench_of(file), None
         return self.opened()
+
+    def _visitor_file(self, request: ask.OpenFile) -> Events:
+        # with all formats of other programs: most visitors do without them
+        from linkwork.viewer.live.visitor_file import read_visitor_file
+
+        found = read_visitor_file(request)  # a wrong file changes nothing
+        self._check_saved(request.discard)
+        return [*self._open(found.file), found.opened]
 
     def _design(self, index: int) -> Events:
         task = self.current

@@ -65,6 +65,7 @@ __all__ = [
     "Event",
     "Exported",
     "FileChanged",
+    "FileOpened",
     "FileState",
     "FormOffered",
     "Lack",
@@ -288,6 +289,21 @@ class FileChanged:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FileOpened:
+    """A file of the visitor was opened; of another program with its ``format`` and the numbers of
+    what was carried over.
+
+    ``renamed``: old and new names; ``left_out``: what was not carried over, with its place.
+    """
+
+    source: str
+    format: str
+    carried: dict[str, int]
+    renamed: dict[str, str]
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class StartOffered:
     """No file was named: the page offers the library and a blank sheet."""
 
@@ -318,6 +334,7 @@ Event = (
     | Refused
     | LinkMade
     | FileChanged
+    | FileOpened
     | Saved
     | StartOffered
     | TaskState

@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 
 from linkwork.foundation.errors import InputError, choices
 from linkwork.viewer.live.events import Event
-from linkwork.viewer.live.requests import REQUESTS, Request, SetText
+from linkwork.viewer.live.requests import REQUESTS, OpenFile, Request, SetText
 
 __all__ = ["LARGEST_MESSAGE", "MessageError", "decoded", "encoded", "kind_of"]
 
@@ -27,7 +27,8 @@ __all__ = ["LARGEST_MESSAGE", "MessageError", "decoded", "encoded", "kind_of"]
 LARGEST_MESSAGE = 2_500_000
 _LARGEST_ID = 2**53  # largest exact integer in JavaScript
 _LONGEST_TEXT = 1_000  # characters of a name or formula
-_LONGEST_FILE = 1_000_000
+#: Characters of a whole file, as text or in base64.
+_LONGEST_FILES = {SetText: 1_000_000, OpenFile: 2_400_000}
 _MOST_ENTRIES = 1_000  # of a list or table
 _REQUESTS = frozenset(REQUESTS)
 
@@ -147,7 +148,7 @@ def _filled(message: type, entries: dict[str, Any], where: str) -> Any:
     for name, (_, needed) in fields.items():
         if needed and name not in entries:
             _refuse(f"{where}{name} is missing: send it with the message")
-    longest = _LONGEST_FILE if message is SetText else _LONGEST_TEXT
+    longest = _LONGEST_FILES.get(message, _LONGEST_TEXT)
     return message(
         **{
             name: _value(entry, fields[name][0], f"{where}{name}", longest)

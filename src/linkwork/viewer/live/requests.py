@@ -9,6 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwork.viewer.live.file_requests import (
+    MakeLink,
+    OpenExample,
+    OpenFile,
+    Redo,
+    Reload,
+    Save,
+    Undo,
+)
 from linkwork.viewer.live.motion_requests import Cancel, ShowQuantities, Simulate
 from linkwork.viewer.live.part_requests import (
     AddPart,
@@ -47,6 +56,7 @@ __all__ = [
     "MovePoints",
     "NewtonSteps",
     "OpenExample",
+    "OpenFile",
     "Picked",
     "Question",
     "Redo",
@@ -332,46 +342,6 @@ class NewtonSteps:
     y: float = 0.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Undo:
-    """Undo the last change."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Redo:
-    """Redo the last undone change."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class OpenExample:
-    """Open a mechanism of the library as a new file, or a blank sheet with an empty name.
-
-    ``discard``: even if changes of the present file are not saved.
-    """
-
-    name: str
-    discard: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class Save:
-    """Write the file; with ``overwrite`` even if another program has changed it."""
-
-    overwrite: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reload:
-    """Read the file again; unsaved changes stay in the history."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class MakeLink:
-    """Pack the text of the file into a link to the address of an app, or into a fragment only."""
-
-    app: str = ""
-
-
 #: Asks about the mechanism and its motion, and changes nothing.
 Question = ListCircuits | ListQuantities | Export | MakeLink
 
@@ -389,6 +359,7 @@ Request = (
     | NewtonSteps
     | Question
     | OpenExample
+    | OpenFile
     | Undo
     | Redo
     | Save

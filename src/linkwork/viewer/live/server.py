@@ -72,7 +72,7 @@ class LiveServer:
         Parameters
         ----------
         tell : callable
-            Called before the server starts; from then on Ctrl-C ends it.
+            Called before the server starts, once its packages are found: Ctrl-C then ends it.
 
         Raises
         ------
@@ -81,8 +81,8 @@ class LiveServer:
         """
         try:
             with self._ended_by_signals():
-                tell()
                 self._server = _uvicorn(self._app)
+                tell()
                 self._desk.prepare()  # solved while the browser loads the page
                 if not self._ended:
                     self._server.run(sockets=[self._socket])

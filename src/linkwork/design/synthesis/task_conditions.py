@@ -1,0 +1,91 @@
+"""What a task gives: positions, pivots and lengths, wishes, and the ranking; in file units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+__all__ = ["LENGTHS", "Given", "Point", "PrecisionPosition", "Ranking", "Wanted"]
+
+#: Lengths that a task of points may give.
+LENGTHS = ("A0 A", "A B", "B0 B", "A0 B0", "A P", "B P")
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrecisionPosition:
+    """A position through which the guided body, or its point, passes.
+
+    Parameters
+    ----------
+    point : (float, float)
+        Where the guided point is [length].
+    angle : float, optional
+        The angle of the body: with it, a pose [file's angle unit].
+    input : float, optional
+        The crank's angle at this position, of which differences count [file's angle unit].
+    tolerance, angle_tolerance : float
+        How far point and angle may miss.
+    """
+
+    point: Point
+    angle: float | None = None
+    input: float | None = None
+    tolerance: float = 0.0
+    angle_tolerance: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """What the author fixes [length]: pivots, moving ones as they are at the first position, and
+    distances of A0, B0, A, B and P.
+    """
+
+    fixed_pivots: tuple[Point, ...] = ()
+    moving_pivots: tuple[Point, ...] = ()
+    lengths: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """Wishes, each proved over the whole driven range.
+
+    Parameters
+    ----------
+    turns_fully : bool
+        Whether the driven link makes whole turns.
+    range : (float, float), optional
+        The driven range [file's angle unit, or length].
+    transmission : float
+        The smallest transmission angle allowed [file's angle unit].
+    ordered : bool
+        Whether the positions are passed in their order.
+    region : tuple of points
+        Corners of the polygon that contains all fixed pivots [length].
+    shortest, longest, ratio : float
+        Bounds of lengths, and of the longest over the shortest.
+    obstacles : tuple of (x, y, radius)
+        Circles that no link may meet [length].
+    """
+
+    turns_fully: bool = False
+    range: tuple[float, float] | None = None
+    transmission: float = 0.0
+    ordered: bool = True
+    region: tuple[Point, ...] = ()
+    shortest: float = 0.0
+    longest: float = math.inf
+    ratio: float = math.inf
+    obstacles: tuple[tuple[float, float, float], ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ranking:
+    """Weights of the ranking, and the largest number of designs that are delivered."""
+
+    transmission: float = 1.0
+    size: float = 1.0
+    error: float = 1.0
+    deliver: int = 20
