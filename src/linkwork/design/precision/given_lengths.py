@@ -29,7 +29,7 @@ _CORRECTIONS = 3
 _POLISH = 12  # and at the end
 _SETTLED = 1e-9  # relative: the last correction of a solution
 _LEAST_SIZE = 0.1  # of the size of the positions: as for other precision positions
-_SAME = 1e-6  # relative difference of linkages
+_DISTINCT = 1e-6  # relative difference of linkages
 _MOST = 400  # four-bars that are moved, and
 _PROVED = 120  # those that are proved
 
@@ -108,7 +108,7 @@ def _moved(
     # to rounding they are conjugates
     kept = 0.5 * (kept + kept[:, np.arange(CONDITIONS) ^ 1].conj())
     good = given.problem.proper(kept[:, free], given.parameters(given.size))
-    return distinct_solutions(kept[good], _SAME)[:_PROVED]
+    return distinct_solutions(kept[good], _DISTINCT)[:_PROVED]
 
 
 def _sides(lengths: Sequence[GivenLength], linkage: ComplexArray) -> ComplexArray:

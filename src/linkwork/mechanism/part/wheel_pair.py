@@ -127,7 +127,7 @@ class WheelPair(ArmPair):
         elif field == "teeth" and largest(sizes) > _MOST_TEETH:
             checks.add(f"are too many: at most {_MOST_TEETH}", "teeth")
         elif field == "radii" and all(size > 0 for size in sizes):
-            checks.comparable(*sizes, field)
+            checks.comparable(sizes[0], sizes[1], field)
         if self.ring and sizes[0] == sizes[1] and sizes[0] > 0:
             checks.add("are equal: a wheel inside a ring is smaller than the ring", field)
 
