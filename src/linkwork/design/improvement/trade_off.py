@@ -57,7 +57,7 @@ class Objectives:
     def count(self, found: Residuals, k: int) -> int:
         """The number of misses of an objective; a distance from a point is one."""
         own = self.columns[k]
-        return found.rows.shape[1] if own is None else own.stop - own.start
+        return int(found.rows.shape[1] if own is None else own.stop - own.start)
 
     def values(self, found: Residuals) -> Array:
         """The objectives, (D, K), without the weights of their goals."""
@@ -70,7 +70,7 @@ class Objectives:
     def broken(self, found: Residuals) -> Array:
         """The largest residual of a bound, (D,)."""
         every = [np.abs(found.shared[:, own]).max(axis=1, initial=0.0) for own in self.bounds]
-        return np.max([np.zeros(len(found.shared)), *every], axis=0)
+        return np.asarray(np.max([np.zeros(len(found.shared)), *every], axis=0))
 
 
 class TradeOff:
