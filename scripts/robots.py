@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from importlib import import_module
+from typing import Any
 from xml.etree import ElementTree as Tree
 
 import numpy as np
@@ -13,6 +14,8 @@ from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
 from linkwork.export.robot.urdf import urdf_of
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.names import GROUND
+from linkwork.mechanism.part.pairs import PairKind
 from linkwork.results.motion import Motion
 
 __all__ = ["LOADERS", "compared_robot"]
@@ -54,10 +57,21 @@ def _moved(robot: Robot, motion: Motion) -> str:
         for edge in robot.tree.closing:
             first, second = (data.site(f"{body}/{edge.point}").xpos for body in edge.bodies)
             gap = max(gap, float(np.abs(first - second).max()) / size)
+            if edge.kind is PairKind.FIXED:
+                turned = [
+                    _angle(data.body("world" if body == GROUND else body)) - robot.frame(body)[1]
+                    for body in edge.bodies
+                ]
+                gap = max(gap, abs(np.exp(1j * turned[0]) - np.exp(1j * turned[1])))
         if model.ntendon:
             slip = max(slip, float(np.abs(data.ten_length - model.tendon_length0).max()))
     wrong = "" if away <= 1e-9 and gap <= 1e-12 and slip <= 1e-9 else " WRONG"
     return f"points {away:.1e}, gaps {gap:.1e}, couplings {slip:.1e}{wrong}"
+
+
+def _angle(body: Any) -> float:
+    """The angle of a body in the plane [rad]."""
+    return 2.0 * float(np.arctan2(body.xquat[3], body.xquat[0]))
 
 
 def _coupled(robot: Robot, mechanism: lw.Mechanism) -> str:
@@ -77,7 +91,9 @@ def _coupled(robot: Robot, mechanism: lw.Mechanism) -> str:
         inside = (x >= low) & (x <= high) & np.isfinite(y)
         s = (2.0 * x[inside] - low - high) / (high - low)
         series = np.polynomial.chebyshev.chebval(s, np.array((own.text or "").split(), float))
-        worst = max(worst, float(np.abs(series - y[inside]).max()) / error)
+        seen = float(np.abs(series - y[inside]).max())
+        # also where the stated error is no number
+        worst = max(worst, seen / error if seen <= error else np.inf)
         stated = max(stated, error)
     same = len(loaded.robot.joints) == len(robot.tree.joints)
     wrong = "" if worst <= 1.0 and same else " WRONG"

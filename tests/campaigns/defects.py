@@ -24,7 +24,8 @@ _POSITIONS = 4
 def random_designs(kind: LoopKind, count: int, seed: int) -> Candidates:
     """Loops at random inputs and on random sides, so that all defects and none occur."""
     rng = np.random.default_rng([22, seed])
-    found = [_random_design(kind, rng) for _ in range(count)]
+    draw = _random_design if kind.has_crank else _random_guides
+    found = [draw(kind, rng) for _ in range(count)]
     return Candidates.joined(found)
 
 
@@ -71,6 +72,53 @@ def _random_design(kind: LoopKind, rng: np.random.Generator) -> Candidates:
         )
 
 
+def _random_guides(kind: LoopKind, rng: np.random.Generator) -> Candidates:
+    """A on the real line, or of an Oldham coupling on a line of the body through 0."""
+    while True:
+        c, h = rng.uniform(0.2, 2.0), rng.uniform(-0.7, 0.7) * rng.integers(0, 2)
+        places = rng.uniform(-1.5, 1.0) + rng.uniform(0.05, 0.9) * np.arange(_POSITIONS)
+        if rng.random() < 0.2:
+            places = rng.permutation(places)
+        side = np.where(rng.random(_POSITIONS) < 0.15, -1.0, 1.0)
+        fixed_b = complex(*rng.uniform(-1.0, 1.0, 2))
+        angle = rng.uniform(0.3, 2.8)
+        line = np.exp(1j * angle)
+        direction_a = 1.0 + 0j
+        if kind is LoopKind.DOUBLE_SLIDER:
+            a = places.astype(complex)
+            across = ((a - fixed_b) * line.conjugate()).imag
+            if (c**2 - across**2 <= 1e-6).any():
+                continue
+            b = a + (side * np.sqrt(c**2 - across**2) - 1j * across) * line
+            direction = line
+        elif kind is LoopKind.RAPSON:
+            a, arm = places.astype(complex), complex(c, h)
+            square = np.abs(fixed_b - a) ** 2 - h**2
+            if (square <= 1e-6).any():
+                continue
+            b = a + (fixed_b - a) / (side * np.sqrt(square) + 1j * h) * arm
+            direction = abs(arm) / arm
+        else:
+            one = np.exp(1j * places)
+            other = one * line
+            centre = one * (fixed_b * other.conj()).imag / (one * other.conj()).imag
+            a, b = centre + c * one, centre + 0.8 * other
+            seen = np.abs(b - a) / (b - a)
+            direction_a, direction = complex((one * seen)[0]), complex((other * seen)[0])
+        return Candidates(
+            kind=kind,
+            fixed_a=np.array([0j]),
+            fixed_b=np.array([fixed_b]),
+            direction=np.array([direction]),
+            moving_a=a[None],
+            moving_b=b[None],
+            guided=(a + 0.7 * (b - a) * np.exp(0.4j))[None],
+            error=np.array([1e-14]),
+            miss=np.zeros(1),
+            direction_a=np.array([direction_a]),
+        )
+
+
 def verdict_by_circuits(
     given: Candidates, drive: Drive, k: int, inputs: Array
 ) -> DefectKind | None:
@@ -80,7 +128,7 @@ def verdict_by_circuits(
     task = Task(kind="path", positions=(position, PrecisionPosition(point=(1.0, 0.0))))
     mechanism = Mechanism(linkage_of(design, task, "random design"))
     circuits = mechanism.circuits(certify=False)
-    scale = 1.0 if drive is Drive.SLIDER else np.pi / 180.0
+    scale = np.pi / 180.0 if drive.turns else 1.0
     places = [
         {"A": given.moving_a[k, j], "B": given.moving_b[k, j]} for j in range(len(design.inputs))
     ]

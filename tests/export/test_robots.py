@@ -11,6 +11,8 @@ import pytest
 import linkwork as lw
 from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
+from linkwork.export.robot.urdf import urdf_of
+from linkwork.mechanism.part.pairs import Pair, PairKind
 from linkwork.results.motion import Motion
 from tests.export.coarse import coarse
 from tests.library_mechanisms import read_example
@@ -105,6 +107,75 @@ def test_a_urdf_ends_at_the_dead_points(tmp_path: Path) -> None:
     assert min(abs(end - from_start) for end in ends) <= 1e-9
 
 
+# its input has dead points at 60 and 300 degrees, in rows of the table
+_DEAD_ROWS = """
+format = 1
+name = "Dead rows"
+length = "mm"
+angle = "deg"
+[points]
+O = [0, 0]
+A = [0, 100]
+B = [180, 80]
+C = [100, 0]
+[links]
+ground = ["O", "C"]
+crank = ["O", "A"]
+coupler = ["A", "B"]
+rocker = ["C", "B"]
+[lengths]
+"O A" = 100
+"A B" = 180
+"C B" = 80
+"O C" = 100
+[input]
+link = "crank"
+to = 360
+step = 2
+"""
+
+
+def _urdf(mechanism: lw.Mechanism, at: float | None = None) -> Tree.Element:
+    return Tree.fromstring(urdf_of(Robot(mechanism.model, mechanism.solve(at)), mechanism.sweep()))
+
+
+def _limits(root: Tree.Element, link: str) -> list[float]:
+    joint = next(j for j in root.findall("joint") if j.attrib["name"].endswith(f":{link}"))
+    limit = joint.find("limit")
+    assert limit is not None
+    return [float(limit.attrib[key]) for key in ("lower", "upper")]
+
+
+def test_dead_points_in_rows_of_the_table_end_the_polynomials() -> None:
+    mechanism = lw.loads(_DEAD_ROWS)
+    root, motion = _urdf(mechanism), mechanism.sweep()
+    at_start = mechanism.solve()
+    for link in ("crank", "rocker"):
+        # the rows of the dead points are the ends of all ranges that they are in
+        moved = np.radians(motion[link][motion.found] - at_start[link])
+        assert _limits(root, link) == pytest.approx([moved.min(), moved.max()], abs=1e-9)
+    for own in root.findall("coupling"):
+        series = np.array((own.text or "").split(), float)
+        low, high = float(own.attrib["low"]), float(own.attrib["high"])
+        value = np.polynomial.chebyshev.chebval(-(low + high) / (high - low), series)
+        assert abs(value) <= float(own.attrib["error"]) <= 0.01
+
+
+def test_inputs_that_follow_the_leading_one_have_polynomials() -> None:
+    errors = {own.attrib["joint"]: float(own.attrib["error"])
+              for own in _urdf(read_example("excavator")).findall("coupling")}  # fmt: skip
+    assert len(errors) == 10
+    assert max(errors.values()) <= 1e-9
+    assert all(np.isfinite(list(errors.values())))
+
+
+def test_a_start_outside_of_the_table_is_said() -> None:
+    bar = read_example("four-bar")
+    said = "The start position is not between these limits."
+    texts = [urdf_of(Robot(bar.model, bar.solve(at)), bar.sweep()) for at in (-90.0, 90.0)]
+    assert [said in text for text in texts] == [True, False]
+
+
 @pytest.mark.parametrize(
     ("name", "file", "reason"),
     [
@@ -121,3 +192,23 @@ def test_refusals_say_why(name: str, file: str, reason: str, tmp_path: Path) -> 
         read_example(name).to_robot(tmp_path / file)
     assert reason in str(raised.value)
     assert not (tmp_path / file).exists()
+
+
+@pytest.mark.parametrize("suffix", ["mjcf", "sdf"])
+def test_a_link_with_the_name_of_the_ground_of_simulators_is_refused(
+    suffix: str, tmp_path: Path
+) -> None:
+    mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "world ="))
+    with pytest.raises(lw.InputError, match='link "world" has the name of the ground'):
+        mechanism.to_robot(tmp_path / f"x.{suffix}")
+
+
+def test_a_weld_to_the_ground_names_the_world() -> None:
+    mechanism = read_example("four-bar")
+    robot = Robot(mechanism.model, mechanism.solve())
+    robot.tree.closing.append(
+        Pair(kind=PairKind.FIXED, name="more", bodies=("rocker", "ground"), point="O4")
+    )
+    weld = Tree.fromstring(mjcf_of(robot)).find("equality/weld")
+    assert weld is not None
+    assert weld.attrib == {"body1": "rocker", "body2": "world"}

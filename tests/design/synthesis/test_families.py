@@ -7,6 +7,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.synthesis.burmester import centre_points, sampled_dyads, sliding_dyad
+from linkwork.design.synthesis.candidates import Drive
 from linkwork.foundation.arrays import Array, ComplexArray
 
 _POSES = [(0, 0, 0), (200, 100, 15), (320, 260, 40), (300, 420, 75)]
@@ -70,7 +71,7 @@ def _misses(found: lw.Synthesis, poses: list[tuple[float, float, float]]) -> flo
         mechanism = lw.api.Mechanism(design.linkage)
         start = None
         for value, (x, y, angle) in zip(design.design.inputs, poses, strict=True):
-            scale = 1.0 if design.drive.value == "slider" else 180.0 / np.pi
+            scale = 180.0 / np.pi if design.drive.turns else 1.0
             position = mechanism.solve(at=value * scale)
             place = position.points[mechanism.description.trace[0]]
             start = position["coupler"] - angle if start is None else start
@@ -79,9 +80,18 @@ def _misses(found: lw.Synthesis, poses: list[tuple[float, float, float]]) -> flo
     return worst
 
 
-@pytest.mark.parametrize("count", [2, 3, 4])
-@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
-def test_delivered_designs_pass_the_poses(count: int, mechanism: str) -> None:
+_KINDS = ("four-bar", "slider-crank", "inverted-slider-crank", "rapson-slide")
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "count"),
+    [
+        *((mechanism, count) for mechanism in _KINDS for count in (2, 3)),
+        *((mechanism, 4) for mechanism in _KINDS[:3]),
+        *((mechanism, k) for mechanism in ("double-slider", "oldham-coupling") for k in (2, 3)),
+    ],
+)
+def test_delivered_designs_pass_the_poses(mechanism: str, count: int) -> None:
     task = lw.Task.motion(
         _POSES[:count], mechanism=mechanism, rank={"deliver": 3}, wanted={"lengths": {"most": 2000}}
     )
@@ -116,6 +126,41 @@ def test_a_body_that_slides_through_a_pivot_is_found_from_five_and_more_poses() 
     again = lw.Task.loads(text).solve()
     assert {abs(d.design.points["A0"]) < 1e-6 for d in again.delivered} == {True}
     assert all(d.error < 1e-6 for d in again.delivered)
+
+
+def test_a_pivot_on_a_line_and_a_line_through_a_pivot_are_found_from_five_and_more_poses() -> None:
+    """Rapson's slide, planted: A on a line through 0, the body's line through a fixed pivot."""
+    block, offset, along = 90.0 + 120.0j, 20.0, np.exp(0.3j)
+    a = along * np.array([-60.0, -20.0, 15.0, 60.0, 110.0, 140.0])
+    away = block - a
+    line = away / (np.sqrt(np.abs(away) ** 2 - offset**2) + 1j * offset)
+    points, angles = a + (30 + 60j) * line, np.degrees(np.angle(line))
+    poses = np.column_stack([points.real, points.imag, angles]).tolist()
+    found = lw.Task.motion(poses[:5], mechanism="rapson-slide").solve()
+    kinds = [dyad.kind for dyad in found.dyads]
+    assert (kinds.count("PR"), kinds.count("RP")) == (1, 1)
+    assert {design.drive for design in found.delivered} == {Drive.SLIDER_A, Drive.B0}
+    assert {design.linkage.inputs[0].column for design in found.delivered} == {"slide_a", "block"}
+    assert _misses(found, [tuple(pose) for pose in poses[:5]]) < 1e-6
+    # without being named it is not made
+    assert all(
+        design.mechanism != "rapson-slide" for design in lw.Task.motion(poses[:5]).solve().designs
+    )
+    tables = [{"point": [x, y], "angle": g, "tolerance": 0.01} for x, y, g in poses]
+    task = lw.Task._of("motion", positions=tables, mechanism="rapson-slide")
+    again = task.solve().delivered
+    assert again
+    assert all(design.error < 1e-6 for design in again)
+
+
+def test_parallel_guides_make_no_mechanism_and_given_pivots_are_those_of_cranks() -> None:
+    found = lw.Task.motion(_POSES[:2], mechanism="double-slider").solve()
+    assert found.linkages == 66
+    given = {"fixed_pivots": [(100, -200)]}
+    none = lw.Task.motion(_POSES[:3], mechanism="double-slider", given=given).solve()
+    assert (len(none.designs), "are those of cranks" in none.message) == (0, True)
+    with pytest.raises(lw.MechanismError, match="is made from poses only"):
+        lw.Task.path([(0, 0), (1, 1), (3, 1)], mechanism=["four-bar", "oldham-coupling"])
 
 
 def test_two_given_fixed_pivots_and_three_poses_make_one_four_bar() -> None:
@@ -173,6 +218,6 @@ def test_tolerances_give_designs_within_them_and_more_than_five_poses() -> None:
         assert 0.0 < design.error <= 0.5
         mechanism = lw.api.Mechanism(design.linkage)
         for value, wanted in zip(design.design.inputs, points, strict=True):
-            scale = 1.0 if design.drive.value == "slider" else 180.0 / np.pi
+            scale = 180.0 / np.pi if design.drive.turns else 1.0
             x, y = mechanism.solve(at=value * scale).points["P"]
             assert abs(x + 1j * y - wanted) <= design.error + 1e-6

@@ -7,6 +7,7 @@ import pytest
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.driven_loop import driven_loops
+from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.travel import NOWHERE, Range
 from linkwork.design.synthesis.verdicts import DefectKind, judge
@@ -20,6 +21,12 @@ _POSSIBLE = [
     (LoopKind.SLIDER_CRANK, Drive.SLIDER),
     (LoopKind.INVERTED, Drive.A0),
     (LoopKind.INVERTED, Drive.B0),
+    (LoopKind.DOUBLE_SLIDER, Drive.SLIDER_A),
+    (LoopKind.DOUBLE_SLIDER, Drive.SLIDER),
+    (LoopKind.RAPSON, Drive.SLIDER_A),
+    (LoopKind.RAPSON, Drive.B0),
+    (LoopKind.OLDHAM, Drive.A0),
+    (LoopKind.OLDHAM, Drive.B0),
 ]
 
 
@@ -55,8 +62,8 @@ def test_doubts_are_those_of_the_same_mechanism_in_other_units(
             v.loops.sign_error[:, None] / np.abs(getattr(v.loops, name)) for v in (here, there)
         ]
         # a few roundings more: the designs were multiplied
-        assert (shares[1] < 3.0 * shares[0]).all()
-        assert (shares[1] > shares[0] / 3.0).all()
+        assert (shares[1] <= 3.0 * shares[0]).all()
+        assert (shares[1] >= shares[0] / 3.0).all()
     assert all(np.array_equal(here.found[kind], there.found[kind]) for kind in DefectKind)
     assert there.transmission == pytest.approx(here.transmission, abs=1e-6, nan_ok=True)
 
@@ -85,14 +92,21 @@ def test_transmission_is_that_of_close_positions(kind: LoopKind, drive: Drive) -
     a, b, _ = pivots_at(some, drive, loops, first[:, None] + (last - first)[:, None] * share)
     if kind is LoopKind.SLIDER_CRANK and drive is Drive.A0:
         other = 1j * some.direction[:, None]
-    elif kind is LoopKind.INVERTED and drive is Drive.A0:
+    elif kind is LoopKind.OLDHAM:
+        other = 1j * some.direction_a[:, None] * (b - a)
+    elif kind is LoopKind.RAPSON and drive is Drive.B0:
+        other = 1j * some.direction_a[:, None]
+    elif kind is LoopKind.DOUBLE_SLIDER:
+        line = some.direction if drive is Drive.SLIDER_A else some.direction_a
+        other = 1j * line[:, None]
+    elif drive is not Drive.B0 and kind in (LoopKind.INVERTED, LoopKind.RAPSON):
         other = a - some.fixed_b[:, None]
     elif drive is Drive.A0:
         other = b - some.fixed_b[:, None]
     else:
         other = a - some.fixed_a[:, None]
     arm = b - a
-    if kind is LoopKind.INVERTED:
+    if kind.body_line:
         # the force of the block is across the line
         arm = 1j * some.direction[:, None] * arm
     cosine = np.abs((arm * other.conj()).real) / (np.abs(arm) * np.abs(other))
@@ -211,10 +225,19 @@ def test_obstacles_are_met_where_close_positions_meet_them(kind: LoopKind, drive
     first, last = verdicts.travel.first[sound], verdicts.travel.last[sound]
     places = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 1500)
     a, b, p = pivots_at(some, drive, loops, places)
-    fixed = np.broadcast_to(some.fixed_a[:, None], a.shape)
-    bars = [(fixed, a), (a, b), (a, p), (b, p)]
-    if kind is not LoopKind.SLIDER_CRANK:
-        bars.append((np.broadcast_to(some.fixed_b[:, None], a.shape), b))
+    one, other = (np.broadcast_to(z[:, None], a.shape) for z in (some.fixed_a, some.fixed_b))
+    bars = [(a, b), (a, p), (b, p)]
+    bars += [(one, a)] if "A0" in kind.pivots else []
+    bars += [(other, b)] if "B0" in kind.pivots else []
+    if kind.body_line:
+        # the body's lines through its blocks end in one corner
+        line = some.direction[:, None] * (b - a) / np.abs(b - a)
+        corner = a + 1j * cross(line, b - a) * line
+        if kind is LoopKind.OLDHAM:
+            own = some.direction_a[:, None] * (b - a) / np.abs(b - a)
+            corner = a + own * cross(b - a, line) / cross(own, line)
+            bars += [(corner, one)]
+        bars += [(corner, a), (corner, b), (corner, other)]
     centre = np.asarray(0.9 + 1.1j)
     gap = np.min([distances_to_segments(centre, *bar) for bar in bars], axis=0).min(axis=1) - 0.25
     assert 0 < met.sum() < len(met)

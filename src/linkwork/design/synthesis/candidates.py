@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
-__all__ = ["Candidates", "Drive", "LoopKind"]
+__all__ = ["GUIDED", "Candidates", "Drive", "LoopKind"]
 
 
 class LoopKind(Enum):
@@ -21,14 +21,49 @@ class LoopKind(Enum):
     FOUR_BAR = "four-bar"
     SLIDER_CRANK = "slider-crank"
     INVERTED = "inverted-slider-crank"
+    #: A and B slide on fixed lines: the elliptic trammel.
+    DOUBLE_SLIDER = "double-slider"
+    #: A slides on a fixed line, a line of the body in a block that swivels about B0.
+    RAPSON = "rapson-slide"
+    #: Two lines of the body slide in blocks that swivel about A0 and B0.
+    OLDHAM = "oldham-coupling"
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether A turns about A0."""
+        return self not in (LoopKind.DOUBLE_SLIDER, LoopKind.RAPSON, LoopKind.OLDHAM)
+
+    @property
+    def pivots(self) -> tuple[str, ...]:
+        """Its fixed pivots."""
+        if self is LoopKind.DOUBLE_SLIDER:
+            return ()
+        if self is LoopKind.RAPSON:
+            return ("B0",)
+        return ("A0",) if self is LoopKind.SLIDER_CRANK else ("A0", "B0")
+
+    @property
+    def body_line(self) -> bool:
+        """Whether a line of the body through B slides in a block at B0."""
+        return self in (LoopKind.INVERTED, LoopKind.RAPSON, LoopKind.OLDHAM)
+
+
+#: The names of mechanisms without a crank.
+GUIDED = tuple(kind.value for kind in LoopKind if not kind.has_crank)
 
 
 class Drive(Enum):
-    """The driven link: the crank at A0, the crank or swivelling block at B0, or the slider."""
+    """The driven link: the crank or swivelling block at A0 or B0, the slider, or one at A."""
 
     A0 = "A0"
     B0 = "B0"
     SLIDER = "slider"
+    SLIDER_A = "slider at A"
+
+    @property
+    def turns(self) -> bool:
+        """Whether the input is an angle."""
+        return self in (Drive.A0, Drive.B0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,6 +91,9 @@ class Candidates:
         holds.
     miss : (D,)
         How far the design passes the wanted positions, in their unit; 0 for exact ones.
+    direction_a : (D,) complex, optional
+        The unit vector of the line on which A slides, through ``fixed_a``; of an Oldham coupling
+        that of the body's line through A and A0, seen along B - A. 0 where A turns about A0.
     """
 
     kind: LoopKind
@@ -67,6 +105,11 @@ class Candidates:
     guided: ComplexArray
     error: Array
     miss: Array
+    direction_a: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+
+    def __post_init__(self) -> None:
+        if not self.direction_a.size:
+            object.__setattr__(self, "direction_a", np.zeros_like(self.direction))
 
     def __len__(self) -> int:
         return len(self.fixed_a)
@@ -74,14 +117,23 @@ class Candidates:
     @property
     def drives(self) -> tuple[Drive, ...]:
         """The links that can be driven."""
-        other = Drive.SLIDER if self.kind is LoopKind.SLIDER_CRANK else Drive.B0
-        return Drive.A0, other
+        sliding = self.kind in (LoopKind.SLIDER_CRANK, LoopKind.DOUBLE_SLIDER)
+        first = Drive.A0 if "A0" in self.kind.pivots else Drive.SLIDER_A
+        return first, Drive.SLIDER if sliding else Drive.B0
 
     @property
     def lines(self) -> ComplexArray:
-        """The unit vectors (D, N) of the lines of couplers of inverted slider-cranks."""
+        """The unit vectors (D, N) of the body's lines through B that slide in blocks at B0."""
+        return self._seen_along(self.direction)
+
+    @property
+    def lines_a(self) -> ComplexArray:
+        """Those of the body's lines through A that slide in blocks at A0."""
+        return self._seen_along(self.direction_a)
+
+    def _seen_along(self, direction: ComplexArray) -> ComplexArray:
         along = self.moving_b - self.moving_a
-        return np.asarray(self.direction[:, None] * along / np.abs(along))
+        return np.asarray(direction[:, None] * along / np.abs(along))
 
     def take(self, index: IndexArray | slice) -> Candidates:
         """Some of the designs, in the order of ``index``."""
@@ -89,9 +141,13 @@ class Candidates:
         return replace(self, **changes)
 
     def driven_at_b(self) -> Candidates:
-        """The same four-bars with the names of both sides exchanged."""
+        """The same designs with the names of both sides exchanged."""
+        # what is seen along B - A is seen along A - B
+        sign = -1.0 if self.kind is LoopKind.OLDHAM else 1.0
         return replace(
             self,
+            direction=sign * self.direction_a,
+            direction_a=sign * self.direction,
             fixed_a=self.fixed_b,
             fixed_b=self.fixed_a,
             moving_a=self.moving_b,
@@ -106,7 +162,8 @@ class Candidates:
         rounding = 8.0 * UNIT_ROUNDOFF * (abs(shift) + size * np.abs(self.moving_b).max(axis=1))
         return replace(
             self,
-            direction=self.direction * (1.0 if self.kind is LoopKind.INVERTED else factor / size),
+            direction=self.direction * (1.0 if self.kind.body_line else factor / size),
+            direction_a=self.direction_a * (1.0 if self.kind is LoopKind.OLDHAM else factor / size),
             error=self.error * size + rounding,
             **changes,
         )
@@ -121,4 +178,4 @@ class Candidates:
         return cls(kind=found[0].kind, **together)
 
 
-_ARRAYS = tuple(field.name for field in fields(Candidates) if field.name != "kind")
+_ARRAYS = tuple(f.name for f in fields(Candidates) if f.name != "kind")

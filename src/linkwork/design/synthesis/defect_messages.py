@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.arrays import Array
@@ -108,9 +108,9 @@ class _Words:
         unreached, wanted = int(self.verdicts.travel.unreached[self.k]), self.task.wanted
         if unreached < self.verdicts.travel.place.shape[1]:
             return f"position {unreached + 1} is outside the driven range", None
-        if wanted.turns_fully and self.drive is Drive.SLIDER:
+        if wanted.turns_fully and not self.drive.turns:
             return "the driven slider cannot turn fully", None
-        ends = " and ".join(self._input_text(end) for end in self._dead_points())
+        ends = " and ".join(map(self._input_text, filter(np.isfinite, self._dead_points())))
         return f"the driven range passes a dead point: the branch ends at {ends}", None
 
     def _transmission(self) -> tuple[str, None]:
@@ -123,9 +123,8 @@ class _Words:
         )
 
     def _pivots(self) -> tuple[str, None]:
-        pivots = {"A0": self.given.fixed_a[self.k]}
-        if self.given.kind is not LoopKind.SLIDER_CRANK:
-            pivots["B0"] = self.given.fixed_b[self.k]
+        both = {"A0": self.given.fixed_a[self.k], "B0": self.given.fixed_b[self.k]}
+        pivots = {name: both[name] for name in self.given.kind.pivots}
         places = " and ".join(f"{n} at ({z.real:.6g}, {z.imag:.6g})" for n, z in pivots.items())
         return f"fixed pivots {places} are not all in their region", None
 

@@ -8,15 +8,19 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.driven_loop import dot
 from linkwork.design.synthesis.dyads import KINDS, Dyads, Refusal
+from linkwork.design.synthesis.loop_limits import cross, dot
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
-__all__ = ["DyadSet", "PoseSet", "pair_dyads"]
+__all__ = ["DyadSet", "PoseSet", "pair_dyads", "pair_guides"]
 
 
-#: The mechanisms of a crank and a dyad of each of the KINDS.
-_KINDS = (LoopKind.FOUR_BAR, LoopKind.SLIDER_CRANK, LoopKind.INVERTED)
+#: The mechanisms of pairs of KINDS, by their places.
+_MADE = {
+    (0, 0): LoopKind.FOUR_BAR, (0, 1): LoopKind.SLIDER_CRANK, (0, 2): LoopKind.INVERTED,
+    (1, 1): LoopKind.DOUBLE_SLIDER, (1, 2): LoopKind.RAPSON, (2, 2): LoopKind.OLDHAM,
+}  # fmt: skip
+_MOST_GUIDED = 24  # dyads of each kind for them: thousands of pairs of a family differ little
 #: Relative: pivots nearer to each other are one pivot.
 _ONE_PIVOT = 1e-9
 
@@ -187,6 +191,34 @@ def pair_dyads(dyads: DyadSet, poses: PoseSet, leading: int = 0) -> list[Candida
     return found
 
 
+def pair_guides(dyads: DyadSet, poses: PoseSet) -> tuple[list[Candidates], int]:
+    """The mechanisms without a crank that pairs of dyads of one task make, and how many pairs make
+    none: pairs of parallel lines only translate the body, those with a common pivot only turn it.
+
+    Of many dyads of one kind some are taken, spread evenly.
+    """
+    guides = []
+    for kind in (1, 2):
+        own = np.flatnonzero(dyads.kind == kind)
+        if len(np.unique(dyads.task)) <= 1 and len(own) > _MOST_GUIDED:
+            own = own[np.linspace(0, len(own) - 1, _MOST_GUIDED).astype(int)]
+        guides.append(dyads.take(own))
+    found, immobile = [], 0
+    for one, other in ((0, 0), (0, 1), (1, 1)):
+        first, second = _pairs(guides[one].task, guides[other].task)
+        if one == other:
+            first, second = first[first < second], second[first < second]
+        left, right = guides[one].take(first), guides[other].take(second)
+        moves = np.ones(len(first), dtype=bool)
+        if one == other:
+            moves = np.abs(cross(left.normal, right.normal)) > _ONE_PIVOT
+            moves &= _differ(getattr(guides[one], ("moving", "fixed")[one]), first, second)
+        immobile += int((~moves).sum())
+        if moves.any():
+            found.append(_made(left.take(moves), right.take(moves), poses))
+    return found, immobile
+
+
 def _differ(pivots: ComplexArray, first: IndexArray, second: IndexArray) -> BoolArray:
     size = np.maximum(np.abs(pivots[first]), np.abs(pivots[second]))
     return np.asarray(np.abs(pivots[first] - pivots[second]) > _ONE_PIVOT * size)
@@ -202,11 +234,14 @@ def _pairs(tasks: IndexArray, others: IndexArray) -> tuple[IndexArray, IndexArra
 
 
 def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
+    """The mechanisms of dyads, of which the first carries A: a crank, or a guide of a pivot."""
     d, e = poses.points[crank.task], poses.turns[crank.task]
-    kind = _KINDS[int(other.kind[0])]
+    kind = _MADE[int(crank.kind[0]), int(other.kind[0])]
+    if kind is LoopKind.OLDHAM:
+        return _couplings(crank, other, poses)
     # the normal is on the left of the direction
     moving, direction = other.moving, -1j * other.normal
-    if kind is LoopKind.INVERTED:
+    if kind.body_line:
         # of the body's line: as far from the foot of A as the block comes, and to the same side
         pin = (other.fixed[:, None] - d) / e - crank.moving[:, None]
         reach = dot(direction[:, None], pin)
@@ -224,4 +259,37 @@ def _made(crank: DyadSet, other: DyadSet, poses: PoseSet) -> Candidates:
         guided=d,
         error=np.maximum(crank.error, other.error),
         miss=np.zeros(len(crank)),
+        direction_a=-1j * crank.normal,
+    )
+
+
+def _couplings(first: DyadSet, second: DyadSet, poses: PoseSet) -> Candidates:
+    """Oldham couplings: A and B on the body's lines, as far from their crossing as the blocks come
+    and to the same side.
+    """
+    d, e = poses.points[first.task], poses.turns[first.task]
+    n, m = first.normal, second.normal
+    sine = cross(n, m)
+    centre = (dot(n, first.moving) * (-1j * m) + dot(m, second.moving) * (1j * n)) / sine
+    ends, lines = [], []
+    for own in (first, second):
+        along = -1j * own.normal
+        reach = dot(along[:, None], (own.fixed[:, None] - d) / e - centre[:, None])
+        reach = np.take_along_axis(reach, np.abs(reach).argmax(axis=1)[:, None], axis=1)[:, 0]
+        ends.append(centre + reach * along)
+        lines.append(along * np.sign(reach))
+    a, b = ends
+    seen = np.abs(b - a) / (b - a)
+    return Candidates(
+        kind=LoopKind.OLDHAM,
+        fixed_a=first.fixed,
+        fixed_b=second.fixed,
+        direction=lines[1] * seen,
+        moving_a=d + a[:, None] * e,
+        moving_b=d + b[:, None] * e,
+        guided=d,
+        # the crossing of two lines moves farther than these
+        error=4.0 * np.maximum(first.error, second.error) / np.abs(sine),
+        miss=np.zeros(len(first)),
+        direction_a=lines[0] * seen,
     )

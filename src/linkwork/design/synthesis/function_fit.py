@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from linkwork.design.synthesis.driven_loop import dot
+from linkwork.design.synthesis.loop_limits import dot
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 

@@ -10,7 +10,6 @@ import numpy as np
 from linkwork.design.synthesis.burmester import sampled_dyads
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.closed_forms import solve_with_bound
-from linkwork.design.synthesis.driven_loop import cross
 from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
 from linkwork.design.synthesis.dyads import solve_five_poses
 from linkwork.design.synthesis.found import Found
@@ -21,6 +20,7 @@ from linkwork.design.synthesis.function_fit import (
     slider_errors,
 )
 from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.completeness import Completeness

@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import cross, dot
+from linkwork.design.synthesis.guide_loops import meeting
+from linkwork.design.synthesis.loop_limits import cross, dot
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
@@ -38,7 +39,8 @@ class Design:
     points : Mapping[str, complex]
         A0, B0, A, B, P of a four-bar; A0, S, T, A, B, P of a slider-crank, with S, T on the line of
         the slider, S where its displacement is zero; A0, B0, A, B, P of an inverted one, with B on
-        the coupler's line, and C, the foot of A, if A is not on it [length].
+        the coupler's line, and C, the foot of A, if A is not on it. U, V on the line of a slider at
+        A; K, where the lines of an Oldham coupling cross [length].
     inputs : tuple of float
         The input at the positions, unwrapped [rad or length].
     start, stop : float
@@ -85,18 +87,26 @@ class Design:
             for side, moving, fixed, angle in pinned:
                 if ((points[moving] - points[fixed]) * np.exp(-1j * angle)).real < 0:
                     backward.append(side)
-        if given.kind is LoopKind.SLIDER_CRANK:
-            line, direction = points.pop("B0"), given.direction[k]
-            along = dot(direction, given.moving_b[k] - line)
-            reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
-            points |= {"S": line, "T": line + reach * direction}
-        if given.kind is LoopKind.INVERTED:
+        guides = (
+            ("B0", "S", "T", given.direction[k], given.moving_b[k]),
+            ("A0", "U", "V", given.direction_a[k], given.moving_a[k]),
+        )
+        for name, start, end, direction, moving in guides:
+            if name not in given.kind.pivots:
+                line = points.pop(name)
+                along = dot(direction, moving - line)
+                reach = max(np.abs(along).max(), abs(points["B"] - points["A"]))
+                points |= {start: line, end: line + reach * direction}
+        if given.kind is LoopKind.OLDHAM:
+            own = (points["A0"], given.lines_a[k, 0], points["B0"], given.lines[k, 0])
+            points["K"] = meeting(*map(np.asarray, own))
+        elif given.kind.body_line:
             # the foot of A on the line of the coupler, if A is not on it
             line = given.lines[k, 0]
             away = cross(line, points["B"] - points["A"])
             if abs(away) > _ON_LINE * abs(points["B"] - points["A"]):
                 points["C"] = points["A"] + 1j * away * line
-        if drive is not Drive.SLIDER:
+        if drive.turns:
             # measured as the file measures it, and in the first turn to begin with
             shift = np.pi if drive in backward else 0.0
             shift -= 2.0 * np.pi * np.floor((ends[0] + shift) / (2.0 * np.pi) + _SAME_TURN)
@@ -118,6 +128,8 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     ``output``: the name of the output of a function, whose structural error is an output of the
     mechanism.
     """
+    if not design.kind.has_crank:
+        return _guided(design, task, name)
     z = design.points
     crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
     if design.drive is Drive.B0:
@@ -168,6 +180,41 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     )
 
 
+def _guided(design: Design, task: Task, name: str) -> Linkage:
+    """The description of a mechanism of two guides."""
+    z, kind = design.points, design.kind
+    guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
+    corners = ("A", "B") if guided != "P" else ("A", "B", "P")
+    foot = tuple(key for key in ("C", "K") if key in z)
+    ground = [*kind.pivots, *(key for key in "UVST" if key in z)]
+    ends = {"A": "K", "B": foot[0] if foot else "A"}  # of the body's lines through A and B
+    sliders = []
+    for moving, pivot, line, own in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
+        block = "block_a" if moving == "A" else "block"
+        if pivot in kind.pivots:
+            way, carried, on = (ends[moving], moving), pivot, "coupler"
+        else:
+            way, carried, on = (line[0], line[1]), moving, GROUND
+        sliders.append(Slider(name=own, link=block, points=(carried,), on=on, line=way))
+    bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
+    return Linkage(
+        name=name,
+        purpose=task.purpose,
+        length=task.length,
+        angle=task.angle,
+        points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
+        links={
+            GROUND: tuple(ground),
+            "coupler": (*corners, *foot),
+            **{slider.link: slider.points for slider in sliders},
+        },
+        lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
+        sliders=tuple(sliders),
+        inputs=(_input(design, task.angle),),
+        trace=(guided,),
+    )
+
+
 def _bar(design: Design, side: Drive) -> tuple[str, str]:
     """The ends of a link, in the direction in which its angle is measured."""
     fixed, moving = ("A0", "A") if side is Drive.A0 else ("B0", "B")
@@ -176,15 +223,18 @@ def _bar(design: Design, side: Drive) -> tuple[str, str]:
 
 def _input(design: Design, angle: AngleUnit) -> Input:
     span = design.stop - design.start
-    if design.drive is Drive.SLIDER:
+    if not design.drive.turns:
         step = span / _STEPS
-        return Input(slider=_GUIDE, start=design.start, stop=design.stop, step=step)
+        own = "slide_a" if design.drive is Drive.SLIDER_A else _GUIDE
+        return Input(slider=own, start=design.start, stop=design.stop, step=step)
     start, stop = angle.from_radians(design.start), angle.from_radians(design.stop)
     count = max(1, math.ceil(abs(span) / _STEP - _SAME_TURN))
     if math.isclose(abs(span), FULL_TURN, rel_tol=_SAME_TURN):
         stop = start + math.copysign(angle.turn, span)
     # so many equal steps that the last row is the last position
-    swivels = design.kind is LoopKind.INVERTED and design.drive is Drive.B0
-    return Input(
-        link="block" if swivels else "crank", start=start, stop=stop, step=(stop - start) / count
-    )
+    driven = "crank"
+    if design.kind.body_line and design.drive is Drive.B0:
+        driven = "block"
+    elif not design.kind.has_crank:
+        driven = "block_a"
+    return Input(link=driven, start=start, stop=stop, step=(stop - start) / count)

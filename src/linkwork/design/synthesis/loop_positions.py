@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import DrivenLoops, cross, dot
+from linkwork.design.synthesis.guide_loops import guide_pivots_at
+from linkwork.design.synthesis.loop_limits import DrivenLoops, cross, dot
 from linkwork.foundation.arrays import Array, ComplexArray
 
 __all__ = ["pivots_at"]
@@ -28,6 +29,8 @@ def pivots_at(
     A, B, P : (D, K) complex
         NaN where the loop cannot be closed.
     """
+    if not given.kind.has_crank:
+        return guide_pivots_at(given, drive, loops, place)
     if given.kind is LoopKind.INVERTED:
         return _inverted_at(given, drive, loops, place)
     other = given.driven_at_b() if drive is Drive.B0 else given

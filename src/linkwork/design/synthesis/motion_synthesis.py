@@ -12,8 +12,8 @@ from linkwork.design.synthesis.burmester import (
     sampled_dyads,
     sliding_dyad,
 )
-from linkwork.design.synthesis.candidates import Candidates, Drive
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet, pair_dyads
+from linkwork.design.synthesis.candidates import GUIDED, Candidates, Drive
+from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet, pair_dyads, pair_guides
 from linkwork.design.synthesis.dyads import FIVE, Refusal, solve_five_poses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.pose_families import (
@@ -57,14 +57,14 @@ def solve_motion(task: Task, wishes: Wishes) -> Found:
     family = _family(task, wishes, points, angles)
     dyads = family.dyads
     poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
-    made = _wanted(task, pair_dyads(dyads, poses, family.leading))
+    made, told = _pairs(task, dyads, poses, family.leading)
     return Found(
         candidates=tuple(made),
         complex=len(dyads),
         real=len(dyads),
         proved=int((dyads.refusal == Refusal.NONE.code).sum()),
         completeness=Completeness.SAMPLED,
-        message=family.message,
+        message=family.message + told,
         dyads=dyads,
         drives=(Drive.A0,) if family.timed else tuple(Drive),
     )
@@ -113,9 +113,20 @@ class _Family:
     timed: bool = False
 
 
-def _wanted(task: Task, made: list[Candidates]) -> list[Candidates]:
-    """The kinds of mechanisms that the task names."""
-    return [part for part in made if part.kind.value in task.mechanisms]
+def _pairs(
+    task: Task, dyads: DyadSet, poses: PoseSet, leading: int = 0
+) -> tuple[list[Candidates], str]:
+    """The mechanisms of the kinds that the task names, and what is said of pairs that are none."""
+    made, told = pair_dyads(dyads, poses, leading), ""
+    asked = any(name in GUIDED for name in task.mechanisms)
+    if asked and leading:
+        told = "; given pivots and timing are those of cranks: no mechanisms of two guides are made"
+    elif asked:
+        guided, immobile = pair_guides(dyads, poses)
+        made += guided
+        if immobile:
+            told = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
+    return [part for part in made if part.kind.value in task.mechanisms], told
 
 
 def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
@@ -124,7 +135,8 @@ def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
     chosen = PoseSet(points=tasks.points, turns=np.exp(1j * tasks.angles))
     dyads = DyadSet.of_solutions(solved, chosen)
     made = []
-    for part in _wanted(task, pair_dyads(dyads, chosen)):
+    pairs, told = _pairs(task, dyads, chosen)
+    for part in pairs:
         kept = with_misses(task, points, angles, part)
         made += [] if kept is None else [kept]
     own = dyads.take(dyads.task == 0)
@@ -145,7 +157,7 @@ def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:
         real=len(own),
         proved=int((own.refusal == Refusal.NONE.code).sum()),
         completeness=grade,
-        message=message,
+        message=message + told,
         dyads=own,
     )
 

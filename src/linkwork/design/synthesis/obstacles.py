@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import DrivenLoops
+from linkwork.design.synthesis.guide_loops import guide_speeds, meeting
+from linkwork.design.synthesis.loop_limits import DrivenLoops, cross
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.travel import Travel
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
@@ -68,16 +69,33 @@ def _gaps(
 ) -> Array:
     """The smallest distances of links from circles, at one place of each design, (D,)."""
     a, b, p = (z[:, 0] for z in pivots_at(given, drive, loops, place[:, None]))
-    ends: list[tuple[ComplexArray, ComplexArray]] = [(given.fixed_a, a), (a, b), (a, p), (b, p)]
-    if given.kind is not LoopKind.SLIDER_CRANK:
-        # a rocker, or the coupler from B to the block
-        ends.append((given.fixed_b, b))
+    ends: list[tuple[ComplexArray, ComplexArray]] = [(a, b), (a, p), (b, p)]
+    # a crank, a rocker, or the body from its end to the block
+    both = {"A0": (given.fixed_a, a), "B0": (given.fixed_b, b)}
+    ends += [both[name] for name in given.kind.pivots]
+    if given.kind.body_line:
+        corner = _corner(given, a, b)
+        ends += [(corner, a), (corner, b), (corner, given.fixed_b)]
+        if given.kind is LoopKind.OLDHAM:
+            ends.append((corner, given.fixed_a))
     gaps = [
         distances_to_segments(np.asarray(x + 1j * y), start, end) - radius
         for x, y, radius in circles
         for start, end in ends
     ]
     return np.asarray(np.min(gaps, axis=0))
+
+
+def _corner(given: Candidates, a: ComplexArray, b: ComplexArray) -> ComplexArray:
+    """Where the body's line through B begins: the foot of A, or the crossing with that through A,
+    at places of A and B (D,).
+    """
+    first, second, line = given.moving_a[:, 0], given.moving_b[:, 0], given.lines[:, 0]
+    if given.kind is LoopKind.OLDHAM:
+        start = meeting(given.fixed_a, given.lines_a[:, 0], given.fixed_b, line)
+    else:
+        start = first + 1j * cross(line, second - first) * line
+    return np.asarray(a + (start - first) * (b - a) / (second - first))
 
 
 def _fastest(
@@ -92,9 +110,10 @@ def _fastest(
         # the coupler turns fastest where the driving force is farthest from the line of the rocker
         lever = 1.0 if drive is Drive.SLIDER else pivot
         turning = lever / (np.abs(b - a) * sine)
-        if given.kind is LoopKind.INVERTED:
-            pivot, turning = _fastest_inverted(given, drive, loops, first, last)
-            a, b = given.moving_a[:, 0], given.moving_b[:, 0]
+        if given.kind is LoopKind.INVERTED or not given.kind.has_crank:
+            bounds = _fastest_inverted if given.kind.has_crank else guide_speeds
+            pivot, turning = bounds(given, drive, loops, first, last)
+            a, b, p = given.moving_a[:, 0], given.moving_b[:, 0], given.guided[:, 0]
         fastest = pivot + np.maximum(np.abs(b - a), np.abs(p - a)) * turning
     return np.where(np.isfinite(fastest), fastest, np.inf)
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.driven_loop import cross
 from linkwork.design.synthesis.dyads import FIVE
+from linkwork.design.synthesis.guide_loops import meeting
+from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
@@ -103,6 +104,17 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
     coupler = (given.moving_b[:, :1] - given.moving_a[:, :1]) * turns
     arm = (given.guided[:, :1] - given.moving_a[:, :1]) * turns
     crank = np.abs(given.moving_a[:, :1] - given.fixed_a[:, None])
+    if not given.kind.has_crank:
+        # A and B are on lines: fixed ones, or lines of the body through fixed pivots
+        line_a = given.direction_a[:, None] * np.ones_like(turns)
+        line_b = given.direction[:, None] * np.ones_like(turns)
+        if given.kind is LoopKind.OLDHAM:
+            line_a = given.lines_a[:, :1] * turns
+        if given.kind.body_line:
+            line_b = given.lines[:, :1] * turns
+        with np.errstate(all="ignore"):
+            a = meeting(given.fixed_a[:, None], line_a, given.fixed_b[:, None] - coupler, line_b)
+        return _moved_to(given, a, a + coupler, a + arm)
     # A is on its circle, and B on its circle or line moved back by the coupler
     centre = given.fixed_b[:, None] - coupler
     with np.errstate(invalid="ignore"):
@@ -126,6 +138,11 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
     pivots = [given.fixed_a[:, None] + way for way in ways]
     misses = [np.nan_to_num(np.abs(a + arm - points), nan=np.inf) for a in pivots]
     a = np.where(misses[0] <= misses[1], *pivots)
+    return _moved_to(given, a, a + coupler, a + arm)
+
+
+def _moved_to(
+    given: Candidates, a: ComplexArray, b: ComplexArray, guided: ComplexArray
+) -> Candidates:
     closes = np.isfinite(a).all(axis=1)
-    made = replace(given, moving_a=a, moving_b=a + coupler, guided=a + arm)
-    return made.take(np.flatnonzero(closes))
+    return replace(given, moving_a=a, moving_b=b, guided=guided).take(np.flatnonzero(closes))

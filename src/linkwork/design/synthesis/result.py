@@ -224,7 +224,7 @@ class SynthesizedDesign:
     def first_input(self) -> float:
         """The input at the first position [file units]."""
         value = self.design.inputs[0]
-        if self.drive is Drive.SLIDER:
+        if not self.drive.turns:
             return value
         return self.group.task.angle.from_radians(value)
 

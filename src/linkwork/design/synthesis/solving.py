@@ -164,7 +164,7 @@ def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
     if wanted.range is None:
         return None
     start, stop = wanted.range
-    if drive is not Drive.SLIDER:
+    if drive.turns:
         start, stop = task.in_radians(start), task.in_radians(stop)
     return Range(start=start, stop=stop)
 

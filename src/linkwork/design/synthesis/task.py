@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
+from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_conditions import (
@@ -55,7 +56,8 @@ class Task:
         Unit of lengths.
     angle : AngleUnit
     mechanisms : tuple of str
-        The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too.
+        The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too;
+        of poses, and only if named, those without a crank.
     positions : tuple of PrecisionPosition
         In order of travel.
     given : Given
@@ -106,10 +108,11 @@ class Task:
         if self.kind not in KINDS:
             yield ("task",), f"must be one of {', '.join(KINDS)}, got {as_told(self.kind)}"
         for k, name in enumerate(self.mechanisms):
-            if name not in MECHANISMS and self.kind != "improve":
-                known = " or ".join(f'"{known}"' for known in MECHANISMS)
+            if name not in (*MECHANISMS, *GUIDED) and self.kind != "improve":
+                known = " or ".join(f'"{known}"' for known in (*MECHANISMS, *GUIDED))
                 yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
-            if name == MECHANISMS[2] and self.kind != "motion" and self.mechanisms != MECHANISMS:
+            of_poses = name in (MECHANISMS[2], *GUIDED) and self.mechanisms != MECHANISMS
+            if of_poses and self.kind not in ("motion", "improve"):
                 yield ("mechanism", k), "is made from poses only: leave it out"
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:

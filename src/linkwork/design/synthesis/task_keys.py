@@ -243,7 +243,8 @@ TASK = Form(
         Key(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
-            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; a file to improve',
+            'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; of two guides, if named: '
+            '"double-slider", "rapson-slide", "oldham-coupling"; a file to improve',
         ),
         _POSITIONS,
         _GIVEN,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.driven_loop import DrivenLoops
+from linkwork.design.synthesis.loop_limits import DrivenLoops
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 
@@ -146,7 +146,7 @@ def _driven_range(
         return np.where(forward, low, high), np.where(forward, high, low), nowhere, sure
     if wanted.turn:
         first = place[:, 0]
-        return first, first + FULL_TURN, np.where(free, NOWHERE, count), sure
+        return first, first + FULL_TURN, np.where(free & loops.turns, NOWHERE, count), sure
     first = wanted.start - loops.origin
     last = first + (wanted.stop - wanted.start)
     if loops.turns:

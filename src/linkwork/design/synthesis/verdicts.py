@@ -8,7 +8,8 @@ from enum import Enum
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import DrivenLoops, driven_loops
+from linkwork.design.synthesis.driven_loop import driven_loops
+from linkwork.design.synthesis.loop_limits import DrivenLoops
 from linkwork.design.synthesis.obstacles import meets_obstacle
 from linkwork.design.synthesis.travel import NOWHERE, Travel, travel_of
 from linkwork.design.synthesis.wishes import Wishes
@@ -51,7 +52,7 @@ class Verdicts:
         A lower bound of the transmission angle over the driven range [rad]; NaN where the range is
         not defined.
     size : (D,)
-        The longest link or distance of fixed pivots [length].
+        The longest link or distance of fixed pivots, of two guides also the longest arm [length].
     shortest : (D,)
         The shortest link [length].
     arm : (D,)
@@ -114,6 +115,9 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     arm = np.maximum(
         np.abs(given.guided - given.moving_a)[:, 0], np.abs(given.guided - given.moving_b)[:, 0]
     )
+    if not given.kind.has_crank:
+        # a rod between two guides may be short, and hold the guided point far away
+        size = np.maximum(size, arm)
     found[DefectKind.LENGTHS] = open_ & ~(wishes.allows(shortest, size) & (arm <= wishes.longest))
     found[DefectKind.TOLERANCE] = open_ & wishes.exceeds(given.guided, given.error).any(axis=1)
     # a design with one other defect tells what that wish costs, if nothing else is wrong
@@ -138,8 +142,14 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
 def _lengths(given: Candidates) -> Array:
     """The lengths of crank, coupler, and of a four-bar rocker and ground, (D, 2 to 4).
 
-    The coupler of an inverted slider-crank is as long as its farthest position needs.
+    A coupler that slides in a block is as long as its farthest position needs.
     """
+    if given.kind is LoopKind.RAPSON:
+        return np.asarray(np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)[:, None])
+    if not given.kind.has_crank:
+        rod = np.abs(given.moving_b[:, 0] - given.moving_a[:, 0])
+        ground = np.abs(given.fixed_b - given.fixed_a)
+        return np.stack([rod, ground] if given.kind is LoopKind.OLDHAM else [rod], axis=1)
     if given.kind is LoopKind.INVERTED:
         reach = np.abs(given.fixed_b[:, None] - given.moving_a).max(axis=1)
         ground = np.abs(given.fixed_b - given.fixed_a)
@@ -152,8 +162,8 @@ def _lengths(given: Candidates) -> Array:
 
 def _pivots_inside(given: Candidates, wishes: Wishes) -> BoolArray:
     """Whether all fixed pivots are in the region or, to their errors, on its border."""
-    pivots = [given.fixed_a]
-    if given.kind is not LoopKind.SLIDER_CRANK:
-        pivots.append(given.fixed_b)
-    inside = [wishes.within_region(pivot, given.error) for pivot in pivots]
-    return np.asarray(np.all(inside, axis=0))
+    inside = np.ones(len(given), dtype=bool)
+    for name, pivot in (("A0", given.fixed_a), ("B0", given.fixed_b)):
+        if name in given.kind.pivots:
+            inside &= wishes.within_region(pivot, given.error)
+    return inside

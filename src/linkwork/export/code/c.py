@@ -11,6 +11,15 @@ _WORDS = """
     inline int long register restrict return short signed sizeof static struct switch typedef
     union unsigned void volatile while bool true false nan infinity null main
 """
+# Macros of the headers, also those beyond the standard that compilers add by default.
+_MACROS = """
+    bufsiz eof filename_max fopen_max fp_fast_fma fp_fast_fmaf fp_fast_fmal fp_ilogb0 fp_ilogbnan
+    fp_infinite fp_nan fp_normal fp_subnormal fp_zero fpclassify huge_val huge_valf huge_vall
+    isfinite isgreater isgreaterequal isinf isless islessequal islessgreater isnan isnormal
+    isunordered l_ctermid l_tmpnam linux m_1_pi m_2_pi m_2_sqrtpi m_e m_ln10 m_ln2 m_log10e
+    m_log2e m_pi m_pi_2 m_pi_4 m_sqrt1_2 m_sqrt2 math_errexcept math_errhandling math_errno
+    p_tmpdir seek_cur seek_end seek_set signbit stderr stdin stdout tmp_max unix
+"""
 _SIDES = """\
 /* {{about}}: F differentiated {times}, without the {left} derivatives of its own unknowns. */
 static void {left}_sides_{{k}}(const double u[M], const double q[], const double d1[],
@@ -73,6 +82,6 @@ C = Syntax(
     row=("{", ", ", "}"),
     rows=("{\n    ", ", ", "\n}"),
     empty="0",
-    words=frozenset(_WORDS.split()),
+    words=frozenset((_WORDS + _MACROS).split()),
     comments=r"/\*.*?\*/",
 )  # fmt: skip

@@ -12,7 +12,8 @@ _WORDS = """
     function goto if implements import in instanceof int interface let long native new null
     package private protected public return short static super switch synchronized this throw
     throws transient true try typeof undefined var void volatile while with yield nan infinity
-"""
+    document location top window
+"""  # the last four: names that a page cannot declare
 _CLOSURE = """\
 /** {about}: F, and the Jacobian by its unknowns. */
 function closure{k}(u, q) {{

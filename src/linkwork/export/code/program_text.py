@@ -19,8 +19,11 @@ __all__ = ["ProgramText"]
 _WIDTH = 90  # of a line of numbers
 _FITS = 1e-9  # of the longest link: as far may a redundant link be from its length
 _SECTION = re.compile(r"^([ %*]*)@\{(\w+)\}$|@\{(\w+)\}", re.MULTILINE)
-#: What would end a comment in some language, or escape something.
-_ENDS = (("*/", "* /"), ("*)", "* )"), ('"""', "'"), ("\\", "/"))
+#: What begins or ends a comment in some language, escapes, or names a section of a template.
+_ENDS = (
+    ("\\", "/"), ("*/", "* /"), ("/*", "/ *"), ("*)", "* )"), ("(*", "( *"), ('"""', "'"),
+    ("@{", "@ {"),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from numpy.polynomial import Chebyshev
 
 from linkwork.export.robot.joint_tree import TreeJoint
 from linkwork.export.robot.robot import Robot
-from linkwork.foundation.arrays import Array, CountArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.rounding import EPSILON
 from linkwork.results.motion import LimitKind, Motion
@@ -17,6 +17,7 @@ from linkwork.results.motion import LimitKind, Motion
 __all__ = ["Couplings", "JointPolynomial", "couplings_of"]
 
 _HIGHEST = 40
+_NEAR = 1e-9  # rad or m
 _ENOUGH = 1e-10  # rad or m: no higher degree is tried
 
 
@@ -61,23 +62,29 @@ def couplings_of(robot: Robot, motion: Motion) -> Couplings:
         )
     values = robot.values(motion)
     x, rate = values.pop(leading.name)
-    rows = _rows(x, motion)
+    with np.errstate(all="ignore"):
+        slopes = {name: own_rate / rate for name, (_, own_rate) in values.items()}
+    # at a dead point slopes are infinite, at rest they are unknown
+    known = np.logical_and.reduce(np.isfinite([x, *slopes.values()]))
+    rows = _rows(x, motion, known)
     if len(rows) < 5:
         raise InputError(
             f"{len(rows)} positions around the start are too few for the polynomials of a URDF "
             "file: give a table with more rows"
         )
     joints, condition = {}, float(np.max(motion.condition[rows]))
-    for name, (y, own_rate) in values.items():
-        joints[name] = _fit(x[rows], y[rows], own_rate[rows] / rate[rows], condition)
     limits, stopped = _limits(robot, motion, leading, x[rows], int(rows[0]))
+    # dead points too, where slopes are unknown
+    inside = motion.found & (x >= limits[0] - _NEAR) & (x <= limits[1] + _NEAR)
+    for name, (y, _) in values.items():
+        joints[name] = _fit(x[rows], y[rows], slopes[name][rows], condition, y[inside])
     return Couplings(leading=leading, limits=limits, stopped=stopped, joints=joints)
 
 
-def _rows(x: Array, motion: Motion) -> CountArray:
+def _rows(x: Array, motion: Motion, known: BoolArray) -> CountArray:
     """The rows around the start position without a gap, by increasing value of the joint."""
     asked = np.flatnonzero(motion.asked)
-    good = motion.found[asked] & np.isfinite(x[asked])
+    good = motion.found[asked] & known[asked]
     if not good.any():
         return asked[:0]
     here = int(np.argmin(np.where(good, np.abs(x[asked]), np.inf)))
@@ -88,7 +95,7 @@ def _rows(x: Array, motion: Motion) -> CountArray:
     return part[np.argsort(x[part])]
 
 
-def _fit(x: Array, y: Array, slope: Array, condition: float) -> JointPolynomial:
+def _fit(x: Array, y: Array, slope: Array, condition: float, every: Array) -> JointPolynomial:
     """The series of the lowest degree that is accurate enough, or the most accurate one."""
     best: tuple[float, Chebyshev] | None = None
     for degree in range(1, min(_HIGHEST, len(x) // 4) + 1):
@@ -106,7 +113,7 @@ def _fit(x: Array, y: Array, slope: Array, condition: float) -> JointPolynomial:
         error=best[0],
         line=(factor, offset),
         line_error=_error(line, x, y, slope, condition),
-        range=(float(y.min()), float(y.max())),
+        range=(float(every.min()), float(every.max())),
     )
 
 
@@ -131,6 +138,8 @@ def _limits(
     values, rates = robot.values(motion)[leading.name]
     slope = float(np.sign(rates[row])) * scale
     ends, stopped = [float(x[0]), float(x[-1])], [False, False]
+    if robot.model.untimed is not None:  # limits are given by time
+        return (ends[0], ends[1]), (False, False)
     step = 1.001 * float(np.diff(x).max())
     for limit in motion.limits:
         at = values[row] + slope * (limit.input - own[row])

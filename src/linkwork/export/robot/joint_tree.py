@@ -154,8 +154,12 @@ class JointTree:
     def value(self, geometry: Geometry, joint: TreeJoint) -> tuple[Array, Array]:
         """The value of a joint, not yet from zero, and its derivative, [rad] or [length], (B,)."""
         if joint.edge.kind is PairKind.SLIDE:
-            jet = geometry.own(joint.edge.name)
-            return joint.sign * jet.v, joint.sign * jet.d1
+            jet, rate = geometry.own(joint.edge.name), None
+            inputs = [each.name for each in geometry.driven.equations.inputs]
+            if joint.edge.name in inputs:  # of inputs a motion knows the rate of the leading one
+                rate = geometry.input_rates[inputs.index(joint.edge.name)]
+            d1 = jet.d1 if rate is None else rate + np.zeros_like(jet.v)
+            return joint.sign * jet.v, joint.sign * d1
         child, parent = (self.angle(geometry, body) for body in (joint.child, joint.parent))
         turn = np.array(child[0] - parent[0])
         # a row without a position must not take the others with it

@@ -76,10 +76,10 @@ def _constraints(root: Tree.Element, robot: Robot) -> None:
         return
     equality = element(root, "equality")
     for edge in tree.closing:
-        first, second = edge.bodies
         # of welds MuJoCo takes the relative pose in the start position
         if edge.kind is PairKind.FIXED:
-            element(equality, "weld", body1=first, body2=second)
+            own = ("world" if body == GROUND else body for body in edge.bodies)
+            element(equality, "weld", **dict(zip(("body1", "body2"), own, strict=True)))
         else:
             a, b = (f"{body}/{edge.point}" for body in edge.bodies)
             element(equality, "connect", site1=a, site2=b)

@@ -15,6 +15,7 @@ from linkwork.results.motion import Motion
 
 __all__ = ["urdf_of"]
 
+_NEAR = 1e-9  # rad or m
 _FASTEST, _STRONGEST = "100.0", "1000.0"  # URDF demands both limits
 
 
@@ -40,7 +41,7 @@ def urdf_of(robot: Robot, motion: Motion) -> str:
 def _notes(couplings: Couplings) -> list[str]:
     low, high = couplings.limits
     ends = ["dead point" if stop else "end of the table" for stop in couplings.stopped]
-    return [
+    lines = [
         "URDF has no loops: joints follow the driven one; mimic is a straight line.",
         "Each element coupling has the true relation: coefficients c_k of Chebyshev polynomials",
         "T_k(s) of s = (2 x - low - high)/(high - low), x the value of the driven joint;",
@@ -49,6 +50,9 @@ def _notes(couplings: Couplings) -> list[str]:
         f"({ends[1]}).",
         "Limits of effort and velocity are placeholders.",
     ]
+    if not low <= _NEAR or not high >= -_NEAR:
+        lines.append("The start position is not between these limits.")
+    return lines
 
 
 def _link(root: Tree.Element, robot: Robot, joint: TreeJoint) -> None:

@@ -82,8 +82,9 @@ class DesignShown:
 class DesignFound:
     """A design at the positions and in between: x, y of A, B and P, one row after another.
 
-    ``fixed``: A0 and B0; of a slider-crank A0 and two points of its line. ``line``: of an inverted
-    slider-crank, the direction of the line of its coupler from that of AB [rad]. ``at``: a row for
+    ``fixed``: A0 and B0; of a slider-crank A0 and two points of its line; of a slider at A a point
+    of its line in place of A0. ``line``: of a coupler that slides through B0, the direction of its
+    line from that of AB [rad]. ``at``: a row for
     each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
     each position in it. ``curve``: the points of P on the branch of the first position.
     """

@@ -126,7 +126,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
 
 def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[Point]:
     yield _point(own.fixed_a[0])
-    if own.kind is not LoopKind.SLIDER_CRANK:
+    if "B0" in own.kind.pivots:
         yield _point(own.fixed_b[0])
         return
     along = ((at[1] - own.fixed_b[0]) * own.direction[0].conj()).real
@@ -136,8 +136,10 @@ def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[Point]:
 
 
 def _line(own: Candidates) -> float | None:
-    """The direction of the line of an inverted slider-crank's coupler from that of AB [rad]."""
-    if own.kind is not LoopKind.INVERTED:
+    """The direction of the coupler's line through B0 from that of AB [rad]; of an Oldham coupling
+    B is the end of that line.
+    """
+    if own.kind not in (LoopKind.INVERTED, LoopKind.RAPSON):
         return None
     return float(np.angle(own.lines[0, 0] / (own.moving_b[0, 0] - own.moving_a[0, 0])))
 
@@ -150,7 +152,7 @@ def _rows(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:
 
 def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, ...], ...]:
     """The guided point on the branch of the first position, in pieces x, y, x, y, …"""
-    if drive is Drive.SLIDER:
+    if not drive.turns:
         place = np.linspace(*_slider_range(own), _CURVE)
     else:
         place = np.linspace(-np.pi, np.pi, _CURVE)
@@ -159,7 +161,8 @@ def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, .
 
 
 def _slider_range(own: Candidates) -> tuple[float, float]:
-    reach = abs(own.moving_a[0, 0] - own.fixed_a[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
+    other = own.fixed_a if own.kind.has_crank else own.fixed_b
+    reach = abs(own.moving_a[0, 0] - other[0]) + abs(own.moving_b[0, 0] - own.moving_a[0, 0])
     return -float(reach), float(reach)
 
 
