@@ -45,6 +45,10 @@ def test_a_wished_transmission_angle_holds_and_costs_exactness() -> None:
     assert free.delivered[0].transmission < 29.9
     assert wished.delivered[0].transmission >= 30.0
     assert wished.delivered[0].error > free.delivered[0].error
+    assert "transmission tested in the rows of the table" in wished.message
+    assert "rows" not in free.message
+    data = [found.to_dict()["designs"][0]["tested_in_rows"] for found in (free, wished)]
+    assert data == [[], ["transmission"]]
 
 
 def test_designs_that_break_wishes_are_refused_and_the_costliest_is_named() -> None:

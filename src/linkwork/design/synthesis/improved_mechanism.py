@@ -242,6 +242,17 @@ class ImprovedMechanism:
                         return True
         return False
 
+    @property
+    def tested_in_rows(self) -> tuple[str, ...]:
+        """Wishes that are tested in the rows of the table only.
+
+        The motion between the rows is proved, and with it branch, order and range; lengths and
+        fixed pivots do not change.
+        """
+        wanted = self.task.wanted
+        asked = ((TRANSMISSION_ANGLE.word, wanted.transmission), ("clear_of", wanted.obstacles))
+        return tuple(word for word, given in asked if given)
+
     def to_dict(self, file: str | None = None) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
         return {
@@ -254,6 +265,7 @@ class ImprovedMechanism:
             "size": self.size,
             "error": self.error,
             "score": self.score,
+            "tested_in_rows": list(self.tested_in_rows),
             "numbers": self.numbers,
             "goals": self.goals,
             "inputs": list(self.improved.inputs),

@@ -109,6 +109,9 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     seed = (task.improvement or Improvement()).seed
     kind = "a front of designs that surpass each other" if front else "different local minima"
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
+    if ranked and ranked[0].tested_in_rows:
+        wishes = " and ".join(ranked[0].tested_in_rows)
+        told += f"; {wishes} tested in the rows of the table, all else on the whole motion"
     return Synthesis(
         task=task,
         complex=len(designs),
