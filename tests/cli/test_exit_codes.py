@@ -91,8 +91,8 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("sweep", "cubic.toml"),
-            'Error: mechanism "A cubic" has no input: it has positions (solve,\n'
-            "  configurations); add [input] to sweep it\n",
+            'Error: mechanism "A cubic" has no input, so it does not move: solve and\n'
+            "  configurations give its positions\n",
         ),
         (
             ("solve", "four-bar.toml", "--set", "b=3"),

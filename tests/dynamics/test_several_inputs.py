@@ -139,6 +139,83 @@ def _free_cart(_: float, y: Any) -> list[float]:
     return [v, w, *np.linalg.solve(masses, right)]
 
 
+def _arms(directions: tuple[complex, complex], joint: str, **more: Any) -> lw.Mechanism:
+    """Two arms of length 1, the second about the end of the first one or about ground."""
+    first, second = directions
+    own = ["A", "B"] if joint == "A" else ["O", "B"]
+    tip = second + (first if joint == "A" else 0.0)
+    points = {"O": 0j, "A": first, "B": tip}
+    given: dict[str, Any] = {
+        "length": "m",
+        "angle": "rad",
+        "points": {name: (z.real, z.imag) for name, z in points.items()},
+        "links": {"ground": ["O"], "a": ["O", "A"], "b": own},
+        "masses": {x: lw.Mass(mass=1, center=("1/2", 0), inertia="1/10") for x in "ab"},
+        "inputs": (lw.Input(link="a"), lw.Input(link="b")),
+    }
+    return lw.linkage(**(given | more))
+
+
+@pytest.mark.parametrize(
+    ("angles", "speeds", "leaves"),
+    [
+        ((0.37, 0.83), (-0.68, -2.5), True),  # the tip turns away from the wall by itself
+        ((-1.02, 1.41), (-0.1, -2.3), False),
+    ],
+)
+def test_whether_a_motion_stays_at_a_stop_depends_on_its_path_too(
+    angles: tuple[float, float], speeds: tuple[float, float], leaves: bool
+) -> None:
+    directions = np.exp(1j * np.array(angles))
+    wall = float(sum(directions).real) + 0.05
+    stops = [lw.Stop(of="B.x", stop=wall)]
+    given = dict(zip("ab", speeds, strict=True))
+    motion = _arms(tuple(directions), "A", stops=stops).simulate(
+        until=0.4, step=0.02, start_speed=given
+    )
+    assert "stop of B.x" in motion.limit
+    assert np.nanmax(motion["B.x"]) <= wall + 1e-12
+    assert motion.found.all() == leaves
+    assert ("it stays at the stop of B.x" in motion.message) != leaves
+    hit = motion.limit.index("stop of B.x")
+    # from just after the shock, without the stop
+    a, b = (float(motion[name][hit]) for name in "ab")
+    before = np.array([motion["a.d1"][hit], motion["b.d1"][hit]])
+    mass = np.array([[1.35, 0.5 * np.cos(a - b)], [0.5 * np.cos(a - b), 0.35]])
+    normal = np.array([np.sin(a), np.sin(b)])
+    push = np.linalg.solve(mass, normal)
+    after = before - (normal @ before) / (normal @ push) * push
+    free = _arms((np.exp(1j * a), np.exp(1j * b)), "A").simulate(
+        until=1e-3, step=5e-4, start_speed=dict(zip("ab", after.tolist(), strict=True))
+    )
+    assert (free["B.x"][-1] < wall) == leaves
+
+
+def test_a_stop_that_a_law_moves_is_a_moving_wall() -> None:
+    turning = (lw.LawSegment(law="constant", over=3, by=3),)
+    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1.5, stop=1.5))
+    masses = {x: lw.Mass(mass=1, center=(0, 0), inertia=1) for x in "ab"}
+    arms = _arms(
+        (1 + 0j, np.exp(1.5j)), "O", inputs=inputs, masses=masses, outputs={"gap": "b - a"},
+        stops=[lw.Stop(of="gap", start=0.5, restitution=1)],
+    )  # fmt: skip
+    motion = arms.simulate(until=3, step=0.5, start_speed={"b": 0})
+    (hit,) = np.flatnonzero([word == "stop of gap" for word in motion.limit])
+    t = motion["t"]
+    assert t[hit] == pytest.approx(1.0, abs=1e-12)
+    # at rest before, away from the wall as fast as the wall came after
+    assert motion["b"] == pytest.approx(np.where(t <= t[hit], 1.5, 1.5 + 2.0 * (t - 1.0)), abs=1e-9)
+
+
+def test_a_law_that_moves_into_a_stop_ends_the_motion() -> None:
+    turning = (lw.LawSegment(law="constant", over=3, by=3),)
+    inputs = (lw.Input(link="a", law=turning), lw.Input(link="b", start=1, stop=1))
+    stops = [lw.Stop(of="a", stop=1)]
+    motion = _arms((1 + 0j, 1j), "O", inputs=inputs, stops=stops).simulate(until=3, step=0.5)
+    assert "a law drives the mechanism into the stop of a" in motion.message
+    assert motion["t"][motion.found].max() == pytest.approx(1.0, abs=1e-12)
+
+
 def test_a_motion_that_stays_at_a_stop_ends_there() -> None:
     """Contacts of several inputs are not computed: time and place are said."""
     push = lw.Load(point="B", link="cart", force=(-1, 0))

@@ -161,7 +161,9 @@ def test_markdown_names_pictures_that_exist(written: dict[str, Path]) -> None:
 def test_two_runs_write_the_same_bytes(suffix: str, written: dict[str, Path]) -> None:
     again = written[suffix].with_name(f"again.{suffix}")
     mechanism = coarse(read_example("four-bar"), 4)
-    mechanism.to_report(again, template=written[suffix].parent / "short.toml")
+    files = mechanism.to_report(again, template=written[suffix].parent / "short.toml")
+    pictures = [again.parent / "again-pictures/figure-1.png"] if suffix == "md" else []
+    assert files == (again, *pictures)
     assert again.read_bytes().replace(b"again-pictures", b"bar-pictures") == (
         written[suffix].read_bytes()
     )
@@ -338,6 +340,20 @@ def test_an_unknown_quantity_of_the_template_is_refused() -> None:
     ):
         with pytest.raises(lw.UnknownNameError, match=r'no "rokcer" \(nearest: rocker'):
             _of(bar, template)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    ['quantities = ["rokcer"]', 'tolerances_of = ["rokcer"]', "every = 37"],
+)
+def test_a_template_that_does_not_fit_is_refused_before_any_computation(
+    wrong: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "t.toml").write_text(f'sections = ["motion", "tolerances"]\n{wrong}\n')
+    bar = coarse(read_example("four-bar"), 4).changed(tolerances={"A B": 0.05})
+    monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
+    with pytest.raises(lw.InputError, match=r'no "rokcer"|every = 37: the motion has no two rows'):
+        bar.to_report(tmp_path / "bar.html", template=tmp_path / "t.toml")
 
 
 def test_purpose_and_source_are_shown_as_they_are_written() -> None:

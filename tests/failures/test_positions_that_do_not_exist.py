@@ -167,8 +167,8 @@ def test_inputs_that_do_not_fit_are_errors() -> None:
     with pytest.raises(lw.InputError) as nothing:
         lw.example("newton-convergence").sweep()
     assert str(nothing.value) == (
-        'mechanism "Newton-Raphson, the usual case: quadratic convergence" has no input: '
-        "it has positions (solve, configurations); add [input] to sweep it"
+        'mechanism "Newton-Raphson, the usual case: quadratic convergence" has no input, '
+        "so it does not move: solve and configurations give its positions"
     )
 
 

@@ -30,8 +30,8 @@ def test_what_does_not_move_is_not_swept(ask: str) -> None:
     with pytest.raises(lw.InputError) as refused:
         getattr(lw.loads(TWO_BARS), ask)()
     assert str(refused.value) == (
-        'mechanism "mechanism" has no input: it has positions (solve, configurations); '
-        "add [input] to sweep it"
+        'mechanism "mechanism" has no input, so it does not move: '
+        "solve and configurations give its positions"
     )
 
 

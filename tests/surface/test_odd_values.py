@@ -155,3 +155,9 @@ def test_a_load_is_no_complex_number() -> None:
         lw.MechanismError, match=r"column 1: cis is complex, a load is a real number"
     ):
         lw.loads(text)
+
+
+def test_a_jacobian_too_small_to_invert_is_no_warning() -> None:
+    product = "*".join(["sin(x)"] * 30)
+    found = lw.loads(f'format = 1\n[equations]\nF = "{product} = 0"\n[guess]\nx = 1e-9\n').solve()
+    assert np.isinf(found.condition)

@@ -25,7 +25,7 @@ _ROWS = {
 
 
 def test_the_figures_of_the_paper_are_recorded() -> None:
-    body = _PAPER.partition("# Proof of claims")[2]
+    body = _PAPER.partition("# Validation")[2]
     figures = set(_FIGURE.findall(body))
     assert len(figures) > 20
     assert figures - set(_FIGURE.findall(_RECORD)) == set()

@@ -69,7 +69,9 @@ class DesignedMechanism(DynamicMechanism):
         >>> found.effective[0], round(found["B A"], 6)
         ('B A', 1.123196)
         """
-        if at is None and (self.description.inputs or motion is not None):
+        if at is None and (
+            self.description.inputs or motion is not None or design.is_of_motion(of)
+        ):
             rows = self.sweep(configuration=configuration) if motion is None else motion
             if design.is_of_motion(of):
                 return design.sensitivity_of_motion(self.model, rows, of, by)

@@ -44,7 +44,7 @@ class ReportedMechanism(ExportedMechanism):
         institution: str | None = None,
         date: str | None = None,
         progress: Callable[[float], None] | None = None,
-    ) -> None:
+    ) -> tuple[Path, ...]:
         """Write a report: equations, drawings, tables, plots, what is proved, the file.
 
         Parameters
@@ -64,6 +64,11 @@ class ReportedMechanism(ExportedMechanism):
         progress : callable, optional
             Called with the finished fraction, 0 to 1.
 
+        Returns
+        -------
+        tuple of Path
+            The files that were written: the report, then its pictures.
+
         Raises
         ------
         InputError
@@ -74,24 +79,25 @@ class ReportedMechanism(ExportedMechanism):
 
         Examples
         --------
-        >>> import linkwork as lw, pathlib, tempfile
+        >>> import linkwork as lw, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
-        ...     lw.example("four-bar").to_report(f"{folder}/bar.html", author="A. Student")
-        ...     text = pathlib.Path(folder, "bar.html").read_text("utf-8")
-        >>> "A. Student" in text, "What is proved" in text
-        (True, True)
+        ...     (file,) = lw.example("four-bar").to_report(f"{folder}/bar.html", title="Bar")
+        ...     text = file.read_text("utf-8")
+        >>> file.name, "What is proved" in text
+        ('bar.html', True)
         """
         target = as_path(path)
         export.check_report_file(target)
         chosen = export.template_of(template).with_head(
             {"title": title, "author": author, "institution": institution, "date": date}
         )
+        export.check_template(chosen, self.model)
         tell = progress or (lambda fraction: None)
         found = self.findings(chosen, at, configuration, lambda part: tell(_FOUND * part))
         written = export.report_of(
             found, chosen, target, lambda part: tell(_FOUND + (1.0 - _FOUND) * part)
         )
-        written.save(target)
+        return written.save(target)
 
     def findings(
         self,

@@ -71,7 +71,7 @@ def report(
     mechanism = read_mechanism(file, changes)
     values = input_values(mechanism, at)
     with progress("writing the report") as tell:
-        mechanism.to_report(
+        written = mechanism.to_report(
             output,
             values,
             template=template,
@@ -79,4 +79,6 @@ def report(
             progress=tell,
             **head,
         )
-    print_written(output, as_json)
+    _report, *pictures = map(str, written)
+    about = f", with pictures in {written[1].parent}: {len(pictures)}" if pictures else ""
+    print_written(output, as_json, about, pictures)

@@ -69,7 +69,7 @@ def sensitivity(
     if values is None and mechanism.description.inputs:
         with progress("sweeping") as tell:
             motion = mechanism.sweep(configuration=configuration, progress=tell)
-    elif is_of_motion(of):
+    elif values is not None and is_of_motion(of):
         raise InputError(f'"{of}" is a number of a whole motion: leave out --at')
     with progress("differentiating"):
         found = mechanism.sensitivity(

@@ -88,10 +88,10 @@ def print_json(data: dict[str, Any]) -> None:
     click.echo(json.dumps(versioned, indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def print_written(path: str, as_json: bool, about: str = "") -> None:
-    """Say that a file was written."""
+def print_written(path: str, as_json: bool, about: str = "", further: Sequence[str] = ()) -> None:
+    """Say that a file was written, and which further ones with it."""
     if as_json:
-        print_json({"written": [path]})
+        print_json({"written": [path, *further]})
     else:
         print_lines([f"Wrote {path}{about}."])
 

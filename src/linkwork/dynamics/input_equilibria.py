@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
+from itertools import islice, product
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from linkwork.results.quantity import Kind
 __all__ = ["input_equilibria"]
 
 _STARTS, _LARGEST_GRID = 5, 125  # for each input, fewer if all together were more
+_MOST_STARTS = 250  # lengths have one more each; two of each of many inputs would be too many
 _STRIDE = 0.25  # radians, or longest links: the longest step to a start
 _LONGEST = 0.3  # of Newton's method
 _ROUNDS = 60
@@ -70,7 +71,8 @@ def input_equilibria(
 def _grid(model: Model, dynamics: InputDynamics) -> Iterator[Array]:
     """The starts: a turn of every angle, the table's range of every length."""
     here, count = dynamics.here, len(dynamics.here)
-    each = max(2, min(_STARTS, int(_LARGEST_GRID ** (1.0 / count))))
+    # five to the third power is the largest grid: its root may be rounded down
+    each = max(2, min(_STARTS, int(_LARGEST_GRID ** (1.0 / count) + 1e-9)))
     ranges = []
     for k, variable in enumerate(model.equations.inputs):
         if variable.kind == "angle":
@@ -80,7 +82,7 @@ def _grid(model: Model, dynamics: InputDynamics) -> Iterator[Array]:
             scaled = ends * model.input_scale[k] / dynamics.size[k]
             first, last = map(float, scaled)
             ranges.append(np.concatenate([here[k : k + 1], np.linspace(first, last, each)]))
-    return (np.array(target) for target in product(*ranges))
+    return (np.array(target) for target in islice(product(*ranges), _MOST_STARTS))
 
 
 def _walk(dynamics: InputDynamics, target: Array) -> None:

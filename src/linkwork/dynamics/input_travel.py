@@ -25,6 +25,7 @@ _FIRST = 1e-3  # of the whole time: the first step
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
 _DIFFERENCE = 1e-3  # of fourth order, for the normal of a stop
+_DRIVEN = 1e-9  # of the normal: less of it is rounding
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
@@ -116,26 +117,57 @@ class InputTravel:
 
     def _hit(self, number: int) -> None:
         """A shock at a stop: an impulse along its normal."""
-        bound = self.bounds[number]
+        bound, inputs = self.bounds[number], self.dynamics.inputs
         name = f"stop of {bound.asked.name}"
         self._record_here(name)
-        count = len(self.q)
-        steps = _DIFFERENCE * np.array([1.0, -1.0, 2.0, -2.0])
-        around = np.stack([self.q + step * unit for step in steps for unit in np.eye(count)])
-        speeds, times = np.tile(self.speed, (len(around), 1)), np.full(len(around), self.t)
-        found = self._margins(around, speeds, times)[:, number].reshape(4, count)
-        normal = (8.0 * (found[0] - found[1]) - (found[2] - found[3])) / (12.0 * _DIFFERENCE)
-        push = np.linalg.solve(self.dynamics.masses(), normal)
+        normal = self._normal(number)
+        free = normal[inputs.free]
+        if np.abs(free).max() <= _DRIVEN * np.abs(normal).max():
+            self._end(f"a law drives the mechanism into the {name}")
+            return
+        push = np.linalg.solve(self.dynamics.masses(), free)
+        closing = float(normal @ self._whole(self.speed, 1))
         # eq. (172)
-        leaving = -bound.restitution * float(normal @ self.speed)
-        self.speed = self.speed - float(normal @ self.speed) / float(normal @ push) * push * (
-            1.0 + bound.restitution
-        )
+        self.speed = self.speed - (1.0 + bound.restitution) * closing / float(free @ push) * push
+        leaving = -bound.restitution * closing
         bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
-        pull = float(normal @ bend)
+        pull = float(normal @ self._whole(bend, 2)) + self._curving(number)
         if pull <= 0.0 and 2.0 * leaving <= _RESTS * self.until * abs(pull):
             self._end(f"it stays at the {name}, and contacts of several inputs are not computed")
         self._switch()
+
+    def _whole(self, free: Array, order: int) -> Array:
+        """All inputs now, or their derivatives, from those of the free ones, (p,)."""
+        found: Array = self.dynamics.inputs.complete(free[None], self._now, order)[0]
+        return found
+
+    def _normal(self, number: int) -> Array:
+        """The derivatives of the margin of a stop by all inputs, (p,)."""
+        here = self._whole(self.q, 0)
+        steps = _DIFFERENCE * np.array([1.0, -1.0, 2.0, -2.0])
+        around = np.stack([here + step * unit for step in steps for unit in np.eye(len(here))])
+        up, down, far_up, far_down = self._stop_margins(number, around).reshape(4, len(here))
+        found: Array = (8.0 * (up - down) - (far_up - far_down)) / (12.0 * _DIFFERENCE)
+        return found
+
+    def _curving(self, number: int) -> float:
+        """The second derivative of the margin of a stop by time, at constant speeds."""
+        speed = self._whole(self.speed, 1)
+        size = float(np.abs(speed).max())
+        if size == 0.0:
+            return 0.0
+        steps = _DIFFERENCE * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+        along = self._whole(self.q, 0) + steps[:, None] * speed / size
+        found = self._stop_margins(number, along) @ np.array([-1.0, 16.0, -30.0, 16.0, -1.0])
+        return float(found) / 12.0 * (size / _DIFFERENCE) ** 2
+
+    def _stop_margins(self, number: int, inputs: Array) -> Array:
+        """The margin of a stop at all inputs (B, p), with the speeds of now, (B,)."""
+        times, bound = np.full(len(inputs), self.t), self.bounds[number]
+        speeds = np.tile(self._whole(self.speed, 1), (len(inputs), 1))
+        solved = self._geometry_of(inputs, speeds, times).solved
+        found: Array = bound.side * (bound.asked.values(solved, 1.0) - bound.value)
+        return found
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
@@ -156,9 +188,13 @@ class InputTravel:
         )
 
     def _geometry(self, q: Array, speed: Array, t: Array) -> Geometry:
-        v, found = self.dynamics.positions(q, t)
-        whole = self.dynamics.inputs.complete(speed, t, 1)
-        rates = self.dynamics.solver.rates(v, whole * self.dynamics.size)
+        inputs = self.dynamics.inputs
+        return self._geometry_of(inputs.complete(q, t, 0), inputs.complete(speed, t, 1), t)
+
+    def _geometry_of(self, inputs: Array, speeds: Array, t: Array) -> Geometry:
+        """Rows at all inputs (B, p) and their speeds."""
+        v, found = self.dynamics.positions_of(inputs)
+        rates = self.dynamics.solver.rates(v, speeds * self.dynamics.size)
         first = np.where(found[:, None], rates.first, np.nan)
         return self.dynamics.reduction.geometry(v, first, np.full_like(v, np.nan), t)
 

@@ -40,7 +40,7 @@ def check_loaded(model: Model) -> LoadedBodies:
     if description.inputs and all(which.law is not None for which in description.inputs):
         raise InputError(f"a law drives {name}: leave it out to simulate")
     if not description.inputs:
-        raise InputError(f"{name} has 0 inputs: a simulation needs a degree of freedom")
+        raise InputError(f"{name} has no input: it does not move")
     if not description.masses and all(each.inertia is None for each in description.inputs):
         raise InputError(f"nothing in {name} has mass: add [masses], or inertia to the input")
     return description

@@ -209,9 +209,10 @@ class Assembly:
         """Pairs of links, or of ground and a link, with two points in common."""
         at: dict[str, list[str]] = {}
         for name in (GROUND, *self.links):
-            for point in self.carries(name):
+            own = self.carries(name)
+            for point in (point for point in self.points if point in own):
                 at.setdefault(point, []).append(name)
-        # by points, since most links share no point
+        # by points, in the file's order, since most links share no point
         common = Counter(pair for names in at.values() for pair in combinations(names, 2))
         return [pair for pair, count in common.items() if count > 1]
 

@@ -23,6 +23,7 @@ _INPUT_LAYERS = ("input", "driver", "crank", "motor")
 _TRACE_LAYERS = ("trace", "path")
 _UNITS = {"1": "in", "2": "ft", "4": "mm", "5": "cm", "6": "m", "13": "µm", "14": "dm"}
 _TOLERANCE = 1e-6  # of a circle's radius or a line's length: drawn at the same place
+_ARCS = "arc of a polyline: read as straight"
 _MOST = 20_000  # circles, lines and polylines
 
 
@@ -47,6 +48,26 @@ class _Entity:
     @property
     def layer(self) -> str:
         return self.one(8, "").strip().lower()
+
+    @property
+    def is_on_sheet(self) -> bool:
+        """Whether it belongs to the printed sheet, not to the drawing."""
+        return self.one(67) == "1"
+
+    @property
+    def has_arcs(self) -> bool:
+        """Of a polyline or its corner: whether a piece is an arc, by its bulge."""
+        return any(bulge.strip("-+0.") for bulge in self.all(42))
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether its plane is seen from behind: its coordinates would be mirrored."""
+        return self.one(230, "1").startswith("-")
+
+    @property
+    def is_closed(self) -> bool:
+        """Of a polyline: its flags are bits, of which the first says that it is closed."""
+        return self.one(70).isdecimal() and int(self.one(70)[-1]) % 2 == 1
 
 
 @dataclass
@@ -132,7 +153,9 @@ def _entities(source: Source) -> tuple[str, list[_Entity]]:
         source.refuse("has no entities: a section ENTITIES with circles and lines is needed")
     if len(found) > _MOST:
         source.refuse(f"has more than {_MOST} entities")
-    return units, found
+    for own in (own for own in found if own.is_on_sheet):
+        source.leave_out(f"line {own.line}", "entity of the sheet (paper space)")
+    return units, [own for own in found if not own.is_on_sheet]
 
 
 def _place(source: Source, entity: _Entity, x: str, y: str) -> complex:
@@ -146,8 +169,7 @@ def _pins(source: Source, entities: list[_Entity]) -> list[_Pin]:
     for entity in entities:
         if entity.kind != "CIRCLE":
             continue
-        # its coordinates would be mirrored
-        if entity.one(230, "1").startswith("-"):
+        if entity.is_mirrored:
             source.leave_out(f"line {entity.line}", "circle seen from behind (extrusion)")
             continue
         at = _place(source, entity, entity.one(10, ""), entity.one(20, ""))
@@ -174,18 +196,24 @@ def _paths(
                 _place(source, entity, entity.one(x, ""), entity.one(x + 10, "")) for x in (10, 11)
             ]
             yield entity, ends, False
+        elif entity.kind in ("LWPOLYLINE", "POLYLINE") and entity.is_mirrored:
+            source.leave_out(f"line {entity.line}", "polyline seen from behind (extrusion)")
         elif entity.kind == "LWPOLYLINE":
+            if entity.has_arcs:
+                source.leave_out(f"line {entity.line}", _ARCS)
             xs, ys = entity.all(10), entity.all(20)
             if len(xs) != len(ys):
                 source.refuse("a corner of the polyline lacks a coordinate", entity.line)
             corners = [_place(source, entity, x, y) for x, y in zip(xs, ys, strict=True)]
-            yield entity, corners, entity.one(70) in ("1", "129")
+            yield entity, corners, entity.is_closed
         elif entity.kind == "POLYLINE":
             polyline = (entity, [])
         elif entity.kind == "VERTEX" and polyline is not None:
+            if entity.has_arcs:
+                source.leave_out(f"line {entity.line}", _ARCS)
             polyline[1].append(_place(source, entity, entity.one(10, ""), entity.one(20, "")))
         elif entity.kind == "SEQEND" and polyline is not None:
-            yield *polyline, polyline[0].one(70) in ("1", "129")
+            yield *polyline, polyline[0].is_closed
             polyline = None
         elif entity.kind != "CIRCLE":
             source.leave_out(f"line {entity.line}", f"entity {entity.kind[:20]}")

@@ -161,7 +161,9 @@ class _Construction:
     def _command(self, own: Element, elements: dict[str, Element]) -> None:
         name, outputs = own.get("name"), self._outputs(own)
         given = own.one("input")
-        inputs = [] if given is None else [v for _, v in sorted(given.attributes.items())]
+        # a0, a1, … a10: the longer name is the later one
+        entries = [] if given is None else given.attributes.items()
+        inputs = [v for _, v in sorted(entries, key=lambda entry: (len(entry[0]), entry[0]))]
         rule = _RULES.get(name)
         if rule is None or (not outputs and name != "Locus"):
             self.source.leave_out(self._place(own), f"command {name[:40]}")

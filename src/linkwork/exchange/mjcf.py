@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,8 +45,8 @@ class _World:
     joints: dict[str, str] = field(default_factory=dict)  # the body of each joint
 
     def __post_init__(self) -> None:
-        compiler = self.root.one("compiler")
-        given = {} if compiler is None else compiler.attributes
+        # sections of a kind are merged, the later one counts
+        given = {k: v for own in self.root.all("compiler") for k, v in own.attributes.items()}
         self.radians = 1.0 if given.get("angle") == "radian" else math.pi / 180.0
         self.sequence = given.get("eulerseq", "xyz")
         if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
@@ -56,14 +57,14 @@ class _World:
         for own in self.root.children:
             if own.tag == "include":
                 self.source.leave_out(f"line {own.line}", "include: other files are not read")
-        world = self.root.one("worldbody")
-        if world is None:
+        worlds = list(self.root.all("worldbody"))
+        if not worlds:
             self.source.refuse("has no <worldbody>", self.root.line)
-        ground = Body(
-            name=GROUND, parent=GROUND, pose=Pose(np.eye(3), np.zeros(3)), line=world.line
-        )
+        pose = Pose(np.eye(3), np.zeros(3))
+        ground = Body(name=GROUND, parent=GROUND, pose=pose, line=worlds[0].line)
         self.bodies.append(ground)
-        self._fill(ground, world, "")
+        for world in worlds:
+            self._fill(ground, world, "")
 
     def _add_defaults(self, own: Element, above: dict[str, str]) -> None:
         joint = own.one("joint")
@@ -154,8 +155,7 @@ class _World:
 
     def planar(self) -> Planar:
         """The links, with loops and inputs."""
-        # a file may have several sections of a kind
-        equalities = [own for each in self.root.all("equality") for own in each.children]
+        equalities = list(self._equalities())
         same: dict[str, str] = {}
         names = {body.name for body in self.bodies}
         for own in equalities:
@@ -174,6 +174,14 @@ class _World:
         planar.add_sites()
         self._drive(planar)
         return planar
+
+    def _equalities(self) -> Iterator[Element]:
+        """The active ones; a file may have several sections."""
+        for own in (own for each in self.root.all("equality") for own in each.children):
+            if own.get("active") == "false":
+                self.source.leave_out(f"line {own.line}", f"inactive <{own.tag[:20]}>")
+            else:
+                yield own
 
     def _weld(self, same: dict[str, str], one: str, two: str) -> None:
         """Make two bodies one: ground stays, otherwise the first."""

@@ -36,8 +36,9 @@ def read(source: Source) -> Assembly:
     """Read a linkage or a mechanism."""
     data = _data(source)
     joints = _tables(source, data, "joints")
-    for key in data.keys() - {"name", "joints", "links", "solve_order", "ground"}:
-        source.leave_out(f'"{str(key)[:40]}"', "unknown key")
+    for key in data:
+        if key not in ("name", "joints", "links", "solve_order", "ground"):
+            source.leave_out(f'"{key[:40]}"', "unknown key")
     name = data.get("name")
     assembly = Assembly(source, name if isinstance(name, str) else "")
     assembly.length = "unit"

@@ -94,8 +94,9 @@ class _Parser:
         angle = self.source.number(fields.get("A", ["0"])[0], "the angle", line)
         if "color" in fields:
             self.source.leave_out(f"joint {count}", "colour")
-        for name in fields.keys() - {"P", "A", "L", "color"}:
-            self.source.leave_out(f"joint {count}", f'unknown "{name[:40]}"')
+        for name in fields:
+            if name not in ("P", "A", "L", "color"):
+                self.source.leave_out(f"joint {count}", f'unknown "{name[:40]}"')
         return JointRow(
             place=f"joint {count}",
             kind=kind,

@@ -56,8 +56,9 @@ class _Tree:
                 source.leave_out(f"line {own.line}", f"element <{own.tag[:20]}>")
         self.bodies: list[Body] = []
         self._grow()
-        for name in self.links.keys() - self.names.keys():
-            source.leave_out(f'link "{name[:40]}"', "it is not joined to the root")
+        for name in self.links:
+            if name not in self.names:
+                source.leave_out(f'link "{name[:40]}"', "it is not joined to the root")
 
     def _grow(self) -> None:
         """Bodies from the root on; the root is ground."""
@@ -133,21 +134,34 @@ class _Tree:
                 (b for b in self.bodies if b.joint is not None and b.joint.name == own.get("name")),
                 None,
             )
-            mimic, place = own.one("mimic"), f"line {own.line}"
             if body is None or body.joint is None:
                 continue
-            low, high = ranges[own.get("name")]
-            if mimic is not None:
-                if mimic.get("joint") not in ranges:
-                    self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
-                factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
-                offset = self.source.number(mimic.get("offset", "0"), "offset", mimic.line)
-                # inputs move in step, so that a straight line is exact
-                low, high = (factor * end + offset for end in ranges[mimic.get("joint")])
+            low, high = self._moved(own.get("name"), ranges)
+            place = f"line {own.line}"
             if own.one("coupling") is not None:
                 self.source.leave_out(place, "polynomial of a coupling")
             self._add_input(planar, body, body.joint, low, high)
         self.source.leave_out("the file", "loops: a tree has none, every joint is driven")
+
+    def _moved(self, name: str, ranges: dict[str, tuple[float, float]]) -> tuple[float, float]:
+        """The range of a joint, or what it follows from that of the joint that leads it."""
+        joints = {own.get("name"): own for own in self.joints}
+        lines: list[tuple[float, float]] = []
+        while (mimic := joints[name].one("mimic")) is not None:
+            name = mimic.get("joint")
+            if name not in ranges:
+                self.source.refuse("mimic refers to a joint that does not exist", mimic.line)
+            if len(lines) == len(joints):
+                self.source.refuse("mimic joints follow each other in a circle", mimic.line)
+            factor = self.source.number(mimic.get("multiplier", "1"), "multiplier", mimic.line)
+            lines.append(
+                (factor, self.source.number(mimic.get("offset", "0"), "offset", mimic.line))
+            )
+        low, high = ranges[name]
+        for factor, offset in reversed(lines):
+            # inputs move in step, so that a straight line is exact
+            low, high = factor * low + offset, factor * high + offset
+        return low, high
 
     def _range(self, own: Element) -> tuple[float, float]:
         limit = own.one("limit")

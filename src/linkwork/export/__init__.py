@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     )
     from linkwork.export.plates.stack import stack_of as stack_of
     from linkwork.export.report.findings import Findings as Findings
-    from linkwork.export.report.motion_sections import quantities_of as quantities_of
+    from linkwork.export.report.motion_sections import (
+        check_template as check_template,
+        quantities_of as quantities_of,
+    )
     from linkwork.export.report.report import (
         check_report_file as check_report_file,
         report_of as report_of,

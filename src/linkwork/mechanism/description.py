@@ -134,9 +134,10 @@ class Description:
             If there is no input or more than one.
         """
         if len(self.inputs) != 1:
+            count = len(self.inputs) or "no"
             raise InputError(
-                f'mechanism "{self.name}" has {len(self.inputs)} inputs: '
-                "a range can be replaced only for a single one"
+                f'mechanism "{self.name}" has {count} input{"s" * bool(self.inputs)}: '
+                "only the range of a single one can be replaced"
             )
         old = self.inputs[0]
         changed = replace(

@@ -178,8 +178,8 @@ class Model:
         """The table's input values, internal units, (rows, p)."""
         if not self.description.inputs:
             raise InputError(
-                f'mechanism "{self.description.name}" has no input: it has positions '
-                "(solve, configurations); add [input] to sweep it"
+                f'mechanism "{self.description.name}" has no input, so it does not move: '
+                "solve and configurations give its positions"
             )
         return self.rows_in_file_units * self.input_scale
 

@@ -206,10 +206,10 @@ class BlockSolver:
             known = block.variables[n:]
             direction = np.empty_like(here)
             direction[:, n:] = first[:, known]
-            # eq. (11)
-            x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
-            direction[:, :n] = x1
             with np.errstate(over="ignore", invalid="ignore"):  # rates may be of any size
+                # eq. (11)
+                x1 = -matrix_vector(inverse, matrix_vector(jacobian[:, :, n:], direction[:, n:]))
+                direction[:, :n] = x1
                 # eq. (12)
                 bend = system.second_directional_derivative(here, direction) + matrix_vector(
                     jacobian[:, :, n:], second[:, known]

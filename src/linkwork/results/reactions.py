@@ -43,7 +43,8 @@ class ForceStatus(CodedEnum):
         "or drive another link"
     )
     NO_RATES = (
-        "at a dead point or change point the input has no finite effort: ask for a value beside it"
+        "at a dead point or change point the input has no finite effort: ask for another input "
+        "value"
     )
     NO_POSITION = "there is no position: see its own status"
     NO_LOAD = "a load has no finite value there: change its formula"

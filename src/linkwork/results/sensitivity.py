@@ -38,7 +38,7 @@ class SensitivityStatus(CodedEnum):
     )
     DEAD_POINT = (
         "at a dead point or change point positions have no finite sensitivity at a fixed input: "
-        "ask for a value beside it, or for limit.lower or limit.upper"
+        "ask for another input value, or for limit.lower or limit.upper"
     )
     NO_POSITION = "there is no position: see its own status"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from linkwork.export.report.template import Template
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.foundation.names import pretty
+from linkwork.motion.model import Model
 from linkwork.results.listing.circuit_listing import branch_columns, circuit_fields
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.configuration_listing import (
@@ -39,6 +40,7 @@ from linkwork.results.quantities.asked import Asked
 from linkwork.results.quantity import Kind
 
 __all__ = [
+    "check_template",
     "circuits",
     "configurations",
     "figures_of",
@@ -62,6 +64,25 @@ def quantities_of(found: Motion, template: Template) -> list[str]:
     traced = (f"{point}.{axis}" for point in found.skeleton.traced for axis in "xy")
     usual = [*found.unknowns, *found.riding, *found.outputs, *traced]
     return list(dict.fromkeys(template.quantities or usual))
+
+
+def check_template(template: Template, model: Model) -> None:
+    """Refuse a template that does not fit a mechanism, before any computation.
+
+    Raises
+    ------
+    InputError
+        If the table has no two rows at the distance ``every``.
+    UnknownNameError
+        With the names that exist.
+    """
+    for name in template.quantities:
+        model.quantities.find(name).check_rate(model.speed)
+    for name in template.tolerances_of:
+        of_motion = "(" in name
+        (model.quantities.find_of_motion if of_motion else model.quantities.find)(name)
+    if "motion" in template.sections and template.every is not None and model.description.inputs:
+        _spaced(model.rows_in_file_units[:, 0], template.every, model.input_units)
 
 
 def motion(found: Findings, template: Template) -> Iterator[Block]:
@@ -149,16 +170,30 @@ def _chosen(swept: Motion, every: float | None) -> CountArray:
             stride = max(math.ceil(last / _ROWS), 1)
         rows = asked[[*range(0, len(asked), stride)]]
     else:
-        steps = (values - values[0]) / every
-        rows = asked[np.abs(steps - np.round(steps)) <= _WHOLE * np.maximum(1.0, np.abs(steps))]
-        if len(rows) < 2 <= len(asked):
-            name, unit = next(iter(swept.input_units.items()))
-            raise InputError(
-                f"every = {every:g}: the motion has no two rows of {name} at this distance; take "
-                f"a multiple of its step, {short(values[1] - values[0])} {unit}".rstrip()
-            )
+        rows = asked[_spaced(values, every, swept.input_units)]
     limits = np.flatnonzero([bool(limit) for limit in swept.limit] & swept.found)
     return np.union1d(np.union1d(rows, asked[-1:]), limits)
+
+
+def _spaced(values: Array, every: float, units: Mapping[str, str]) -> CountArray:
+    """The rows at multiples of a distance from the first one; ``units`` by input.
+
+    Raises
+    ------
+    InputError
+        If there is only the first one.
+    """
+    steps = (values - values[0]) / every
+    rows = np.flatnonzero(
+        np.abs(steps - np.round(steps)) <= _WHOLE * np.maximum(1.0, np.abs(steps))
+    )
+    if len(rows) < 2 <= len(values):
+        name, unit = next(iter(units.items()))
+        raise InputError(
+            f"every = {every:g}: the motion has no two rows of {name} at this distance; take "
+            f"a multiple of its step, {short(values[1] - values[0])} {unit}".rstrip()
+        )
+    return rows
 
 
 def _groups(swept: Motion, names: Sequence[str]) -> Iterator[tuple[str, list[Asked]]]:

@@ -56,8 +56,8 @@ class WrittenReport:
     content: bytes
     pictures: Mapping[str, bytes]
 
-    def save(self, path: Path) -> None:
-        """Write the pictures, then the file.
+    def save(self, path: Path) -> tuple[Path, ...]:
+        """Write the pictures, then the file; returns all their paths, that of the file first.
 
         Raises
         ------
@@ -72,6 +72,7 @@ class WrittenReport:
                 raise unwritten(place.parent, error) from None
             save_bytes(picture, place)
         save_bytes(self.content, path)
+        return path, *(path.parent / name for name in self.pictures)
 
 
 def check_report_file(path: Path) -> None:

@@ -59,8 +59,9 @@ def full_turn(drive: Drive, start: Array) -> TracedCurve | None:
 def _closes(drive: Drive, rows: SolvedRows) -> bool:
     """Whether the last of proved rows is proved to be the first, modulo whole turns.
 
-    It lies within its radius of the numbers, and no other position than the first is as near to
-    those of the first.
+    The last position is at most its radius away from the last row's numbers. If these are so near
+    to the first row's that it lies within the first uniqueness radius, it is the first position:
+    no other one lies there.
     """
     first, last = rows.v[0], rows.v[-1]
     turns = whole_turns(drive.leads, first, last)

@@ -71,7 +71,8 @@ class Walks:
     def stepwise(self, walk: TracedCurve) -> TracedCurve:
         """A curve followed in plain numbers even if compiled code has proved it.
 
-        So the positions that are shown do not depend on what this process has loaded.
+        So the positions that are shown do not depend on what this process has loaded, unless plain
+        numbers do not close the curve: then that of compiled code remains, which is proved closed.
         """
         start = self._turned.get(id(walk.curve))
         if start is None:
