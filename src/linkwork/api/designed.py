@@ -116,6 +116,7 @@ class DesignedMechanism(DynamicMechanism):
         vary: Sequence[str] = (),
         bounds: Mapping[str, tuple[float, float]] | None = None,
         fit: str = "least squares",
+        front: int = 0,
         starts: int = 16,
         spread: float = 0.05,
         seed: int = 1,
@@ -136,6 +137,9 @@ class DesignedMechanism(DynamicMechanism):
             By default lengths change by a factor of four at most.
         fit : str
             "least squares", or "minimax": the largest miss counts.
+        front : int
+            Instead of a sum: the largest number of designs between the goals (points, targets and
+            values, not bounds) of which no other one is better in every goal.
         starts, spread, seed : int, number, int
             Starts about the mechanism as it is, their relative spread, and their seed; the first
             one is the mechanism itself.
@@ -145,8 +149,9 @@ class DesignedMechanism(DynamicMechanism):
         Returns
         -------
         tuple of ImprovedDesign
-            Different local minima: those with all rows proved first, then by their misses. Ctrl-C
-            keeps the best so far.
+            Different local minima: those with all rows proved first, then by their misses. Of a
+            front its designs by rising miss of the first goal, then those that are not proved.
+            Ctrl-C keeps the best so far.
 
         Raises
         ------
@@ -161,12 +166,18 @@ class DesignedMechanism(DynamicMechanism):
         >>> best = bar.improve(goal, vary=["A B", "O4 B"], starts=4)[0]
         >>> best.sound
         True
+        >>> crank = lw.example("slider-crank")
+        >>> goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
+        >>> front = crank.improve(goals, vary=["O2 A"], front=2, starts=1)
+        >>> [round(design.goals["stroke(d)"], 4) for design in front]
+        [0.0, 49.7146]
         """
         wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
         settings = design.Improvement(
             vary=(vary,) if isinstance(vary, str) else tuple(vary),
             bounds=bounds or {},
             fit=fit,
+            front=front,
             starts=starts,
             spread=spread,
             seed=seed,

@@ -8,16 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
-from linkwork.design.synthesis.designs_table import designs_table
+from linkwork.design.synthesis.designs_table import designs_table, front_of
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.task import Task
+from linkwork.drawing import render
+from linkwork.drawing.charts.front_chart import front_chart
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path, unwritten
 from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.csv_text import csv_text
-from linkwork.textfile.writer import save_text, write_text
+from linkwork.textfile.writer import save_bytes, save_text, write_text
 from linkwork.viewer.designs_page import designs_page
 
 __all__ = ["FolderOptions", "write_designs"]
@@ -25,7 +27,7 @@ __all__ = ["FolderOptions", "write_designs"]
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _REFUSED = "refused"
 _PICTURES = 24  # designs that a page shows
-_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|index\.html)")
+_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +88,7 @@ def write_designs(
 def _write_tables(
     found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
-    """The task with its curve, the table and the page; and the folder of refused designs."""
+    """The task with its curve, the table, the front and the page; the folder of refused designs."""
     if options.refused:
         (part / _REFUSED).mkdir()
     save_text(found.task.text, part / "task.toml")
@@ -95,10 +97,22 @@ def _write_tables(
         save_text(found.task.curve.text, part / found.task.curve.file)
     if options.csv:
         save_text(csv_text(designs_table(found, files)), part / "designs.csv")
+    front = _front_picture(found) if options.draw or options.html else b""
+    if options.draw and front:
+        save_bytes(front, part / "front.svg")
     if options.html:
         shown = found.delivered[:_PICTURES]
         scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
-        save_text(designs_page(found, scenes, files), part / "index.html")
+        save_text(designs_page(found, scenes, files, front), part / "index.html")
+
+
+def _front_picture(found: Synthesis) -> bytes:
+    """The trade-off between goals as SVG; none if there is no front of two designs."""
+    front = front_of(found)
+    numbers = [design.number for design in found.delivered]
+    if len(numbers) < 2 or not front:
+        return b""
+    return render(front_chart(found.task.name, front, numbers), "svg")
 
 
 def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
+from linkwork.design.synthesis.designs_table import front_of
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.verdicts import DefectKind
@@ -33,7 +34,8 @@ def synthesis_lines(found: Synthesis) -> list[str]:
 def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
     if found.starts:
         yield "starts", str(found.starts)
-        yield "local minima", f"{found.real}, different ones"
+        if not (found.task.improvement and found.task.improvement.front):
+            yield "local minima", f"{found.real}, different ones"
     else:
         yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
         yield "real", str(found.real)
@@ -79,17 +81,27 @@ def _dyad_lines(found: Synthesis) -> list[str]:
 def _design_lines(found: Synthesis) -> list[str]:
     """The delivered designs, best first."""
     designs, task = found.delivered, found.task
+    front = front_of(found)
 
     def column(header: str, values: list[float]) -> Column:
         return Column(header=header, cells=[significant(v, _DIGITS) for v in values], align="point")
 
     columns = [
         Column(header="", cells=[str(design.number) for design in designs], align="right"),
-        Column(header="mechanism", cells=[design.mechanism for design in designs]),
-        Column(header="driven at", cells=[design.driven for design in designs]),
+        *(column(f"goal {k}", misses) for k, misses in enumerate(front.values(), start=1)),
+    ]
+    if not front:
+        columns += [
+            Column(header="mechanism", cells=[design.mechanism for design in designs]),
+            Column(header="driven at", cells=[design.driven for design in designs]),
+        ]
+    columns += [
         column(f"transmission [{task.angle.value}]", [design.transmission for design in designs]),
         column(f"size [{task.length}]", [design.size for design in designs]),
     ]
+    if front:
+        told = [f"goal {k}: the miss of {name}" for k, name in enumerate(front, start=1)]
+        return [*table_lines(columns), "", *(line for text in told for line in wrapped(text))]
     if any(design.error for design in designs):
         columns.append(column(_error(found), [d.error for d in designs]))
     columns.append(column("score", [design.score for design in designs]))

@@ -6,8 +6,10 @@ import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 
+from linkwork.design.synthesis.designs_table import goal_misses
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
+from linkwork.drawing.embedded_svg import embedded_svg
 from linkwork.drawing.inline_svg import Inks, inline_svg
 from linkwork.drawing.scene import Scene
 
@@ -21,7 +23,9 @@ color-scheme:light dark;font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,
 h1{font-size:1.4rem;margin:0 0 .5rem}h2{font-size:1.1rem;margin:1.5rem 0 .5rem}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:1rem}
 figure{margin:0;padding:.75rem;border:1px solid color-mix(in srgb,CanvasText 20%,Canvas);
-border-radius:.5rem}figcaption{font-size:.85rem}
+border-radius:.5rem}
+.front{max-width:46rem;background:#fff}.front svg{width:100%;height:auto}
+figcaption{font-size:.85rem}
 .wide{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .8rem .2rem 0;text-align:left;white-space:nowrap;vertical-align:top}
 td:last-child{white-space:normal;min-width:16rem}
@@ -39,7 +43,9 @@ return (Number.isNaN(n)?x.localeCompare(y):n)*(up?1:-1)});body.append(...rows)})
 _MOST_ROWS = 2000
 
 
-def designs_page(found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, str]) -> str:
+def designs_page(
+    found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, str], front: bytes = b""
+) -> str:
     """A page that works offline: counts, pictures of the best designs, all verdicts.
 
     Parameters
@@ -49,6 +55,8 @@ def designs_page(found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, 
         Pictures of the first delivered designs.
     files : Mapping[int, str]
         The files of designs by their place in the list.
+    front : bytes
+        An SVG file of the trade-off between goals, if there is one.
     """
     inks = Inks()
     pictures = [
@@ -62,6 +70,7 @@ def designs_page(found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, 
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<style>{_STYLE}{inks.rules(_CLASS)}</style></head>"
         f'<body class="{_CLASS}"><h1>{title}</h1><dl>{"".join(_counts(found))}</dl>'
+        f"{_front(front)}"
         f'<h2>Delivered</h2><div class="pictures">{"".join(pictures)}</div>'
         f'<h2>All designs</h2><div class="wide"><table><thead><tr>{_head(found)}</tr></thead>'
         f"<tbody>{''.join(_rows(found, files))}</tbody></table></div>"
@@ -69,9 +78,22 @@ def designs_page(found: Synthesis, scenes: Sequence[Scene], files: Mapping[int, 
     )
 
 
+def _solutions(found: Synthesis) -> tuple[str, str]:
+    if found.starts:
+        return "starts", str(found.starts)
+    return "solutions", f"{found.complex} complex, {found.real} real, {found.proved} proved"
+
+
+def _front(picture: bytes) -> str:
+    if not picture:
+        return ""
+    shown = embedded_svg(picture, "trade-off", "The misses of the goals against each other")
+    return f'<h2>Front</h2><figure class="front">{shown}</figure>'
+
+
 def _counts(found: Synthesis) -> Iterator[str]:
     pairs = [
-        ("solutions", f"{found.complex} complex, {found.real} real, {found.proved} proved"),
+        _solutions(found),
         ("mechanisms", str(found.linkages)),
         ("designs", str(len(found.designs))),
         *((kind.value, str(count)) for kind, count in found.defects.items()),
@@ -97,12 +119,14 @@ def _head(found: Synthesis) -> str:
     task, unit = found.task, f"[{found.error_unit}]" if found.error_unit else ""
     names = (
         "design", "mechanism", "drive", f"transmission [{task.angle.value}]",
-        f"size [{task.length}]", f"error {unit}".strip(), "score", "defect",
+        f"size [{task.length}]", f"error {unit}".strip(), "score",
+        *(f"miss of {name}" for name in goal_misses(found.designs)), "defect",
     )  # fmt: skip
     return "".join(f"<th><button>{html.escape(name)}</button></th>" for name in names)
 
 
 def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
+    goals = goal_misses(found.designs)
     for k, design in enumerate(found.designs[:_MOST_ROWS]):
         defect = design.defects[0].message if design.kinds else ""
         number = str(k + 1)
@@ -110,7 +134,8 @@ def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
             name = os.path.basename(files[k])
             link = f"refused/{name}" if design.kinds else name
             number = f'<a href="{html.escape(link)}">{number}</a>'
-        numbers = (design.transmission, design.size, design.error, design.score)
+        numbers = [design.transmission, design.size, design.error, design.score]
+        numbers += [misses[k] for misses in goals.values()]
         cells = [
             f'<td data-key="{k + 1}">{number}</td>',
             f"<td>{design.mechanism}</td><td>{design.driven}</td>",

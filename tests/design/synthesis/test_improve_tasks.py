@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.cli.synthesis_page import synthesis_lines
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.foundation.errors import MechanismFileError
 from linkwork.mechanism.linkage import Linkage
 
@@ -45,6 +48,10 @@ def test_a_wished_transmission_angle_holds_and_costs_exactness() -> None:
     assert free.delivered[0].transmission < 29.9
     assert wished.delivered[0].transmission >= 30.0
     assert wished.delivered[0].error > free.delivered[0].error
+    assert "transmission tested in the rows of the table" in wished.message
+    assert "rows" not in free.message
+    data = [found.to_dict()["designs"][0]["tested_in_rows"] for found in (free, wished)]
+    assert data == [[], ["transmission"]]
 
 
 def test_designs_that_break_wishes_are_refused_and_the_costliest_is_named() -> None:
@@ -89,7 +96,12 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
             "[[positions]]\npoint = [90, 500]\n",
             10, "is 508.035 from O2, out of reach: B comes at most 180 away",
         ),
-        (_HEAD + "[improve]\nfront = 9\n" + _GOAL, 5, "has no effect yet"),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL, 5, "between two goals or more, and 1 is given"),
+        (
+            _HEAD + "[improve]\nfront = 9\n" + _GOAL + _GOAL + "weight = 3\n",
+            14, "has no effect on a front",
+        ),
+        (_HEAD + "[improve]\nfront = 9\n" + _GOAL + "[rank]\ndeliver = 2\n", 10, "as a whole"),
         (
             _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
             5, "excludes",
@@ -103,3 +115,33 @@ def test_a_wrong_task_is_refused_with_its_line(
     with pytest.raises(MechanismFileError, match=message) as caught:
         lw.Task.load(tmp_path / "task.toml").solve()
     assert line in [problem.line for problem in caught.value.problems]
+
+
+def test_a_front_is_delivered_in_its_order_and_drawn(tmp_path: Path) -> None:
+    crank = lw.example_text("slider-crank").replace("step = 1\n", "step = 30\n")
+    (tmp_path / "crank.toml").write_text(crank)
+    goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
+    task = lw.Task.improve(
+        tmp_path / "crank.toml", goals=goals, vary=["O2 A"], front=3, starts=1,
+        wanted={"lengths": {"least": 15}},
+    )  # fmt: skip
+    found = task.solve()
+    improved = [design for design in found.delivered if isinstance(design, ImprovedMechanism)]
+    misses = [(design.goals["stroke(d)"], design.goals["max(d)"]) for design in improved]
+    assert [design.number for design in found.delivered] == [1, 2, 3]
+    assert misses == sorted(misses)
+    assert [b for _, b in misses] == sorted((b for _, b in misses), reverse=True)
+    # the wish holds for every design, and ends the front
+    assert found.delivered[-1].numbers["O2 A"] == pytest.approx(15.0, abs=1e-6)
+    assert found.to_dict()["designs"][0]["goals"] == improved[0].goals
+    assert list(found.table()["miss of max(d)"]) == [b for _, b in misses]
+    lines = synthesis_lines(found)
+    assert any("goal 1: the miss of stroke(d)" in line for line in lines)
+    assert max(map(len, lines)) <= 80
+    write_designs(found, tmp_path / "designs", FolderOptions(draw=True, html=True))
+    picture = (tmp_path / "designs" / "front.svg").read_text()
+    assert picture.count('id="station"') == 3
+    assert "<!-- miss of max(d) -->" in picture
+    page = (tmp_path / "designs" / "index.html").read_text()
+    assert 'id="trade-off"' in page
+    assert "miss of stroke(d)" in page

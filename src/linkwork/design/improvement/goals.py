@@ -113,7 +113,7 @@ class Misses(ABC):
     @property
     def is_bound(self) -> bool:
         """Whether only values beyond bounds are misses."""
-        return not self.goal.values and self.goal.target is None
+        return self.goal.is_bound
 
     def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
         """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.description import Description
@@ -37,6 +37,9 @@ class ImprovedDesign:
         The leading inputs at the points; none without points [file units].
     misses : tuple of float
         The distances from the points, on the branch of the table; NaN where this has no position.
+    goals : Mapping[str, float]
+        The root mean square of the misses of each goal that is no bound, by quantity or point,
+        without its weight [file units].
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
 
@@ -58,6 +61,7 @@ class ImprovedDesign:
     message: str
     inputs: tuple[float, ...] = ()
     misses: tuple[float, ...] = ()
+    goals: Mapping[str, float] = field(default_factory=dict)
     motion: Motion | None = None
 
     def __repr__(self) -> str:

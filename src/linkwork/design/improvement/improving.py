@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.improvement.fit_problem import FittedNumbers
 from linkwork.design.improvement.free_timing import freely_timed
+from linkwork.design.improvement.front_designs import front_designs
+from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
-from linkwork.design.improvement.mechanism_fit import fit_numbers, path_misses
+from linkwork.design.improvement.mechanism_fit import fit_numbers
+from linkwork.design.improvement.proved_design import fitted_design
 from linkwork.design.improvement.settings import Goal, Improvement, Points
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
     InputError,
-    LinkworkError,
     MechanismError,
     Problem,
     UnknownNameError,
@@ -24,8 +26,8 @@ from linkwork.foundation.errors import (
 )
 from linkwork.foundation.names import GROUND, find_spelling
 from linkwork.mechanism.draft import Draft
-from linkwork.mechanism.varied_number import VariedNumber, number_named, with_numbers
-from linkwork.motion.model import Model, model_of
+from linkwork.mechanism.varied_number import VariedNumber, number_named
+from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_least_squares import Box
 from linkwork.results.motion import Motion
@@ -50,8 +52,13 @@ def improved_designs(
     goals: Sequence[Goal | Points],
     settings: Improvement,
     progress: Callable[[float], None] | None = None,
+    *,
+    is_sound: Callable[[ImprovedDesign], bool] = lambda design: design.sound,
 ) -> tuple[ImprovedDesign, ...]:
-    """Different local minima, sound ones first, then by their misses.
+    """Different local minima, sound ones first, then by their misses; or a front, in its order,
+    and the designs found on the way to it that are not sound.
+
+    ``is_sound``: what a design of a front has to be, besides undominated.
 
     Raises
     ------
@@ -64,18 +71,43 @@ def improved_designs(
     numbers = numbers_to_vary(model, settings.vary)
     if not numbers:
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
-    x = np.array([float(q.of(model.description)) for q in numbers])
+    box = box_of(model, numbers, settings)
+    fits = _fits(model, numbers, box, points, others, settings, progress)
+    if settings.front:
+        return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
+    best = sorted(
+        (float((found.largest if settings.fit == "minimax" else found.total)[k]), part, int(k))
+        for part, (_, found) in enumerate(fits)
+        for k in np.flatnonzero(np.isfinite(found.total))
+    )
+    designs: list[ImprovedDesign] = []
+    for _, part, k in best:
+        path, found = fits[part]
+        if not _is_known(found.x[k], designs):
+            designs.append(fitted_design(model, numbers, path, found, k))
+    return tuple(sorted(designs, key=lambda design: not design.sound))
+
+
+def _fits(
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    box: Box,
+    points: Points | None,
+    goals: Sequence[Goal],
+    settings: Improvement,
+    progress: Callable[[float], None] | None,
+) -> list[tuple[PathGoal | None, FittedNumbers]]:
+    """Fits from all starts, one for each way to time the points."""
     motion = sweep(model, certify=False)
     if not motion.found.any():
         raise InputError(f'"{model.description.name}" has no position: improve one that moves')
+    x = np.array([float(q.of(model.description)) for q in numbers])
     rng = np.random.default_rng(settings.seed)
     count = settings.starts or STARTS
     starts = x * (1.0 + settings.spread * rng.uniform(-1.0, 1.0, (count, len(x))))
     starts[0] = x
-    box = box_of(model, numbers, settings)
     paths = _paths(model, motion, points) if points else (None,)
-    minimax = settings.fit == "minimax"
-    fits = []
+    fits: list[tuple[PathGoal | None, FittedNumbers]] = []
     for part, path in enumerate(paths):
 
         def tell(fraction: float, done: int = part) -> None:
@@ -83,37 +115,19 @@ def improved_designs(
                 progress((done + fraction) / len(paths))
 
         begin = box.inside(starts)
-        found = fit_numbers(
-            model, motion, numbers, box, begin, path, others, minimax=minimax, progress=tell
-        )
+        given = (model, motion, numbers, box, begin, path, goals)
+        if settings.front:
+            found = fit_front(*given, settings.front, progress=tell)
+        else:
+            found = fit_numbers(*given, minimax=settings.fit == "minimax", progress=tell)
         fits.append((path, found))
         if found.interrupted:
             break
-    best = sorted(
-        (float((found.largest if minimax else found.total)[k]), part, int(k))
-        for part, (_, found) in enumerate(fits)
-        for k in np.flatnonzero(np.isfinite(found.total))
-    )
-    designs: list[ImprovedDesign] = []
-    for _, part, k in best:
-        path, found = fits[part]
-        if _is_known(found.x[k], designs):
-            continue
-        told = "interrupted: the best so far; " if found.interrupted else ""
-        design = replace(
-            _design(model, numbers, found.x[k], told),
-            total=float(found.total[k]),
-            largest=float(found.largest[k]),
-        )
-        if path is not None:
-            rms = float(np.sqrt(found.path[k] / len(path.places)))
-            design = _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
-        designs.append(design)
-    return tuple(sorted(designs, key=lambda design: not design.sound))
+    return fits
 
 
 def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
-    found = [(key, message) for key, message in settings.problems()]
+    found = [*settings.problems(), *settings.front_problems(goals)]
     for k, goal in enumerate(goals):
         found += [(("goals", k, *key), message) for key, message in goal.problems()]
     if not goals:
@@ -201,47 +215,3 @@ def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:
     others = [np.array(list(design.numbers.values())) for design in designs]
     return any(np.abs(other - x).max() <= _EQUAL_NUMBERS * np.abs(x).max() for other in others)
-
-
-def _design(model: Model, numbers: Sequence[VariedNumber], x: Array, told: str) -> ImprovedDesign:
-    """The design with its proof: a certified sweep of its whole table."""
-    new = dict(zip(numbers, map(float, x), strict=True))
-    description = with_numbers(model.description, new)
-    motion = None
-    try:
-        motion = sweep(model_of(description))
-        lost = int(np.count_nonzero(~motion.certified))
-        told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
-    except LinkworkError as error:
-        lost, told = 1, f"{told}{error}"
-    return ImprovedDesign(
-        description=description,
-        numbers={q.name: value for q, value in new.items()},
-        total=np.nan,
-        largest=np.nan,
-        rms=0.0,
-        sound=not lost,
-        message=told,
-        motion=motion,
-    )
-
-
-def _on_path(
-    design: ImprovedDesign,
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    path: PathGoal,
-    t: Array,
-) -> ImprovedDesign:
-    """The design with its distances from the points, measured on its own proved branch."""
-    order = slice(None, None, -1 if path.falling else 1)
-    own = tuple(map(float, t[order] / model.input_scale[0]))
-    misses = np.full(len(own), np.nan)
-    if design.motion is not None and design.motion.found.any():
-        x = np.array(list(design.numbers.values()))
-        at = replace(path, inputs=t, timed=True)
-        misses = path_misses(model_of(design.description), design.motion, numbers, at, x)[order]
-    told, sound = design.message, design.sound
-    if not np.isfinite(misses).all():
-        told, sound = f"{told}; not all points lie on the branch of its table", False
-    return replace(design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told)

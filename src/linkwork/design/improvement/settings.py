@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -40,6 +40,11 @@ class Goal:
     at: tuple[float, ...] = ()
     values: tuple[float, ...] = ()
     weight: float = 1.0
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether only values beyond bounds are misses."""
+        return not self.values and self.target is None
 
     def problems(self) -> Problems:
         """What contradicts itself."""
@@ -145,7 +150,7 @@ class Improvement:
     spread : float
         Relative spread of the starts about the mechanism as it is.
     front : int
-        Designs between two goals; 0 for a weighted sum.
+        The largest number of designs of a front between the goals; 0 for a weighted sum.
     seed : int
     fit : str
         "least squares", or "minimax": the largest weighted miss counts.
@@ -168,8 +173,30 @@ class Improvement:
                 yield ("goals", k, *key), message
         if self.fit not in FITS:
             yield ("goal",), f'must be "least squares" or "minimax", got "{self.fit}"'
+        if self.front < 0 or self.front == 1:
+            yield ("front",), f"must be 2 designs or more, got {self.front}"
+        if self.front and self.fit == "minimax":
+            yield (
+                ("goal",),
+                "has no effect on a front, whose goals count by themselves: leave it out",
+            )
         for name, (low, high) in self.bounds.items():
             if not low <= high:
                 yield ("bounds", name), f"from {low:g} to {high:g} hold no number"
         if not 0.0 <= self.spread < 1.0:
             yield ("spread",), f"must be at least 0 and below 1, got {self.spread:g}"
+
+    def front_problems(self, goals: Sequence[Goal | Points]) -> Problems:
+        """Goals between which there is no front."""
+        if not self.front:
+            return
+        own = [goal for goal in goals if isinstance(goal, Points) or not goal.is_bound]
+        if len(own) < 2:
+            told = (
+                f"lies between two goals or more, and {len(own) or 'none'} is given with a target"
+            )
+            yield ("front",), f"{told}: bounds only limit it"
+        for k, goal in enumerate(goals):
+            if isinstance(goal, Goal) and goal.weight != 1.0 and not goal.is_bound:
+                told = "has no effect on a front, whose goals are not summed: leave it out"
+                yield ("goals", k, "weight"), told

@@ -152,6 +152,11 @@ class SolvedLanes:
             for lane in range(lanes):
                 self._lend(lane, near)
 
+    def copy_lanes(self, of: IndexArray, to: IndexArray) -> None:
+        """Begin lanes where others are now."""
+        for kept in (self.x, self.t, self.q, self.by_x, self.by_t, self._known):
+            kept[to] = kept[of]
+
     def inputs(self, t: Array) -> Array:
         """All inputs (…, p) for values of the leading one."""
         first = self.model.rows[0]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from linkwork.foundation.arrays import AnyArray
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.table import Table
 
-__all__ = ["designs_table"]
+__all__ = ["designs_table", "front_of", "goal_misses"]
 
 _POINTS = ("A0", "B0", "C0", "S", "T", "U", "V", "A", "B", "C", "D", "K", "P")
 
@@ -35,6 +36,8 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
         "size": (task.length, [design.size for design in designs]),
         "error": (found.error_unit, [design.error for design in designs]),
     }
+    for name, misses in goal_misses(designs).items():
+        numbers[f"miss of {name}"] = "", misses
     for name in _POINTS:
         places = [design.points.get(name, complex(np.nan, np.nan)) for design in designs]
         if not np.isnan(np.array([*places, 0j])[:-1]).all():
@@ -47,3 +50,15 @@ def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> T
     named = [(files or {}).get(k, "") for k in range(len(designs))]
     columns["file"], units["file"] = np.array(named, dtype=str), ""
     return Table(columns=columns, units=units, index="design")
+
+
+def front_of(found: Synthesis) -> dict[str, list[float]]:
+    """The misses of every goal of the delivered designs; none if they are no front."""
+    improvement = found.task.improvement
+    return goal_misses(found.delivered) if improvement is not None and improvement.front else {}
+
+
+def goal_misses(designs: Sequence[Any]) -> dict[str, list[float]]:
+    """The misses of every goal that improved designs have, in their order."""
+    names = dict.fromkeys(name for design in designs for name in design.goals)
+    return {name: [design.goals.get(name, np.nan) for design in designs] for name in names}

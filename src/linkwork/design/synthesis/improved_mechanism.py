@@ -65,6 +65,11 @@ class ImprovedMechanism(JudgedDesign):
         return dict(self.improved.numbers)
 
     @property
+    def goals(self) -> dict[str, float]:
+        """The root mean squares of the misses of goals that are no bounds [file units]."""
+        return dict(self.improved.goals)
+
+    @property
     def _motion(self) -> Motion | None:
         return self.improved.motion
 
@@ -157,9 +162,10 @@ class ImprovedMechanism(JudgedDesign):
     @cached_property
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
-        return tuple(
-            Defect(kind=kind, between=None, message=message) for kind, message in self._found()
-        )
+        found = tuple(self._found())
+        if not found and not self.improved.sound:
+            found = ((DefectKind.NOT_PROVED, self.improved.message),)
+        return tuple(Defect(kind=kind, between=None, message=message) for kind, message in found)
 
     def _found(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task
@@ -228,10 +234,23 @@ class ImprovedMechanism(JudgedDesign):
                         return True
         return False
 
+    @property
+    def tested_in_rows(self) -> tuple[str, ...]:
+        """Wishes that are tested in the rows of the table only.
+
+        The motion between the rows is proved, and with it branch, order and range; lengths and
+        fixed pivots do not change.
+        """
+        wanted = self.task.wanted
+        asked = ((TRANSMISSION_ANGLE.word, wanted.transmission), ("clear_of", wanted.obstacles))
+        return tuple(word for word, given in asked if given)
+
     def _details(self) -> Mapping[str, Any]:
         return {
             "numbers": self.numbers,
             "inputs": list(self.inputs),
+            "tested_in_rows": list(self.tested_in_rows),
+            "goals": self.goals,
             "misses": list(self.improved.misses),
             "total": self.improved.total,
             "message": self.improved.message,

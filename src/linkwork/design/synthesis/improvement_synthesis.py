@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.goals import goal_of
+from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.improving import (
     FACTOR,
     STARTS,
@@ -96,8 +97,16 @@ def improve_description(
         name = points.point or next(iter(description.trace), "")
         _refuse(task, _unreached(reach, name, points))
         goals.append(points)
-    found = improved_designs(model, goals, settings, progress)
-    designs = [ImprovedMechanism(task=task, improved=design, wishes=wishes) for design in found]
+    told = settings.front_problems(goals)
+    _refuse(task, (Problem(key=("improve", *key), message=message) for key, message in told))
+
+    def judged(design: ImprovedDesign) -> ImprovedMechanism:
+        return ImprovedMechanism(task=task, improved=design, wishes=wishes)
+
+    found = improved_designs(
+        model, goals, settings, progress, is_sound=lambda design: not judged(design).kinds
+    )
+    designs = [judged(design) for design in found]
     interrupted = any(design.message.startswith("interrupted") for design in found)
     return tuple(designs), settings.starts or STARTS, interrupted
 

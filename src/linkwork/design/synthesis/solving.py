@@ -97,9 +97,18 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
-    ranked = _ranked_alone(task, designs)
+    front = (task.improvement or Improvement()).front
+    ranked = _ranked_alone(task, designs, in_order=bool(front))
     seed = (task.improvement or Improvement()).seed
-    told = f"a sample: different local minima from {starts} starts with seed {seed}"
+    kind = (
+        "a front of designs, each the best one in some goal or trade-off,"
+        if front
+        else "different local minima"
+    )
+    told = f"a sample: {kind} from {starts} starts with seed {seed}"
+    if ranked and ranked[0].tested_in_rows:
+        wishes = " and ".join(ranked[0].tested_in_rows)
+        told += f"; {wishes} tested in the rows of the table, all else on the whole motion"
     return Synthesis(
         task=task,
         complex=len(designs),
@@ -133,16 +142,24 @@ def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     )
 
 
-def _ranked_alone(task: Task, designs: Sequence[_Alone]) -> tuple[_Alone, ...]:
-    """Designs that were judged one by one: sound ones by falling score, then the others."""
+def _ranked_alone(
+    task: Task, designs: Sequence[_Alone], *, in_order: bool = False
+) -> tuple[_Alone, ...]:
+    """Designs that were judged one by one: sound ones by falling score, then the others.
+
+    ``in_order``: sound ones in their own order, all of them delivered.
+    """
     measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
-    entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
+    entries = sorted(
+        (bool(d.kinds), 0.0 if d.kinds or in_order else -scores[k], k)
+        for k, d in enumerate(designs)
+    )
     ranked: list[_Alone] = []
     sound = sum(not refused for refused, _, _ in entries)
     for place, (refused, _, k) in enumerate(entries, start=1):
         number = place - sound if refused else place
-        delivered = not refused and number <= task.rank.deliver
+        delivered = not refused and (in_order or number <= task.rank.deliver)
         ranked.append(
             replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
         )

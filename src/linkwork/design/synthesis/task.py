@@ -126,8 +126,13 @@ class Task:
         if self.improvement is not None:
             for key, message in self.improvement.problems():
                 yield ("improve", *key), message
-            if self.improvement.front:
-                yield ("improve", "front"), "has no effect yet: vary the weights of goals instead"
+            if self.improvement.front and self.kind != "improve":
+                yield ("improve", "front"), 'belongs to task = "improve": leave it out'
+            if self.improvement.front and self.rank != Ranking():
+                yield (
+                    ("rank",),
+                    "has no effect on a front, which is delivered as a whole: leave it out",
+                )
         yield from self._given_problems()
         yield from self._wish_problems()
 

@@ -217,7 +217,11 @@ _IMPROVE = Key(
             Key("bounds", Named(_PAIR, 0), 'Bounds of numbers: "O2 A" = [10, 60]'),
             Key("starts", Whole(1, 10**6), "Number of starts"),
             Key("spread", PlainNumber(), "Relative spread of the starts; default 0.05"),
-            Key("front", Whole(2, 1000), "Number of designs between two goals: a Pareto front"),
+            Key(
+                "front",
+                Whole(2, 1000),
+                "Largest number of designs of a Pareto front between the goals; default: one sum",
+            ),
             Key("seed", Whole(0, 2**31), "Seed of the starts; default 1"),
         )
     ),

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from html import escape
 
 from linkwork.drawing import render
+from linkwork.drawing.embedded_svg import embedded_svg
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.drawing.scene import Scene
 from linkwork.export.report.document import (
@@ -66,7 +66,6 @@ h2,h3,.caption{break-after:avoid}
 @media print{body{font-size:10.5pt}main{max-width:none;padding:0}nav{display:none}
 .scroll{overflow:visible}pre{font-size:8pt}figure svg{max-height:115mm}}
 """
-_IDENTIFIER = re.compile(r'(\bid="|url\(#|href="#)')
 
 
 def html_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
@@ -151,10 +150,4 @@ def _look(column: Column) -> str:
 def _svg(figure: Figure) -> str:
     if isinstance(figure.picture, Scene):
         return inline_svg(figure.picture, FixedInks(), longest=_LONGEST)
-    text = render(figure.picture, "svg").decode()
-    text = text[text.index("<svg") :].strip()
-    # identifiers and the style sheet of one picture must not act on another
-    own = f"figure-{figure.number}"
-    text = _IDENTIFIER.sub(lambda match: f"{match[1]}{own}-", text)
-    text = text.replace("*{", f"#{own} *{{", 1).replace("<svg ", f'<svg id="{own}" ', 1)
-    return text.replace("<svg ", f'<svg role="img" aria-label="{escape(figure.caption)}" ', 1)
+    return embedded_svg(render(figure.picture, "svg"), f"figure-{figure.number}", figure.caption)

@@ -1,0 +1,349 @@
+"""Residuals of all goals of a mechanism, for lanes of designs on all cores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.design.improvement.goals import PathGoal, goal_of
+from linkwork.design.improvement.largest_miss import largest_misses, powered
+from linkwork.design.improvement.settings import Goal
+from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.trade_off import Objectives, TradeOff
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.operand import NotElementwise
+from linkwork.foundation.sharing import cores, share_out
+from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.model import Model
+from linkwork.numerics.lane_least_squares import (
+    Box,
+    LaneFit,
+    Residuals,
+    Sequenced,
+    minimise,
+    starts_of,
+)
+from linkwork.results.motion import Motion
+from linkwork.results.quantity import Kind
+
+__all__ = ["FitProblem", "FittedNumbers", "inputs_away"]
+
+_GAP = 1e-7  # between inputs of positions in order [rad or length]
+_APPROACH = 4  # parts of the way from the mechanism to a start
+_PART, _MOST = 8, 64  # lanes of one thread: of many rows, of few
+_ROWS = 4000  # of all lanes of a thread: fewer would take as long
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedNumbers:
+    """D designs, one for each start that went to the end.
+
+    Parameters
+    ----------
+    x : (D, P)
+        The numbers, file units.
+    t : (D, N)
+        Leading inputs at the points [rad or length].
+    total, largest : (D,)
+        Weighted sums of squares of all misses, and the largest one that is no broken bound.
+    path : (D,)
+        Sums of squares of the distances from the points [length²].
+    names : tuple of str
+        Of the goals that are no bounds.
+    objectives : (D, K)
+        Root mean squares of the misses of each goal that is no bound, without its weight.
+    broken : (D,)
+        The largest weighted residual of a bound.
+    interrupted : bool
+    """
+
+    x: Array
+    t: Array
+    total: Array
+    largest: Array
+    path: Array
+    names: tuple[str, ...]
+    objectives: Array
+    broken: Array
+    interrupted: bool
+
+
+def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
+    """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
+    lead = next(iter(motion.inputs))
+    table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
+    away = at[:, None] - table
+    if model.equations.inputs[0].kind == Kind.ANGLE.value:
+        away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
+    return np.where(motion.found, np.abs(away), np.inf)
+
+
+class FitProblem:
+    """Residuals of all goals, for lanes of designs.
+
+    Parameters
+    ----------
+    model, motion : Model, Motion
+        The mechanism as it is.
+    numbers : sequence of VariedNumber
+    box : Box
+    path : PathGoal, optional
+    goals : sequence of Goal
+    lanes : int
+
+    Attributes
+    ----------
+    power : int
+        Of the misses, for the largest one, see :mod:`~linkwork.design.improvement.largest_miss`.
+    trade : TradeOff, optional
+        Weights and limits of objectives; ``None``: the sum of all.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        motion: Motion,
+        numbers: Sequence[VariedNumber],
+        box: Box,
+        path: PathGoal | None,
+        goals: Sequence[Goal],
+        lanes: int,
+    ) -> None:
+        self.model, self.numbers, self.motion = model, numbers, motion
+        self.box, self.path, self.lanes = box, path, lanes
+        self.x = np.array([float(q.of(model.description)) for q in numbers])
+        lead = next(iter(motion.inputs))
+        scale = float(model.input_scale[0])
+        # limits between the rows of the table move with the numbers
+        table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
+        there = np.asarray(motion.found[motion.asked])
+        self.goals = [goal_of(model, goal, table, there, scale) for goal in goals]
+        self.points = None if path is None else self._rows(path.inputs)
+        # goals of the same rows share their positions
+        self.rows: dict[bytes, SolvedLanes] = {}
+        for misses in self.goals:
+            if misses.at.tobytes() not in self.rows:
+                self.rows[misses.at.tobytes()] = self._rows(misses.at)
+        self.shifts = [np.zeros((2, lanes, misses.count)) for misses in self.goals]
+        self.new_shifts = [np.zeros_like(shift) for shift in self.shifts]
+        self.power, self.largest = 1, np.ones(lanes)
+        self.trade: TradeOff | None = None
+        # of the shared residuals, those that are no bounds
+        self.counted = np.concatenate(
+            [np.zeros(0, bool), *(np.full(m.count, not m.is_bound) for m in self.goals)]
+        )
+        self.tell: Callable[[float], None] | None = None
+        self.whole, self.done, self.stopped = 1, 0, False
+
+    @property
+    def has_bounds(self) -> bool:
+        """Whether a goal is a bound, or an objective has a limit."""
+        limited = self.trade is not None and self.trade.has_limits
+        return limited or any(misses.is_bound for misses in self.goals)
+
+    @cached_property
+    def objectives(self) -> Objectives:
+        """The goals that are no bounds, the path first."""
+        names: list[str] = [] if self.path is None else [self.path.point]
+        columns: list[slice | None] = [] if self.path is None else [None]
+        weights, bounds, first = [1.0] * len(names), [], 0
+        for misses in self.goals:
+            own = slice(first, first + misses.count)
+            first = own.stop
+            if misses.is_bound:
+                bounds.append(own)
+                continue
+            names.append(misses.goal.of)
+            columns.append(own)
+            weights.append(misses.goal.weight)
+        return Objectives(
+            names=_told_apart(names),
+            columns=tuple(columns),
+            weights=np.array(weights),
+            bounds=tuple(bounds),
+        )
+
+    def copy_lanes(self, fit: LaneFit, of: IndexArray, to: IndexArray) -> None:
+        """Begin lanes where others are now."""
+        for name in ("x", "t", "total"):
+            getattr(fit, name)[to] = getattr(fit, name)[of]
+        for solved in self._solvers:
+            solved.copy_lanes(of, to)
+
+    def _rows(self, at: Array) -> SolvedLanes:
+        """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
+        away = inputs_away(at, self.motion, self.model)
+        q = self.motion.q[away.argmin(axis=1)]
+        return SolvedLanes(self.model, self.numbers, self.x, q, at, self.lanes)
+
+    @property
+    def _solvers(self) -> list[SolvedLanes]:
+        return [*([self.points] if self.points is not None else []), *self.rows.values()]
+
+    def begun(self, starts: Array) -> LaneFit:
+        """The starts, reached from the mechanism in some steps; infinite where lost."""
+        own = 0 if self.path is None or self.path.timed else len(self.path.places)
+        inputs = self.path.inputs[:own] if self.path else np.zeros(0)
+        t = np.array(np.broadcast_to(inputs, (len(starts), own)))
+        self._lead(np.broadcast_to(self.x, starts.shape), starts, t, np.arange(len(starts)))
+        return starts_of(starts, t)
+
+    def move(self, fit: LaneFit, lanes: IndexArray, x: Array) -> None:
+        """Lanes that were at a design of another lane, led to other numbers (D, P)."""
+        self._lead(fit.x[lanes], x, fit.t[lanes], lanes)
+        fit.x[lanes] = x
+
+    def _lead(self, begin: Array, end: Array, t: Array, lanes: IndexArray) -> None:
+        """From numbers to others in some steps, so that positions follow."""
+        for part in range(1, _APPROACH + 1):
+            for solved in self._solvers:
+                solved.total[lanes] = np.inf
+            self.evaluate(begin + (end - begin) * (part / _APPROACH), t, lanes)
+
+    def further(self, fit: LaneFit, keep: IndexArray, steps: int) -> LaneFit:
+        """Some lanes after more steps."""
+        sequenced = None
+        if self.path is not None and not self.path.timed and self.path.ordered:
+            turns = self.model.equations.inputs[0].kind == Kind.ANGLE.value
+            sequenced = Sequenced(gap=_GAP, span=(FULL_TURN if turns else np.inf) - _GAP)
+        for solved in self._solvers:
+            # sums of an earlier round are no measure of this one
+            solved.total[keep] = np.inf
+        if self.power > 1:
+            self.power, power = 1, self.power
+            now = self.evaluate(fit.x[keep], fit.t[keep], keep)
+            self.largest[keep] = np.maximum(largest_misses(now, self.counted), 1e-300)
+            self.power = power
+        rows = sum(len(solved.rows_at) for solved in self._solvers)
+        part = min(max(_PART, _ROWS // max(1, rows)), _MOST)
+        parts = [keep[k : k + part] for k in range(0, len(keep), part)]
+        found = [fit.take(part) for part in parts]
+
+        def work(k: int) -> None:
+            own = parts[k]
+
+            def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
+                if self.stopped:
+                    raise KeyboardInterrupt
+                if k == 0 and self.tell is not None:
+                    self.tell(min(1.0, (self.done + tried[0]) / self.whole))
+                    tried[0] += 1
+                return self.evaluate(x, t, own[lanes])
+
+            found[k] = minimise(evaluate, fit.take(own), self.box, steps, sequenced=sequenced)
+            self.stopped = self.stopped or found[k].interrupted
+
+        tried = [0]
+        try:
+            share_out(work, range(len(parts)), cores())
+        except KeyboardInterrupt:
+            # while waiting for the other threads, which stop at their next step
+            self.stopped = True
+        self.done += steps
+        own = replace(LaneFit.joined(found), interrupted=self.stopped)
+        every = {
+            name: np.array(getattr(fit, name)) for name in ("x", "t", "total", "damping", "idle")
+        }
+        for name, whole in every.items():
+            whole[keep] = getattr(own, name)
+        if self.has_bounds and not own.interrupted:
+            self.evaluate(own.x, own.t, keep)
+            for shift, new in zip(self.shifts, self.new_shifts, strict=True):
+                shift[:, keep] = new[:, keep]
+            if self.trade is not None:
+                self.trade.update(keep)
+        return LaneFit(**every, interrupted=own.interrupted)
+
+    def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
+        """All misses of designs (D, P); NaN where a design cannot be built like the others."""
+        try:
+            found = self._together(x, t, lanes)
+        except NotElementwise:
+            half = len(x) // 2
+            if half:
+                first, second = slice(0, half), slice(half, None)
+                return Residuals.joined(
+                    self.evaluate(x[first], t[first], lanes[first]),
+                    self.evaluate(x[second], t[second], lanes[second]),
+                )
+            # the mechanism itself can be built: its residuals have the shapes
+            found = self._together(self.x[None], t, lanes, keep=False)
+            found = replace(found, rows=found.rows * np.nan, shared=found.shared * np.nan)
+        return found
+
+    def _together(self, x: Array, t: Array, lanes: IndexArray, *, keep: bool = True) -> Residuals:
+        count, parameters = x.shape
+        rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
+        by_t: Array | None = None
+        kept = []
+        if self.path is not None and self.points is not None:
+            at = np.broadcast_to(self.path.inputs, (count, len(self.path.places)))
+            at = at if self.path.timed else t
+            found = self.points.at(x, at, lanes)
+            rows, by_x, slope = self.path.misses(found)
+            by_t = None if self.path.timed else slope
+            kept.append((self.points, found, at))
+        positions = {}
+        for key, solved in self.rows.items():
+            at = np.broadcast_to(solved.rows_at, (count, len(solved.rows_at)))
+            positions[key] = solved.at(x, at, lanes)
+            kept.append((solved, positions[key], at))
+        shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
+        for k, misses in enumerate(self.goals):
+            own, slopes, new = misses.of(positions[misses.at.tobytes()], self.shifts[k][:, lanes])
+            self.new_shifts[k][:, lanes] = new
+            shared.append(own)
+            shared_by_x.append(slopes)
+        result = Residuals(
+            rows, by_x, by_t, np.concatenate(shared, axis=1), np.concatenate(shared_by_x, axis=1)
+        )
+        if self.trade is not None:
+            result = self.trade.applied(result, lanes)
+        if self.power > 1:
+            result = powered(result, self.power, self.largest[lanes], self.counted)
+        for solver, found, at in kept if keep else ():
+            solver.keep(found, x, at, lanes, result.total)
+        return result
+
+    def measured(self, fit: LaneFit, lanes: IndexArray) -> Residuals:
+        """The misses of lanes without powers, weights and shifts."""
+        kept = self.power, self.trade, self.shifts
+        self.power, self.trade = 1, None
+        self.shifts = [np.zeros_like(shift) for shift in self.shifts]
+        for solved in self._solvers:
+            solved.total[lanes] = np.inf
+        found = self.evaluate(fit.x[lanes], fit.t[lanes], lanes)
+        self.power, self.trade, self.shifts = kept
+        return found
+
+    def result(self, fit: LaneFit) -> FittedNumbers:
+        """All lanes with their misses."""
+        there = self.measured(fit, np.arange(len(fit)))
+        timed = self.path is None or self.path.timed
+        t = fit.t
+        if timed and self.path is not None:
+            t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
+        known = np.isfinite(fit.total)
+        return FittedNumbers(
+            x=fit.x,
+            t=t,
+            total=np.where(known, there.total, np.inf),
+            largest=np.where(known, largest_misses(there, self.counted), np.inf),
+            path=np.asarray(np.einsum("dnm,dnm->d", there.rows, there.rows)),
+            names=self.objectives.names,
+            objectives=self.objectives.values(there),
+            broken=self.objectives.broken(there),
+            interrupted=fit.interrupted,
+        )
+
+
+def _told_apart(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of which equal ones are numbered."""
+    return tuple(
+        name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
+        for k, name in enumerate(names)
+    )

@@ -1,0 +1,105 @@
+"""The proved designs of a front: those that no other sound design surpasses in every goal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers
+from linkwork.design.improvement.front_fit import BROKEN
+from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.pareto_front import spread, undominated
+from linkwork.design.improvement.proved_design import fitted_design
+from linkwork.design.improvement.settings import Goal
+from linkwork.foundation.arrays import Array
+from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.model import Model, model_of
+from linkwork.numerics.lane_least_squares import Box, starts_of
+
+__all__ = ["front_designs"]
+
+Fits = Sequence[tuple[PathGoal | None, FittedNumbers]]
+
+
+def front_designs(
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    box: Box,
+    goals: Sequence[Goal],
+    fits: Fits,
+    count: int,
+    is_sound: Callable[[ImprovedDesign], bool],
+) -> tuple[ImprovedDesign, ...]:
+    """The front by rising first goal, then the designs that are not sound.
+
+    Goals are measured anew on the motion that proves a design. A design that is not sound makes
+    room for those that only it dominates.
+
+    Parameters
+    ----------
+    goals : sequence of Goal
+        Those of the fits.
+    fits : sequence of (PathGoal or None, FittedNumbers)
+    count : int
+        The largest number of designs of the front.
+    is_sound : callable
+        Whether a proved design keeps every wish.
+    """
+    lanes = [
+        (path, found, k)
+        for path, found in fits
+        for k in range(len(found.x))
+        if np.isfinite(found.total[k])
+    ]
+    values = np.array([found.objectives[k] for _, found, k in lanes]).reshape(len(lanes), -1)
+    broken = np.array([found.broken[k] for _, found, k in lanes])
+    kept = broken <= BROKEN
+    if len(lanes) and not kept.any():
+        # the design that comes nearest to the bounds is shown, and refused
+        kept[broken.argmin()] = True
+    values = np.where(kept[:, None], values, np.inf)
+    proved: dict[int, ImprovedDesign] = {}
+    refused: list[ImprovedDesign] = []
+    while True:
+        front = undominated(values)
+        chosen = front[spread(values[front], count)]
+        new = [int(k) for k in chosen if int(k) not in proved]
+        for k in new:
+            path, found, lane = lanes[k]
+            design = fitted_design(model, numbers, path, found, lane)
+            proved[k] = design = _measured(design, numbers, box, path, goals, found.t[lane])
+            if broken[k] > BROKEN:
+                told = f"{design.message}; no design keeps the bounds of all goals"
+                proved[k] = design = replace(design, sound=False, message=told)
+            values[k] = list(design.goals.values())
+            if not is_sound(design):
+                values[k] = np.inf
+                refused.append(design)
+        if not new:
+            return (*(proved[int(k)] for k in chosen), *refused)
+
+
+def _measured(
+    design: ImprovedDesign,
+    numbers: Sequence[VariedNumber],
+    box: Box,
+    path: PathGoal | None,
+    goals: Sequence[Goal],
+    t: Array,
+) -> ImprovedDesign:
+    """The design with its goals on its own proved motion."""
+    if design.motion is None or not design.motion.found.any():
+        return design
+    at = None if path is None else replace(path, inputs=t, timed=True)
+    own = FitProblem(model_of(design.description), design.motion, numbers, box, at, goals, 1)
+    x = np.array(list(design.numbers.values()))[None]
+    misses = own.measured(starts_of(x, np.zeros((1, 0))), np.zeros(1, dtype=int))
+    values = own.objectives.values(misses)[0]
+    design = replace(design, goals=dict(zip(design.goals, map(float, values), strict=True)))
+    if np.isfinite(values).all():
+        return design
+    told = f"{design.message}; a goal has no value on the branch of its table"
+    return replace(design, sound=False, message=told)

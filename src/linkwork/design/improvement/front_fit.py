@@ -1,0 +1,276 @@
+"""Designs between several objectives: weighted sums, then limits where the front has gaps.
+
+Every objective is minimised alone from all starts. Weighted sums begin at these designs and find
+the convex parts of the front. Between neighbours that are far apart, one objective is limited and
+another one minimised, which finds the rest; a gap that stays is a jump of the front.
+
+References
+----------
+I. Y. Kim, O. L. de Weck, Adaptive weighted-sum method for bi-objective optimization, Structural and
+Multidisciplinary Optimization 29 (2005) 149-158, doi:10.1007/s00158-004-0465-1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import combinations, product
+
+import numpy as np
+
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers
+from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.pareto_front import objective_spans, undominated
+from linkwork.design.improvement.settings import Goal
+from linkwork.design.improvement.trade_off import TradeOff
+from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.mechanism.varied_number import VariedNumber
+from linkwork.motion.model import Model
+from linkwork.numerics.lane_least_squares import Box
+from linkwork.results.motion import Motion
+
+__all__ = ["BROKEN", "fit_front"]
+
+_OTHERS = (0.1, 0.01, 1e-3, 1e-4)  # weights of the others, which decide between equal designs
+_STEPS = 40  # of each round
+_ROUNDS = (40, 20, 20, 20, 20)  # steps; after each the shifts of limits and bounds change
+_BEST = 2  # minima of each objective at which weighted sums begin
+_EVEN = 1.2  # parts of an even front: narrower gaps are not divided
+_FILLINGS = 3  # rounds that fill gaps
+#: The largest residual of a bound that holds.
+BROKEN = 1e-6
+
+
+def fit_front(
+    model: Model,
+    motion: Motion,
+    numbers: Sequence[VariedNumber],
+    box: Box,
+    starts: Array,
+    path: PathGoal | None,
+    goals: Sequence[Goal],
+    count: int,
+    *,
+    progress: Callable[[float], None] | None = None,
+) -> FittedNumbers:
+    """All designs on the way to a front of ``count`` designs; parameters as of ``fit_numbers``."""
+    front = _Front(model, motion, numbers, box, starts, path, goals, count)
+    front.problem.tell = progress
+    for stage in (front.minimise_each, front.weigh, front.limit):
+        stage()
+        if front.fit.interrupted:
+            break
+    return front.result()
+
+
+class _Front:
+    """Lanes of one problem, taken into use stage by stage."""
+
+    def __init__(
+        self,
+        model: Model,
+        motion: Motion,
+        numbers: Sequence[VariedNumber],
+        box: Box,
+        starts: Array,
+        path: PathGoal | None,
+        goals: Sequence[Goal],
+        count: int,
+    ) -> None:
+        probe = FitProblem(model, motion, numbers, box, path, goals, 1)
+        self.size, self.count = len(probe.objectives.names), count
+        self.weights = _weights(self.size, count)
+        self.limits = _levels(self.size, count)
+        alone = self.size * len(starts)
+        weighted = len(self.weights) * self.size * _BEST
+        between = 2 * count * _FILLINGS if self.size == 2 else len(self.limits)
+        self.used, lanes = 0, alone + weighted + between
+        self.problem = FitProblem(model, motion, numbers, box, path, goals, lanes)
+        fit = self.problem.begun(np.tile(starts, (self.size, 1)))
+        self.alone = np.arange(alone)
+        # lanes that are not used yet
+        self.fit = fit.take(np.minimum(np.arange(lanes), alone - 1))
+        self.trade = self._trade(lanes)
+        self._tried: set[tuple[int, float]] = set()
+        fillings = _FILLINGS if self.size == 2 else 1
+        self.problem.whole = len(_OTHERS) * _STEPS + (2 + fillings) * sum(_ROUNDS)
+
+    def _trade(self, lanes: int) -> TradeOff:
+        objectives = self.problem.objectives
+        values = self._values(self.alone)
+        scale = np.nanmax(np.where(np.isfinite(values), values, np.nan), axis=0, initial=0.0)
+        weights = np.ones((lanes, self.size))
+        limits = np.full_like(weights, np.inf)
+        return TradeOff(objectives, np.where(scale > 0.0, scale, 1.0), weights, limits)
+
+    def _values(self, lanes: IndexArray) -> Array:
+        """Objectives of lanes (D, K), infinite where they are not known or a bound is broken."""
+        found = self.problem.measured(self.fit, lanes)
+        values = self.problem.objectives.values(found)
+        fine = np.isfinite(values).all(axis=1) & (self.problem.objectives.broken(found) <= BROKEN)
+        return np.where(fine[:, None], values, np.inf)
+
+    def _run(self, lanes: IndexArray, rounds: Sequence[int]) -> None:
+        self.problem.trade = self.trade
+        for k, steps in enumerate(rounds):
+            own = lanes[np.isfinite(self.fit.total[lanes]) | (k == 0)]
+            if not len(own) or self.fit.interrupted:
+                break
+            self.fit = self.problem.further(self.fit, own, steps)
+        self.used = max(self.used, int(lanes.max(initial=-1)) + 1)
+
+    def _begin(self, parents: Sequence[int]) -> IndexArray:
+        """New lanes that begin where others are."""
+        of = np.array(parents, dtype=np.intp)
+        to = self.used + np.arange(len(of))
+        self.fit = replace(
+            self.fit, x=self.fit.x.copy(), t=self.fit.t.copy(), total=self.fit.total.copy()
+        )
+        self.problem.copy_lanes(self.fit, of, to)
+        return to
+
+    def minimise_each(self) -> None:
+        """Each objective alone, the others deciding between equal designs."""
+        own = np.repeat(np.arange(self.size), len(self.alone) // self.size)
+        for other in _OTHERS:
+            self.trade.weights[self.alone] = other
+            self.trade.weights[self.alone, own] = 1.0
+            self._run(self.alone, (_STEPS,))
+        if self.problem.has_bounds:
+            self._run(self.alone, _ROUNDS)
+
+    def weigh(self) -> None:
+        """Weighted sums, from the best designs of each objective."""
+        values = self._values(self.alone)
+        parents: list[int] = []
+        for each in values.T:
+            best = np.argsort(each, kind="stable")[:_BEST]
+            parents += [int(k) for k in best if np.isfinite(each[k])]
+        if not parents:
+            return
+        front = values[undominated(values)]
+        spans = objective_spans(front)
+        weights = [weight for weight in self.weights for _ in parents]
+        lanes = self._begin(parents * len(self.weights))
+        self.trade.weights[lanes] = np.array(weights) * self.trade.units / spans
+        self._run(lanes, _ROUNDS if self.problem.has_bounds else (2 * _STEPS,))
+
+    def limit(self) -> None:
+        """One objective with limits of the others."""
+        if self.size > 2:
+            self._level()
+            return
+        for _ in range(_FILLINGS):
+            if not self._fill() or self.fit.interrupted:
+                break
+
+    def _fill(self) -> bool:
+        """Limits that divide the widest gaps between neighbours; whether there were any."""
+        values = self._values(np.arange(self.used))
+        front = undominated(values)
+        places = values[front]
+        if len(front) < 2:
+            return False
+        spans = objective_spans(places)
+        scaled = (places - places.min(axis=0)) / spans
+        gaps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
+        found: list[tuple[int, int, int, float, float]] = []
+        for k, part in enumerate(_divided(gaps, self.count, self.count - len(front))):
+            held = int(np.abs(scaled[k + 1] - scaled[k]).argmax())
+            low, high = places[k, held], places[k + 1, held]
+            for share in np.arange(1, part) / part:
+                limit = float(low + share * (high - low))
+                if (held, limit) not in self._tried:
+                    self._tried.add((held, limit))
+                    found.append((int(front[k]), int(front[k + 1]), held, float(share), limit))
+        found = found[: (len(self.fit) - self.used) // 2]
+        if not found:
+            return False
+        one, other, held_ones, shares, limits = (
+            np.array(part) for part in zip(*found, strict=True)
+        )
+        nearer = np.where(shares < 0.5, one, other)
+        lanes = self._begin([*nearer, *nearer])
+        # from the nearer neighbour, and from a design between both
+        between = self.fit.x[one] + shares[:, None] * (self.fit.x[other] - self.fit.x[one])
+        self.problem.trade = None
+        self.problem.move(self.fit, lanes[len(found) :], between)
+        held_ones = np.tile(held_ones, 2)
+        self.trade.weights[lanes] = self.trade.units / spans
+        self.trade.weights[lanes, held_ones] *= _OTHERS[-1]
+        self.trade.limits[lanes, held_ones] = np.tile(limits, 2) / self.trade.units[held_ones]
+        self._run(lanes, _ROUNDS)
+        return True
+
+    def _level(self) -> None:
+        """Limits of all objectives but one at levels between the least and the largest values."""
+        every = np.arange(self.used)
+        values = self._values(every)
+        front = undominated(values)
+        if len(front) < 2:
+            return
+        places = values[front]
+        low, spans = places.min(axis=0), objective_spans(places)
+        parents, kept, limits = [], [], []
+        for free, shares in self.limits:
+            limit = low + shares * spans
+            over = np.maximum(0.0, (places - limit) / spans)
+            over[:, free] = 0.0
+            parents.append(int(front[np.linalg.norm(over, axis=1).argmin()]))
+            kept.append(free)
+            limits.append(limit / self.trade.units)
+        lanes = self._begin(parents)
+        self.trade.weights[lanes] = _OTHERS[-1] * self.trade.units / spans
+        self.trade.weights[lanes, kept] /= _OTHERS[-1]
+        self.trade.limits[lanes] = limits
+        self.trade.limits[lanes, kept] = np.inf
+        self._run(lanes, _ROUNDS)
+
+    def result(self) -> FittedNumbers:
+        """All lanes that were used; the sum of those that break a bound is infinite."""
+        self.problem.trade = None
+        fit = replace(
+            self.fit,
+            total=np.where(np.arange(len(self.fit)) < self.used, self.fit.total, np.inf),
+        )
+        return self.problem.result(fit)
+
+
+def _weights(size: int, count: int) -> Array:
+    """Weights spread over the objectives, (W, K); the sum of their squares is 1."""
+    parts = size
+    while True:
+        found = [np.diff([0, *ends, parts]) for ends in combinations(range(1, parts), size - 1)]
+        if 2 * len(found) >= count:
+            return np.sqrt(np.array(found) / parts)
+        parts += 1
+
+
+def _levels(size: int, count: int) -> list[tuple[int, Array]]:
+    """The objective that is free, and the levels of the others as shares of their spans, (K,)."""
+    if size == 2:
+        return []
+    steps = 2
+    while steps ** (size - 1) < count:
+        steps += 1
+    shares = np.arange(1, steps + 1) / (steps + 1)
+    found = [
+        (free, np.array(levels))
+        for free in range(size)
+        for levels in product(*(([0.0] if k == free else shares) for k in range(size)))
+    ]
+    return found[:: -(-len(found) // (_FILLINGS * count))]
+
+
+def _divided(gaps: Array, count: int, missing: int) -> list[int]:
+    """Into how many parts gaps are divided, the widest one always first: so that no design is
+    missing, and no part is wider than those of an even front of ``count`` designs.
+    """
+    parts = np.ones(len(gaps), dtype=int)
+    even = float(gaps.sum()) / max(1, count - 1)
+    for added in range(count):
+        widest = int((gaps / parts).argmax())
+        if added >= missing and gaps[widest] / parts[widest] <= _EVEN * even:
+            break
+        parts[widest] += 1
+    return [int(part) for part in parts]

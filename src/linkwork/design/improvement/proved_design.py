@@ -1,0 +1,85 @@
+"""Designs of a fit with their proofs: certified sweeps, and misses on the branches they prove."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linkwork.design.improvement.fit_problem import FittedNumbers
+from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.mechanism_fit import path_misses
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import LinkworkError
+from linkwork.mechanism.varied_number import VariedNumber, with_numbers
+from linkwork.motion.model import Model, model_of
+from linkwork.motion.sweeping import sweep
+
+__all__ = ["fitted_design"]
+
+
+def fitted_design(
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    path: PathGoal | None,
+    found: FittedNumbers,
+    k: int,
+) -> ImprovedDesign:
+    """The design of one lane of a fit."""
+    told = "interrupted: the best so far; " if found.interrupted else ""
+    design = replace(
+        _proved(model, numbers, found.x[k], told),
+        total=float(found.total[k]),
+        largest=float(found.largest[k]),
+        goals=dict(zip(found.names, map(float, found.objectives[k]), strict=True)),
+    )
+    if path is None:
+        return design
+    rms = float(np.sqrt(found.path[k] / len(path.places)))
+    return _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
+
+
+def _proved(model: Model, numbers: Sequence[VariedNumber], x: Array, told: str) -> ImprovedDesign:
+    """The design with its proof: a certified sweep of its whole table."""
+    new = dict(zip(numbers, map(float, x), strict=True))
+    description = with_numbers(model.description, new)
+    motion = None
+    try:
+        motion = sweep(model_of(description))
+        lost = int(np.count_nonzero(~motion.certified))
+        told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
+    except LinkworkError as error:
+        lost, told = 1, f"{told}{error}"
+    return ImprovedDesign(
+        description=description,
+        numbers={q.name: value for q, value in new.items()},
+        total=np.nan,
+        largest=np.nan,
+        rms=0.0,
+        sound=not lost,
+        message=told,
+        motion=motion,
+    )
+
+
+def _on_path(
+    design: ImprovedDesign,
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    path: PathGoal,
+    t: Array,
+) -> ImprovedDesign:
+    """The design with its distances from the points, measured on its own proved branch."""
+    order = slice(None, None, -1 if path.falling else 1)
+    own = tuple(map(float, t[order] / model.input_scale[0]))
+    misses = np.full(len(own), np.nan)
+    if design.motion is not None and design.motion.found.any():
+        x = np.array(list(design.numbers.values()))
+        at = replace(path, inputs=t, timed=True)
+        misses = path_misses(model_of(design.description), design.motion, numbers, at, x)[order]
+    told, sound = design.message, design.sound
+    if not np.isfinite(misses).all():
+        told, sound = f"{told}; not all points lie on the branch of its table", False
+    return replace(design, inputs=own, misses=tuple(map(float, misses)), sound=sound, message=told)
