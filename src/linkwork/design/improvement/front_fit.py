@@ -37,8 +37,8 @@ _ROUNDS = (40, 20, 20, 20, 20)  # steps; after each the shifts of limits and bou
 _BEST = 2  # minima of each objective at which weighted sums begin
 _EVEN = 1.2  # parts of an even front: narrower gaps are not divided
 _FILLINGS = 3  # rounds that fill gaps
-#: The largest residual of a bound that holds.
-BROKEN = 1e-6
+#: The largest residual of a bound that holds: less than its margin.
+BROKEN = 1e-5
 
 
 def fit_front(

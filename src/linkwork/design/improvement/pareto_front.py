@@ -16,14 +16,16 @@ __all__ = ["objective_spans", "spread", "undominated"]
 _ALIKE = 1e-6  # of the span of an objective: what fits agree to
 
 
-def objective_spans(values: Array) -> Array:
-    """The ranges of objectives over designs, (D, K), whose extremes are compared, (K,).
+def objective_spans(values: Array, every: Array | None = None) -> Array:
+    """The ranges of objectives over designs (D, K), (K,).
 
-    1 for objectives that are the same in all of them, to rounding of the largest one.
+    The largest value instead, of ``every`` design if given, where they differ by a millionth of it
+    at most.
     """
     spans = np.ptp(values, axis=0) if len(values) else np.zeros(values.shape[1])
-    flat = spans <= _ALIKE * np.abs(values).max(axis=0, initial=0.0)
-    return np.where(flat | (spans == 0.0), 1.0, spans)
+    largest = np.abs(values if every is None else every).max(axis=0, initial=0.0)
+    flat = spans <= _ALIKE * largest
+    return np.where(flat, np.where(largest > 0.0, largest, 1.0), spans)
 
 
 def undominated(values: Array) -> IndexArray:
@@ -41,7 +43,7 @@ def undominated(values: Array) -> IndexArray:
     own = values[known]
     if not len(own):
         return known
-    scaled = (own - own.min(axis=0)) / objective_spans(own[_strictly(own)])
+    scaled = (own - own.min(axis=0)) / objective_spans(own[_strictly(own)], own)
     kept: list[int] = []
     for k in np.argsort(scaled.sum(axis=1), kind="stable"):
         no_larger = scaled[kept] <= scaled[k] + _ALIKE
