@@ -1,4 +1,4 @@
-"""Solves random members of all families of precision positions, or checks the shipped ones.
+"""Solves random members of all families of precision positions and of six-bars, or checks these.
 
 A member grows from one random linkage by closed paths, until three lead to nothing new; the trace
 test then confirms that no solution is missing, and that one less would be noticed.
@@ -20,62 +20,80 @@ from linkwork.design.precision.problem import PrecisionProblem  # noqa: E402
 from linkwork.design.precision.start_sets import (  # noqa: E402
     SHIPPED,
     SHIPPED_PROBLEMS,
+    NamedFamily,
     as_arrays,
     member_of_arrays,
-    start_member,
+    stored_member,
 )
+from linkwork.design.six_bars.start_member import SHIPPED as SHIPPED_WATT  # noqa: E402
+from linkwork.design.six_bars.watt_problem import WATT  # noqa: E402
 from linkwork.foundation.arrays import AnyArray  # noqa: E402
 from linkwork.numerics.homotopy.monodromy import Member, solve_by_monodromy  # noqa: E402
 from linkwork.numerics.homotopy.trace_test import trace_defect  # noqa: E402
 
+#: The families of every shipped file.
+_FILES: dict[Path, tuple[NamedFamily, ...]] = {SHIPPED: SHIPPED_PROBLEMS, SHIPPED_WATT: (WATT,)}
 _SEED, _CHECK = 11, 12  # random numbers of the shipped sets, and of others
 _STRAIGHT = 1e-7  # a trace's distance from a straight line that rounding explains
-_TRIES = 5  # random directions of the trace test, until no path is lost
+_SEEN = 100.0  # times less straight is the trace of one solution less
+# of six-bars: of so many paths some pass too near to a degenerate solution on a longer way
+_REACH = 1e-3
+_TRIES = 20  # random directions of the trace test, until no path is lost
 
 
-def solve(problem: PrecisionProblem, seed: int) -> Member:
+def solve(problem: NamedFamily, seed: int) -> Member:
     """A solved and confirmed member; ends the script if it cannot be confirmed."""
     begin, grown = time.process_time(), list[int]()
     rng, tracker = np.random.default_rng(seed), CompiledTracker()
     member = solve_by_monodromy(problem, rng, tracker, grown.append)
+    reach = _REACH if problem is WATT else 1.0
     for _ in range(_TRIES):
-        whole = trace_defect(problem, member, rng, tracker)
+        whole = trace_defect(problem, member, rng, tracker, reach)
         if not whole.lost:
             break
     less = Member(parameters=member.parameters, x=member.x[1:])
-    part = trace_defect(problem, less, rng, tracker)
+    part = trace_defect(problem, less, rng, tracker, reach)
     seconds = time.process_time() - begin
     _say(
-        f"{problem.poses + 1} poses, {problem.points} points, {problem.pivots} pivots given: "
-        f"{len(member.x)} solutions ({', '.join(map(str, grown))}); trace {whole.relative:.0e}, "
+        f"{_title(problem)}: {len(member.x)} solutions ({', '.join(map(str, grown))}); "
+        f"trace {whole.relative:.0e}, "
         f"one less {part.relative:.0e}; {seconds:.1f} s"
     )
-    if whole.lost or whole.relative > _STRAIGHT or part.relative < 100.0 * _STRAIGHT:
+    if whole.lost or whole.relative > _STRAIGHT or part.relative < _SEEN * whole.relative:
         raise SystemExit("the trace test did not confirm these solutions")
     return member
 
 
 def build() -> None:
-    """Write the shipped file anew."""
-    arrays = dict[str, AnyArray]()
-    for problem in SHIPPED_PROBLEMS:
-        kept = as_arrays(problem, solve(problem, _SEED))
-        member_of_arrays(problem, kept)  # can it be read again?
-        arrays.update(kept)
-    np.savez_compressed(SHIPPED, **arrays)  # type: ignore[arg-type]
-    _say(f"{SHIPPED.relative_to(ROOT)}: {SHIPPED.stat().st_size} bytes")
+    """Write the shipped files anew."""
+    for path, problems in _FILES.items():
+        arrays = dict[str, AnyArray]()
+        for problem in problems:
+            kept = as_arrays(problem, solve(problem, _SEED))
+            member_of_arrays(problem, kept)  # can it be read again?
+            arrays.update(kept)
+        np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+        _say(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes")
 
 
 def check() -> None:
     """Compare the numbers of solutions with those of other members."""
-    wrong = 0
-    for problem in SHIPPED_PROBLEMS:
-        shipped, other = len(start_member(problem).x), len(solve(problem, _CHECK).x)
-        if shipped != other:
-            wrong += 1
-            _say(f"{problem.name}: {shipped} shipped, {other} in another member")
-    _say(f"{len(SHIPPED_PROBLEMS)} sets, {wrong} differ")
+    checked = wrong = 0
+    for path, problems in _FILES.items():
+        for problem in problems:
+            shipped, other = len(stored_member(problem, path).x), len(solve(problem, _CHECK).x)
+            checked += 1
+            if shipped != other:
+                wrong += 1
+                _say(f"{problem.name}: {shipped} shipped, {other} in another member")
+    _say(f"{checked} sets, {wrong} differ")
     raise SystemExit(1 if wrong else 0)
+
+
+def _title(problem: NamedFamily) -> str:
+    if isinstance(problem, PrecisionProblem):
+        return f"{problem.poses + 1} poses, {problem.points} points, {problem.pivots} pivots given"
+    return problem.name
 
 
 def _say(text: str) -> None:

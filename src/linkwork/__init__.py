@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from linkwork.design.synthesis.defect_messages import (
         Defect as Defect,
     )
+    from linkwork.design.synthesis.judged_design import (
+        JudgedDesign as JudgedDesign,
+    )
     from linkwork.design.synthesis.result import (
         Dyad as Dyad,
         SynthesizedDesign as SynthesizedDesign,

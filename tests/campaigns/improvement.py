@@ -100,7 +100,7 @@ def squares(design: lw.SynthesizedDesign, points: tuple[tuple[float, float], ...
     a0, b0, a, b = (there[name] for name in ("A0", "B0", "A", "B"))
     p = there.get("P", there[design.linkage.trace[0]])
     side = np.sign(((b - a) * np.conj(b0 - a)).imag)
-    angles: Array = np.array(design.design.inputs)
+    angles: Array = np.radians(design.inputs)
     moving = a0 + abs(a - a0) * np.exp(1j * angles)
     base, c, r = b0 - moving, abs(b - a), abs(b - b0)
     cosine = (np.abs(base) ** 2 + c**2 - r**2) / (2.0 * np.abs(base) * c)
@@ -114,7 +114,7 @@ def _curve(curve: Curve) -> tuple[Counter[str], list[str]]:
     begin = process_time()
     found = solve_curve_task(curve, curve.starts)
     seconds = process_time() - begin
-    totals = [squares(design, curve.points) for design in found.delivered]
+    totals = [squares(d, curve.points) for d in found.of_loops if d.delivered]
     best = min(totals, default=np.inf)
     told = f"{curve.name}: {best:.6g} (known {curve.best:.6g}) in {seconds:.1f} s"
     false = []
@@ -123,7 +123,7 @@ def _curve(curve: Curve) -> tuple[Counter[str], list[str]]:
     if seconds > curve.seconds:
         false.append(f"{curve.name}: {seconds:.1f} s of a processor")
     for design in found.delivered[:1]:
-        steps = np.diff(design.design.inputs)
+        steps = np.diff(design.inputs)
         if curve.ordered and not ((steps > 0).all() or (steps < 0).all()):
             false.append(f"{curve.name}: delivered out of order")
     counts = {"curves": 1, "curves reached": int(best <= curve.best * _WITHIN), told: 1}

@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
+from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.main import linkwork
 
 _TASK = Path(__file__).parents[2] / "examples" / "tasks" / "tilt-a-box.toml"
@@ -78,6 +79,46 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     assert len(list(folder.glob("tilt-a-box-*.toml"))) == 5
 
 
+def test_an_interruption_leaves_the_folder_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    folder, found, written = home / "designs", lw.Task.load(_TASK).solve(), list[Path]()
+
+    def stop_at_the_third(text: str, path: Path) -> None:
+        written.append(path)
+        if len(written) % 3 == 0:
+            raise KeyboardInterrupt
+        path.write_text(text)
+
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
+    with pytest.raises(KeyboardInterrupt):
+        found.save(folder)
+    assert list(home.iterdir()) == []
+    monkeypatch.undo()
+    found.save(folder, refused=True)
+    before = {path: path.read_bytes() for path in folder.rglob("*.toml")}
+    assert len(before) == 13
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
+    with pytest.raises(KeyboardInterrupt):
+        write_designs(found, folder, FolderOptions(fresh=True, csv=True))
+    assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before
+    assert list(home.iterdir()) == [folder]
+    monkeypatch.undo()
+    write_designs(found, folder, FolderOptions(fresh=True))
+    # the refused designs of the earlier synthesis are gone
+    assert len(list(folder.rglob("*.toml"))) == 6
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_the_task_is_solved(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file" / "designs"
+    done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "-o", str(folder)])
+    assert done.exit_code == 2
+    assert "Not a directory" in done.output
+
+
 def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> None:
     text = _TASK.read_text().replace("least = 30", "least = 85")
     task = tmp_path / "task.toml"
@@ -103,7 +144,7 @@ def test_a_branch_defect_names_its_dead_point() -> None:
     assert defect.kind.name == "BRANCH"
     assert defect.between == (4, 5)
     angle = float(defect.message.split()[-1].rstrip("°"))
-    z = found.designs[0].design.points
+    z = found.designs[0].points
     crank = abs(z["A"] - z["A0"]) * np.exp(1j * np.radians(angle))
     reach = abs(z["A0"] + crank - z["B0"])
     coupler, rocker = abs(z["B"] - z["A"]), abs(z["B"] - z["B0"])

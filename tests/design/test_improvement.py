@@ -35,6 +35,18 @@ def test_a_stroke_is_met_to_rounding_and_all_rows_are_proved() -> None:
     )
 
 
+def test_a_coordinate_of_zero_varies_by_itself() -> None:
+    """With both lengths and the stroke 90 known, the offset of an inline crank follows."""
+    best = lw.example("slider-crank").improve(
+        {"of": "stroke(d)", "target": 90.0}, vary=["O2.y"], starts=2
+    )[0]
+    offset = 20.0 + best.numbers["O2.y"]
+    stroke = np.sqrt(160.0**2 - offset**2) - np.sqrt(80.0**2 - offset**2)
+    # the table has rows of one degree
+    assert stroke == pytest.approx(90.0, abs=0.05)
+    assert best.total < 1e-12
+
+
 def test_timed_points_of_a_changed_mechanism_give_its_lengths_back() -> None:
     bar = lw.example("four-bar")
     wanted = bar.with_dimensions({"O2 A": 38.0, "A B": 124.0})

@@ -374,3 +374,16 @@ def test_equilibria_of_a_five_bar_are_at_rest() -> None:
         assert motion["left"] == pytest.approx(at["left"], abs=1e-9)
     with pytest.raises(lw.InputError, match="leave it out for equilibria"):
         _driven_cart().equilibria()
+
+
+def test_a_motion_of_several_inputs_may_begin_at_a_stop() -> None:
+    masses = {x: lw.Mass(mass=1, center=(0, 0), inertia=1) for x in "ab"}
+    begin = float(np.angle(np.exp(0.3j)))
+    stops = [lw.Stop(of="a", start=begin, restitution=1)]
+    arms = _arms((np.exp(0.3j), 1j), "O", masses=masses, stops=stops)
+    for speed in (-1, 1):
+        motion = arms.simulate(until=1, step=0.5, start_speed={"a": speed})
+        assert motion["a"][-1] == pytest.approx(1.3, abs=1e-12)
+    push = [lw.Load(link="a", torque=-1)]
+    held = _arms((np.exp(0.3j), 1j), "O", masses=masses, stops=stops, loads=push)
+    assert "it stays at the stop of a" in held.simulate(until=1, step=0.5).message

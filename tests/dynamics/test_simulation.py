@@ -354,3 +354,39 @@ motor = { stall = 2, free_speed = "9 mm/s" }
     assert "must be from 0 to 1, got 2" in told[10]
     assert "must not be negative, got -1" in told[14]
     assert "rpm, rad/s, deg/s" in told[15]
+
+
+def _lever(direction: complex, **more: Any) -> lw.Mechanism:
+    return lw.linkage(
+        length="m", angle="rad", points={"O": (0, 0), "A": (direction.real, direction.imag)},
+        links={"ground": ["O"], "a": ["O", "A"]}, inputs=(lw.Input(link="a"),),
+        masses={"a": lw.Mass(mass=1, center=(0, 0), inertia=1)}, **more,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("of", "restitution"), [("a", 0.5), ("A.y", 0.8), ("A.x", 0.3)])
+def test_short_bounces_do_not_go_through_a_stop(of: str, restitution: float) -> None:
+    places: dict[str, Any] = {"a": float, "A.x": np.cos, "A.y": np.sin}
+    for start in (0.65, 0.7, 0.9, 1.25):
+        value = float(places[of](start - 0.1))
+        side = "stop" if of == "A.x" else "start"
+        stop = lw.Stop(of=of, restitution=restitution, **{side: value})
+        push = lw.Load(link="a", torque=-1)
+        motion = _lever(np.exp(1j * start), stops=[stop], loads=[push]).simulate(until=5, step=1)
+        assert (motion["a"] - (start - 0.1)).min() >= -1e-9
+        assert motion["a"][-1] == pytest.approx(start - 0.1, abs=1e-9)  # it comes to rest
+
+
+@pytest.mark.parametrize("side", ["start", "stop"])
+@pytest.mark.parametrize("start", [0.3, 1.1])
+def test_a_motion_may_begin_at_a_stop(start: float, side: str) -> None:
+    into = -1 if side == "start" else 1
+    stop = lw.Stop(of="a", restitution=1, **{side: start})
+    lever = _lever(np.exp(1j * start), stops=[stop])
+    bounced = lever.simulate(until=1, step=0.5, start_speed=into)
+    assert bounced.limit.count("stop of a") == 1
+    assert bounced["a"][-1] == pytest.approx(start - into, abs=1e-12)
+    left = lever.simulate(until=1, step=0.5, start_speed=-into)
+    assert left["a"][-1] == pytest.approx(start - into, abs=1e-12)
+    pushed = _lever(np.exp(1j * start), stops=[stop], loads=[lw.Load(link="a", torque=into)])
+    assert pushed.simulate(until=1, step=0.5)["a"] == pytest.approx(start, abs=1e-12)

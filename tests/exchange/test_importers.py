@@ -159,6 +159,7 @@ def test_no_file_is_opened_and_no_address_is_called(
 
 _XML = '<?xml version="1.0"?>'
 _WRONG = {
+    "empty.urdf": (b"<robot/>", "has no root: it has no link"),
     "doctype.linkage2": (
         b'<!DOCTYPE a [<!ENTITY x "y">]><linkage2/>',
         "line 1  has a document type (DOCTYPE): entities are not read, remove it",

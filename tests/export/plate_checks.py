@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import itertools
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -24,6 +25,7 @@ __all__ = ["hole_error", "made", "overlaps", "simple", "solid_error"]
 shapely: Any = import_module("shapely")
 
 
+@cache
 def made(mechanism: lw.Mechanism, **sizes: Any) -> tuple[PlateStack, Motion]:
     """The plates of a mechanism's own sweep."""
     motion = mechanism.sweep()

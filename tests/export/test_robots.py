@@ -212,3 +212,15 @@ def test_a_weld_to_the_ground_names_the_world() -> None:
     weld = Tree.fromstring(mjcf_of(robot)).find("equality/weld")
     assert weld is not None
     assert weld.attrib == {"body1": "rocker", "body2": "world"}
+
+
+def test_bodies_without_mass_and_of_micrometres_have_what_simulators_need() -> None:
+    mechanism = lw.loads(
+        _DEAD_ROWS.replace('length = "mm"', 'length = "µm"')
+        + '[masses]\ncoupler = { mass = 0, shape = "rod" }\n'
+    )
+    robot = Robot(mechanism.model, mechanism.solve())
+    bodies = [robot.inertia(name) for name in ("crank", "coupler", "rocker")]
+    assert all(own.mass >= 1e-14 and own.inertia >= 1e-14 for own in bodies)
+    assert bodies[1].mass < 1e-3 * bodies[0].mass
+    assert "A small mass instead of none, which simulators refuse: coupler." in robot.notes()

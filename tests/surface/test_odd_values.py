@@ -12,6 +12,7 @@ import pytest
 import linkwork as lw
 from linkwork import batch
 from linkwork.batch.study import summary_of
+from linkwork.drawing.pose import Pose
 from tests.failures.test_words_that_help import BAR as PARTS
 
 BAR = lw.example("four-bar")
@@ -161,3 +162,9 @@ def test_a_jacobian_too_small_to_invert_is_no_warning() -> None:
     product = "*".join(["sin(x)"] * 30)
     found = lw.loads(f'format = 1\n[equations]\nF = "{product} = 0"\n[guess]\nx = 1e-9\n').solve()
     assert np.isinf(found.condition)
+
+
+def test_a_link_whose_direction_is_below_all_floats_is_drawn() -> None:
+    skeleton = BAR.model.skeleton
+    places = {"O2": 0j, "A": 30 + 5e-324j, "B": 90 + 40j, "O4": 100 + 0j}
+    assert Pose.still(skeleton, places).angles["crank"] == 0.0

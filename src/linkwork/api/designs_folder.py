@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
 from linkwork.design.synthesis.designs_table import designs_table
-from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.result import Synthesis
+from linkwork.design.synthesis.task import Task
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path, unwritten
+from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.csv_text import csv_text
 from linkwork.textfile.writer import save_text, write_text
 from linkwork.viewer.designs_page import designs_page
@@ -54,66 +57,81 @@ def write_designs(
         If the folder holds anything else, or cannot be written.
     """
     root = as_path(folder)
-    prepare_folder(root, options)
-    save_text(found.task.text, root / "task.toml")
-    if found.task.curve is not None:
-        # the task names the file of its curve
-        save_text(found.task.curve.text, root / found.task.curve.file)
-    files: dict[int, str] = {}
+    earlier = check_folder(root, options, found.task)
     chosen = [
         (k, design)
         for k, design in enumerate(found.designs)
         if design.delivered or (options.refused and design.kinds)
     ]
-    for done, (k, design) in enumerate(chosen):
-        path = root / _file_name(found, design)
-        save_text(write_text(design.linkage), path)
-        files[k] = str(path)
-        if options.draw:
-            scene = Mechanism(design.linkage).scene(design.first_input)
-            save_text(inline_svg(scene, FixedInks(), longest=_LONGEST), path.with_suffix(".svg"))
-        if progress is not None:
-            progress((done + 1) / len(chosen))
-    if options.csv:
-        save_text(csv_text(designs_table(found, files)), root / "designs.csv")
-    if options.html:
-        shown = found.delivered[:_PICTURES]
-        scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
-        save_text(designs_page(found, scenes, files), root / "index.html")
+    names = {k: _file_name(found, design) for k, design in chosen}
+    files = {k: str(root / name) for k, name in names.items()}
+    with written_folder(root) as part:
+        _write_tables(found, part, options, files)
+        for done, (k, design) in enumerate(chosen):
+            path = part / names[k]
+            save_text(write_text(design.linkage), path)
+            if options.draw:
+                scene = Mechanism(design.linkage).scene(design.first_input)
+                picture = inline_svg(scene, FixedInks(), longest=_LONGEST)
+                save_text(picture, path.with_suffix(".svg"))
+            if progress is not None:
+                progress((done + 1) / len(chosen))
+        new = {root / path.relative_to(part) for path in part.rglob("*")}
+    for path in earlier:
+        if path not in new:
+            path.unlink(missing_ok=True)
     return files
 
 
-def prepare_folder(root: Path, options: FolderOptions) -> None:
-    """Make the folder, or empty it of an earlier synthesis.
+def _write_tables(
+    found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
+) -> None:
+    """The task with its curve, the table and the page; and the folder of refused designs."""
+    if options.refused:
+        (part / _REFUSED).mkdir()
+    save_text(found.task.text, part / "task.toml")
+    if found.task.curve is not None:
+        # the task names the file of its curve
+        save_text(found.task.curve.text, part / found.task.curve.file)
+    if options.csv:
+        save_text(csv_text(designs_table(found, files)), part / "designs.csv")
+    if options.html:
+        shown = found.delivered[:_PICTURES]
+        scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
+        save_text(designs_page(found, scenes, files), part / "index.html")
+
+
+def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
+    """The files of an earlier synthesis that will be replaced.
 
     Raises
     ------
     InputError
-        If it holds files, and these are not to be replaced or are none of a synthesis.
+        If the folder holds files, and these are not to be replaced or are none of a synthesis, or
+        if it cannot be written.
     """
     try:
         there = [
             path
             for place in (root, root / _REFUSED)
-            for path in (sorted(place.iterdir()) if place.is_dir() else ())
+            for path in (sorted(place.iterdir()) if place.exists() else ())
             if not (path.name == _REFUSED and path.is_dir())
         ]
-        for path in there:
-            if not (options.fresh and path.is_file() and _OWN.fullmatch(path.name)):
-                raise InputError(
-                    f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
-                    "folder, or replace earlier designs with --fresh"
-                )
-        for path in there:
-            path.unlink()
-        root.mkdir(parents=True, exist_ok=True)
-        if options.refused:
-            (root / _REFUSED).mkdir(exist_ok=True)
     except OSError as error:
         raise unwritten(root, error) from None
+    curve = "" if task.curve is None else task.curve.file
+    for path in there:
+        own = _OWN.fullmatch(path.name) or path == root / curve
+        if not (options.fresh and path.is_file() and own):
+            raise InputError(
+                f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
+                "folder, or replace earlier designs with --fresh"
+            )
+    check_place(root)
+    return there
 
 
-def _file_name(found: Synthesis, design: SynthesizedDesign) -> str:
+def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     """``pick-and-place-01.toml``; refused ones are in their own folder."""
     stem = re.sub(r"[^a-z0-9]+", "-", found.task.name.lower()).strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"

@@ -13,6 +13,7 @@ from linkwork.cli.text_table import table_lines
 from linkwork.design.synthesis.curve_file import read_curve
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import significant
 from linkwork.textfile.writer import save
@@ -56,6 +57,8 @@ def atlas(
     if len(sources) != 1:
         raise InputError("give one curve:\n    linkwork atlas curve.csv")
     curve = read_curve({"file": sources[0]}, None)
+    if output is not None:
+        _check_new(as_path(output))
     with progress("comparing paths"):
         asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
         found = asked.nearest(curve.points, count)
@@ -86,17 +89,20 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
 
 
 def _write(found: tuple[NearPath, ...], folder: Path) -> list[str]:
-    if folder.exists() and any(folder.iterdir()):
-        raise InputError(f'"{folder}" is not empty: name a new folder')
-    folder.mkdir(parents=True, exist_ok=True)
     digits, files = len(str(len(found))), []
-    with progress("writing mechanisms") as tell:
+    with progress("writing mechanisms") as tell, written_folder(folder) as part:
         for near in found:
-            path = folder / f"near-{near.number:0{digits}}.toml"
-            save(near.mechanism.description, path)
-            files.append(str(path))
+            name = f"near-{near.number:0{digits}}.toml"
+            save(near.mechanism.description, part / name)
+            files.append(str(folder / name))
             tell(near.number / len(found))
     return files
+
+
+def _check_new(folder: Path) -> None:
+    check_place(folder)
+    if folder.exists() and any(folder.iterdir()):
+        raise InputError(f'"{folder}" is not empty: name a new folder')
 
 
 def _data(near: NearPath, files: list[str]) -> dict[str, object]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from linkwork.cli.motion_page import range_lines
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines
 from linkwork.cli.text_table import table_lines
+from linkwork.foundation.elementwise import phase
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.force_listing import (
     finite_forces,
@@ -135,7 +135,7 @@ def _vectors(found: Reactions, stems: Sequence[str]) -> list[str]:
         f"y [{unit}]": [place.imag for place in places],
         f"size [{unit}]": [math.hypot(place.real, place.imag) for place in places],
     }
-    angles = [math.degrees(cmath.phase(p)) if abs(p) > 0.0 else math.nan for p in places]
+    angles = [math.degrees(phase(p)) if abs(p) > 0.0 else math.nan for p in places]
     return table_lines(
         [
             Column(header="force", cells=list(stems)),

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
-from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import significant
@@ -122,11 +123,11 @@ def _verdict(found: Synthesis) -> list[str]:
     return lines
 
 
-def _examples(found: Synthesis) -> list[SynthesizedDesign]:
+def _examples(found: Synthesis) -> list[JudgedDesign]:
     """All refused designs if they are few, else one for each kind of first defect."""
     if len(found.refused) <= _MOST_REASONS:
         return list(found.refused)
-    first: dict[DefectKind, SynthesizedDesign] = {}
+    first: dict[DefectKind, JudgedDesign] = {}
     for design in found.refused:
         first.setdefault(design.kinds[0], design)
     return list(first.values())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from linkwork.api.designs_folder import FolderOptions, prepare_folder, write_designs
+from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
 from linkwork.api.synthesis import Task
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.synthesis_page import synthesis_lines
@@ -53,7 +53,7 @@ def synthesize(
         raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
     asked = Task.load(task)
     if output is not None:
-        prepare_folder(as_path(output), options)
+        check_folder(as_path(output), options, asked.described)
     with progress("solving the task") as tell:
         found = asked.solve(progress=tell)
     files: dict[int, str] = {}

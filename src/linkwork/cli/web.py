@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.output_file import check_outputs, write_bytes
 from linkwork.cli.terminal import print_lines, print_written, progress
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import unwritten
+from linkwork.foundation.written_folder import written_folder
 from linkwork.viewer.web.pyodide_files import pyodide_files
 from linkwork.viewer.web.web_app import MARK, web_folder, web_page
 
@@ -93,19 +91,8 @@ def _check_folder(out: Path) -> None:
 
 def _write_folder(out: Path, files: Mapping[str, bytes]) -> None:
     """Write all files to a temporary folder first: if the disk is full, the old files stay."""
-    part = out.absolute().with_name(f".{out.absolute().name}.{os.getpid()}.part")
-    try:
+    with written_folder(out, last="index.html") as part:  # it names the others
         for name, content in files.items():
             path = part / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content)
-        if not out.exists():
-            part.rename(out)
-            return
-        for name in files:  # the page last: it names the others
-            (out / name).parent.mkdir(exist_ok=True)
-            os.replace(part / name, out / name)
-    except OSError as error:
-        raise unwritten(out, error) from None
-    finally:
-        shutil.rmtree(part, ignore_errors=True)

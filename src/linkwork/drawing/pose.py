@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError, choices
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour, Disc, Guide
@@ -77,7 +78,7 @@ class Pose:
         """
         points = _apart(points)
         angles = {
-            bar.name: cmath.phase(points[bar.points[1]] - points[bar.points[0]])
+            bar.name: phase(points[bar.points[1]] - points[bar.points[0]])
             if len(bar.points) > 1
             else 0.0
             for bar in skeleton.bars

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -12,10 +13,15 @@ from linkwork.dynamics.collocation import Step
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import EPSILON
 from linkwork.results.quantities.asked import Asked
 
 __all__ = ["Bound", "Event", "first_event", "margins_on", "shorter_step"]
 
+_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
+_LOW = 1e-12  # of the leg: so is a lower one, whose margin is rounding
+_NEXT = 1e-6  # of the leg: places on both sides of one, for slopes
+_TOUCHES = 1e-9  # of the leg: a stop so near is touched
 _LOOKS = 24  # places of a step at which signs are compared
 _STEP_LOOKS = 33  # at which a step may have left its leg
 _ROUNDS = 60  # halvings are the worst case
@@ -37,6 +43,38 @@ class Bound:
         solved = leg.state(s, speed, t, gain).moving.solved
         found: Array = self.side * (np.atleast_1d(self.asked.values(solved, 1.0)) - self.value)
         return found
+
+    def _near(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> tuple[float, float]:
+        """The margin at a place at rest, and its slope by the length of the leg."""
+        here = s + _NEXT * float(np.ptp(leg.table.edges)) * np.array([-1.0, 0.0, 1.0])
+        below, found, above = self.margin(leg, here, np.zeros(3), np.full(3, t), gain).tolist()
+        return found, (above - below) / (2.0 * _NEXT)
+
+    def way(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
+        """1 or -1: in which direction of the leader the margin grows."""
+        return math.copysign(1.0, self._near(leg, s, t, gain)[1])
+
+    def way_off(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> float:
+        """The same where the stop is touched, to rounding; 0 where it is not."""
+        margin, slope = self._near(leg, s, t, gain)
+        return math.copysign(1.0, slope) if margin <= self._rounding(slope) else 0.0
+
+    def is_beyond(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> bool:
+        """Whether the margin is negative by more than rounding."""
+        margin, slope = self._near(leg, s, t, gain)
+        return margin < -self._rounding(slope)
+
+    def _rounding(self, slope: float) -> float:
+        return _TOUCHES * abs(slope) + 8.0 * EPSILON * abs(self.value)
+
+    def flight(self, leg: ReducedLeg, speed: float, pull: float, until: float) -> float:
+        """How long a motion that leaves the stop takes to fall back on it; 0 if it stays there.
+
+        A much longer step would look at the margin after the next shock only.
+        """
+        found = 2.0 * abs(speed) / abs(pull) if pull else math.inf
+        low = abs(speed) * found < _LOW * float(np.ptp(leg.table.edges))
+        return 0.0 if speed == 0.0 or low or found < _RESTS * until else found
 
 
 @dataclass(frozen=True, kw_only=True)

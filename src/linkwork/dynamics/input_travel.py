@@ -16,6 +16,7 @@ from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.geometry import Geometry
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.rows import SolvedRows
 
 __all__ = ["InputTravel"]
@@ -27,6 +28,8 @@ _CHATTER = 1e-7
 _DIFFERENCE = 1e-3  # of fourth order, for the normal of a stop
 _DRIVEN = 1e-9  # of the normal: less of it is rounding
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
+_LOW = 1e-12  # of a radian, or of the longest link: so is a lower one, whose margin is rounding
+_TOUCHES = 1e-9  # of the same: a stop so near at the start is touched
 _SINGULAR = 1e4  # condition beyond which a dead point of the inputs is what stops the motion
 
 
@@ -59,6 +62,7 @@ class InputTravel:
         """Step until all times are reached or the motion ends."""
         self._switch()
         self._record_here("")
+        self._touch()
         h = _FIRST * self.until
         pace = Pace(self.until)
         while self.t < self.until and not self.ended:
@@ -69,14 +73,14 @@ class InputTravel:
             target = min(self.until, self.dynamics.inputs.next_break(self.t))
             short = target - self.t
             step, following = try_vector_step(
-                self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short)
+                self.dynamics.acceleration, self.t, self.q, self.speed, min(h, short, self.longest)
             )
             if step is None:
                 if following < _SHORTEST * self.until:
                     self._end(self._why())
                 h = following
                 continue
-            reaches = step.h == short
+            reaches, self.longest = step.h == short, np.inf
             h = following if h <= short else max(h, following)
             self._advance(step, target if reaches else step.t + step.h)
             if self.progress is not None:
@@ -129,12 +133,40 @@ class InputTravel:
         closing = float(normal @ self._whole(self.speed, 1))
         # eq. (172)
         self.speed = self.speed - (1.0 + bound.restitution) * closing / float(free @ push) * push
-        leaving = -bound.restitution * closing
-        bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
-        pull = float(normal @ self._whole(bend, 2)) + self._curving(number)
-        if pull <= 0.0 and 2.0 * leaving <= _RESTS * self.until * abs(pull):
+        leaving, pull = -bound.restitution * closing, self._pull(number, normal)
+        flight = 2.0 * leaving / -pull if pull < 0.0 else np.inf if leaving or pull else 0.0
+        low = leaving * flight < _LOW * np.abs(normal).max()
+        if pull <= 0.0 and (low or flight <= _RESTS * self.until):
             self._end(f"it stays at the {name}, and contacts of several inputs are not computed")
+        # a much longer step would look at the margin after the next shock only
+        self.longest = 2.0 * flight if flight > 0.0 else np.inf
         self._switch()
+
+    longest: float = np.inf
+
+    def _pull(self, number: int, normal: Array) -> float:
+        """The second derivative of the margin of a stop by time."""
+        bend = self.dynamics.acceleration(self.q[None], self.speed[None], self._now)[0]
+        return float(normal @ self._whole(bend, 2)) + self._curving(number)
+
+    def _touch(self) -> None:
+        """Hit a stop that is touched at the start, or end if the motion stays at it."""
+        for number, bound in enumerate(self.bounds):
+            normal = self._normal(number)
+            if self.ended or self._margin(number) > _rounding(bound, normal):
+                continue
+            closing = float(normal @ self._whole(self.speed, 1))
+            if closing < 0.0:
+                self._hit(number)
+            elif closing == 0.0 and self._pull(number, normal) < 0.0:
+                name = f"stop of {bound.asked.name}"
+                self._end(
+                    f"it stays at the {name}, and contacts of several inputs are not computed"
+                )
+
+    def _margin(self, number: int) -> float:
+        """The margin of a stop now."""
+        return float(self._stop_margins(number, self._whole(self.q, 0)[None])[0])
 
     def _whole(self, free: Array, order: int) -> Array:
         """All inputs now, or their derivatives, from those of the free ones, (p,)."""
@@ -210,11 +242,10 @@ class InputTravel:
 
     def check_inside(self) -> tuple[Bound, float] | None:
         """A stop beyond which the motion would begin, and the value there."""
-        solved = self._geometry(self.q[None], self.speed[None], self._now).solved
-        for bound in self.bounds:
-            value = float(np.atleast_1d(bound.asked.values(solved, 1.0))[0])
-            if bound.side * (value - bound.value) < 0.0:
-                return bound, value
+        for number, bound in enumerate(self.bounds):
+            margin = self._margin(number)
+            if margin < -_rounding(bound, self._normal(number)):
+                return bound, bound.value + bound.side * margin
         return None
 
     def _record(
@@ -254,3 +285,8 @@ class InputTravel:
         return self.dynamics.reduction.failing_load(near, far) or (
             "the accelerations have no bound there, or the inputs leave their reach"
         )
+
+
+def _rounding(bound: Bound, normal: Array) -> float:
+    """Up to which margin a stop is touched."""
+    return _TOUCHES * float(np.abs(normal).max()) + 8.0 * EPSILON * abs(bound.value)

@@ -143,8 +143,8 @@ def _times(until: float, step: float | None) -> Array:
 def _check_inside(travel: Travel) -> None:
     here, still = np.array([travel.s]), np.zeros(1)
     for bound in travel.bounds:
-        margin = float(bound.margin(travel.leg, here, still, still, travel.gain)[0])
-        if margin < 0.0:
+        if bound.is_beyond(travel.leg, travel.s, 0.0, travel.gain):
+            margin = float(bound.margin(travel.leg, here, still, still, travel.gain)[0])
             value = bound.value + bound.side * margin
             raise InputError(
                 f"{bound.asked.name} begins at {value:.6g}, beyond its stop at {bound.value:g}: "

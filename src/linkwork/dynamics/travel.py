@@ -25,7 +25,6 @@ __all__ = ["Travel"]
 _SHORTEST = 1e-14  # of the whole time: a shorter step makes no way
 _FIRST = 0.02  # of the time in which the leg would be passed: the first step
 _SAME_SPEED = 1e-11  # a lap that ends as fast as it began repeats itself
-_RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _MOST_EVENTS = 60  # switches within this part of the whole time: they chatter
 _CHATTER = 1e-7
 _MOST_TRIES = 3  # to find the signs of friction at the beginning of a step
@@ -38,7 +37,7 @@ class Travel:
 
     ``times`` (B,): those asked for, rising. ``samples``: the states found so far. ``ended``: why
     the motion ended early, "" if it did not. ``held``: since when it is kept at rest, and
-    ``holder`` by what. ``lost``: the work that friction has taken.
+    ``holder`` by what. ``lost``: the work that friction has taken. ``longest``: step after a shock.
     """
 
     curve: PositionCurve
@@ -54,11 +53,13 @@ class Travel:
     holder: str = ""
     lost: float = 0.0
     rubbing: Rubbing | None = None
+    resting: Bound | None = None
+    longest: float = math.inf
 
     def __post_init__(self) -> None:
         self.until = float(self.times[-1])
         self.number, self.s, self.speed = self.curve.home, self.curve.value, 0.0
-        self.taken = 0
+        self.taken = self.tried = 0
         self.legs: dict[int, ReducedLeg] = {}
         self.steps: list[tuple[int, int, Step, float]] = []
         self.lapped: tuple[float, float, int] | None = None
@@ -94,6 +95,7 @@ class Travel:
         # a start at the end of a leg that moves away from it is on the leg before
         if (self.s <= edges[0] and way < 0.0) or (self.s >= edges[-1] and way > 0.0):
             self._leave(0 if way < 0.0 else 1)
+        self._touch()
 
     def _now(self) -> float:
         here = (np.array([x]) for x in (self.s, self.speed, self.t))
@@ -132,7 +134,7 @@ class Travel:
                 self._meet(event)
                 rougher = math.inf
                 if event.number >= 2:  # the accelerations have jumped
-                    h = min(h, self._first_step())
+                    h = min(h, self._first_step(), self.longest)
             if self.progress is not None:
                 self.progress(min(1.0, self.t / self.until))
 
@@ -288,28 +290,28 @@ class Travel:
     # Stops
 
     def _hit(self, bound: Bound) -> None:
-        name = f"stop of {bound.asked.name}"
-        self._record(self.t, self.s, self.speed, self._now(), name)
+        self._record(self.t, self.s, self.speed, self._now(), f"stop of {bound.asked.name}")
         self.speed *= -bound.restitution
         self._hold()
-        pull = self._now()
-        bounce = 2.0 * abs(self.speed) / abs(pull) if pull else math.inf
-        if bounce < _RESTS * self.until:
-            self.speed = 0.0
-        self.resting = bound if self.speed == 0.0 else None
-        if self.speed == 0.0:
-            self.rubbing = None
+        flight = bound.flight(self.leg, self.speed, self._now(), self.until)
+        self.longest = 2.0 * flight
+        if flight == 0.0:
+            self.speed, self.rubbing, self.resting = 0.0, None, bound
 
-    resting: Bound | None = None
+    def _touch(self) -> None:
+        """Hit a stop that is touched at the start, or stay at it."""
+        for bound in self.bounds:
+            away = bound.way_off(self.leg, self.s, self.t, self.gain)
+            if away * self.speed < 0.0:
+                self._hit(bound)
+            elif away and not self.speed and (self._is_held or away * self._now() <= 0.0):
+                self.resting = bound
 
     def _rests(self) -> bool:
         """Stay at a stop as long as the loads push there; whether time has passed."""
         if self.resting is None:
             return False
-        eps = 1e-6 * (self.leg.table.edges[-1] - self.leg.table.edges[0])
-        two = np.array([self.s - eps, self.s + eps])
-        margin = self.resting.margin(self.leg, two, np.zeros(2), np.full(2, self.t), self.gain)
-        away = math.copysign(1.0, margin[1] - margin[0])
+        away = self.resting.way(self.leg, self.s, self.t, self.gain)
         looks = np.linspace(self.t, self.until, 400)
         if self.leg.friction is not None:
             pull = away * (starting_directions(self.leg, self.s, looks, self.gain) == away)
@@ -389,8 +391,6 @@ class Travel:
         place, pace, time = float(s[1]), float(speed[1]), float(times[1])
         self.rubbing = self.leg.hold(place, pace, time, self.gain, self.rubbing.direction)
         return True
-
-    tried = 0
 
     def _unbounded(self) -> str:
         """Why no step succeeds."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwork.exchange.joint_rows import JointRow
 from linkwork.exchange.source import LeftOut
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
@@ -97,7 +97,7 @@ class Drawn:
         self, kind: str, name: str, point: str, links: tuple[str, ...], line: tuple[str, str]
     ) -> JointRow:
         a, b = (self.places[end] for end in line)
-        angle = cmath.phase(b - a)
+        angle = phase(b - a)
         return JointRow(
             place=name, kind=kind, at=self.places[point], links=links, angle=angle, name=point
         )

@@ -76,7 +76,8 @@ class _Tree:
         # the specification allows one root
         roots = [name for name in self.links if name not in carried]
         if not roots:
-            self.source.refuse("has no root: every link is carried by a joint")
+            reason = "every link is carried by a joint" if self.links else "it has no link"
+            self.source.refuse(f"has no root: {reason}")
         if len(self.links) > 400:
             self.source.refuse("has more than 400 links")
         self.names = {roots[0]: GROUND}

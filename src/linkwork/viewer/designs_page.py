@@ -6,7 +6,8 @@ import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 
-from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.result import Synthesis
 from linkwork.drawing.inline_svg import Inks, inline_svg
 from linkwork.drawing.scene import Scene
 
@@ -83,7 +84,7 @@ def _counts(found: Synthesis) -> Iterator[str]:
         yield f"<dt>{html.escape(name)}</dt><dd>{html.escape(text)}</dd>"
 
 
-def _caption(found: Synthesis, design: SynthesizedDesign) -> str:
+def _caption(found: Synthesis, design: JudgedDesign) -> str:
     task = found.task
     return (
         f"{design.number}: {design.mechanism} driven at {design.driven}, "

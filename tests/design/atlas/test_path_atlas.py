@@ -16,12 +16,15 @@ from linkwork.cli.main import linkwork
 from linkwork.design.atlas.path_atlas import (
     SHIPPED,
     AtlasFamily,
+    Nearest,
     PathAtlas,
     read_atlas,
 )
 from linkwork.design.atlas.path_shape import coefficients, distances, in_ways
+from linkwork.design.atlas.placed_mechanism import placed_on_curve
 from linkwork.design.atlas.stored_paths import atlas_of_stores
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.textfile.library import example_text
 
 _PLANS = Path(__file__).parents[3] / "examples" / "atlas"
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
@@ -82,6 +85,44 @@ def test_a_path_of_the_atlas_is_found_again_and_drawn(place: int) -> None:
     gaps = np.abs(motion.trace("P")[:, None] - wanted).min(axis=0)
     # the shape has eight harmonics and half precision
     assert gaps.max() < 0.02 * np.abs(wanted - wanted.mean()).max()
+
+
+def test_offsets_of_sliders_are_placed_with_the_mechanism() -> None:
+    text = (_PLANS / "slider-crank-path.toml").read_text()
+    text = text.replace('line   = ["S", "T"]', 'line = ["S", "T"]\noffset = 15')
+    assert "offset" in text
+    original = lw.loads(text)
+    path = original.sweep().trace("P")
+    shape = coefficients(path[None, :-1])[0]
+    family = AtlasFamily(
+        title="offset",
+        mechanism=text,
+        point="P",
+        names=(),
+        numbers=np.zeros((1, 0), dtype=np.float32),
+        shapes=np.ascontiguousarray(shape).view(float).astype(np.float16),
+    )
+    wanted = ((3.0 - 2.0j) * path[:-1] + 40.0).conj()
+    near = PathAtlas(families=(family,)).nearest(wanted, 1)[0]
+    assert near.is_mirrored
+    placed, gap = placed_on_curve(near, wanted, "placed")
+    assert gap < 1e-9 * np.abs(wanted).max()
+    motion = lw.api.Mechanism(placed).sweep()
+    assert np.abs(motion.trace("P")[:, None] - wanted).min(axis=0).max() < 1e-6
+
+
+def test_mechanisms_with_other_parts_than_sliders_are_not_placed() -> None:
+    family = AtlasFamily(
+        title="gears",
+        mechanism=example_text("elliptical-gears"),
+        point="A",
+        names=(),
+        numbers=np.zeros((1, 0), dtype=np.float32),
+        shapes=np.zeros((1, 32), dtype=np.float16),
+    )
+    near = Nearest(family=family, index=0, distance=0.0, way=0)
+    with pytest.raises(lw.InputError, match="of links and sliders only"):
+        placed_on_curve(near, np.exp(1j * np.arange(9)), "placed")
 
 
 def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:

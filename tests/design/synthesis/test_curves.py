@@ -35,7 +35,7 @@ def _squares(found: lw.Synthesis) -> float:
     """The sum of squares of the best delivered design, from its mechanism alone."""
     design = found.delivered[0]
     mechanism = lw.api.Mechanism(design.linkage)
-    places = [mechanism.solve(at=np.degrees(a)).points["P"] for a in design.design.inputs]
+    places = [mechanism.solve(at=a).points["P"] for a in design.inputs]
     return float(
         sum(np.hypot(x - u, y - v) ** 2 for (x, y), (u, v) in zip(places, _EIGHTEEN, strict=True))
     )
@@ -51,7 +51,7 @@ def test_timed_points_are_met_better_than_by_the_best_printed_linkage() -> None:
 
 def test_the_same_seed_gives_the_same_designs_and_another_seed_other_starts() -> None:
     one, same, other = (
-        _timed(improve={"starts": 12, "seed": seed}).designs[0].linkage.lengths
+        _timed(improve={"starts": 12, "seed": seed}).of_loops[0].linkage.lengths
         for seed in (4, 4, 5)
     )
     assert one == same
@@ -75,7 +75,7 @@ def test_a_curve_in_a_file_is_followed_in_order(tmp_path: Path) -> None:
     assert not best.kinds
     # 0.00302929 is the best value known with free timing; the least squares per point bound it
     assert best.error < 0.05
-    steps = np.diff(best.design.inputs)
+    steps = np.diff(best.inputs)
     assert (steps > 0).all() or (steps < 0).all()
 
 

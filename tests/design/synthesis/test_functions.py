@@ -69,7 +69,7 @@ def test_designs_follow_the_differences_of_pairs(mechanism: str, count: int) -> 
     output = "rocker" if mechanism == "four-bar" else "slide"
     for design in found.delivered:
         bar = lw.api.Mechanism(design.linkage)
-        inputs = np.degrees(design.design.inputs)
+        inputs = np.array(design.inputs)
         values = np.array([bar.solve(at=float(value))[output] for value in inputs])
         assert np.diff(inputs) == pytest.approx(np.diff(_PAIRS[:count], axis=0)[:, 0], abs=1e-9)
         assert np.diff(values) == pytest.approx(np.diff(_PAIRS[:count], axis=0)[:, 1], abs=1e-6)
@@ -97,7 +97,7 @@ def test_derivatives_of_structural_errors_are_their_differences(slides: bool) ->
 def test_the_least_squares_fit_is_that_of_scipy() -> None:
     u, v = _logarithm()
     found = lw.Task.function("log10(x)", fit="least squares", **_LOGARITHM).solve().designs[0]
-    design = found.design.points
+    design = found.points
     lengths = np.abs([design["A"], design["B"] - 1.0, design["B"] - design["A"]])
     side = np.sign(((design["B"] - design["A"]).conjugate() * (design["B"] - 1.0)).imag)
     errors = rocker_errors(u, v, float(side))
@@ -136,7 +136,7 @@ def test_a_slider_crank_is_found_again_from_its_own_displacements(
     )  # fmt: skip
     found = task.solve()
     (design,) = found.defect_free
-    points = found.delivered[0].design.points
+    points = found.delivered[0].points
     assert abs(points["A"]) == pytest.approx(1.0, abs=1e-9)
     assert abs(points["B"] - points["A"]) == pytest.approx(3.0, abs=1e-9)
     assert points["S"].imag == pytest.approx(0.2, abs=1e-9)
@@ -176,7 +176,7 @@ def test_a_rocker_is_found_again_from_its_own_angles(fit: str) -> None:
     pairs = np.degrees(np.column_stack([u, v]))
     ends = {"input": pairs[[0, -1], 0].tolist(), "output": pairs[[0, -1], 1].tolist()}
     found = lw.Task.function(pairs.tolist(), fit=fit, mechanism="four-bar", **ends).solve()
-    points = found.delivered[0].design.points
+    points = found.delivered[0].points
     lengths = [abs(points["A"]), abs(points["B"] - points["A"]), abs(points["B"] - 1.0)]
     assert lengths == pytest.approx([a, c, b], abs=1e-7)
     assert found.delivered[0].error < 1e-8

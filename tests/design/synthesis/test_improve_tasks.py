@@ -9,6 +9,7 @@ import pytest
 
 import linkwork as lw
 from linkwork.foundation.errors import MechanismFileError
+from linkwork.mechanism.linkage import Linkage
 
 _HEAD = 'format = 1\ntask = "improve"\nmechanism = "four-bar"\n'
 _HERE = '[improve]\npoint = "{}"\n[[positions]]\npoint = [1, 2]\n[[positions]]\npoint = [{}, {}]\n'
@@ -30,6 +31,7 @@ def test_a_file_improves_a_mechanism_beside_it_along_a_curve(tmp_path: Path) -> 
     assert best.error < 1e-9
     files = found.save(tmp_path / "designs")
     assert lw.load(files[0]).sweep().certified.all()
+    assert isinstance(best.linkage, Linkage)
     assert best.linkage.lengths["A B"] == best.numbers["A B"]
     data = found.to_dict()["designs"][0]
     assert (data["drive"], data["delivered"], data["defects"]) == ("crank", True, [])

@@ -26,7 +26,7 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
     assert (found.linkages, len(found.designs), len(found.delivered)) == (192, 384, 2)
     pivots = [
         {complex(round(z.real, 6), round(z.imag, 6)) for z in (p["A0"], p["B0"])}
-        for p in (design.design.points for design in found.delivered)
+        for p in (design.points for design in found.delivered)
     ]
     # both four-bars share a fixed pivot: they are cognates
     expected = (1.216697 + 0.88585j, 1.341129 + 0.08454j, 0.704459 + 0.413897j)
@@ -41,7 +41,7 @@ def test_five_points_with_given_pivots_are_solved_and_judged() -> None:
     assert len(found.designs) == 30
     assert sum(found.defects.values()) >= len(found.refused) == 30 - found.sound
     for design in found.designs[:4]:
-        assert {design.design.points["A0"], design.design.points["B0"]} == {0j, 1 + 0j}
+        assert {design.points["A0"], design.points["B0"]} == {0j, 1 + 0j}
 
 
 def test_a_delivered_design_passes_its_points_in_order() -> None:
@@ -53,10 +53,10 @@ def test_a_delivered_design_passes_its_points_in_order() -> None:
     ]
     found = lw.Task.path(points, given={"fixed_pivots": [(0, 0), (100, 0)]}).solve()
     assert found.delivered
-    design = next(d for d in found.delivered if abs(d.design.points["A"]) < 40.001)
+    design = next(d for d in found.delivered if abs(d.points["A"]) < 40.001)
     mechanism = lw.api.Mechanism(design.linkage)
-    for value, point in zip(design.design.inputs, points, strict=True):
-        place = mechanism.solve(at=value * 57.29577951308232).points["P"]
+    for value, point in zip(design.inputs, points, strict=True):
+        place = mechanism.solve(at=value).points["P"]
         assert place == pytest.approx(point, abs=1e-6)
 
 
@@ -66,7 +66,7 @@ _PIVOTS = [(0.0, 0.0), (100.0, 0.0)]
 
 def _length(design: Any, name: str) -> float:
     one, other = name.split()
-    return float(abs(design.design.points[one] - design.design.points[other]))
+    return float(abs(design.points[one] - design.points[other]))
 
 
 @pytest.mark.parametrize(
@@ -89,10 +89,10 @@ def test_given_lengths_hold_and_designs_with_them_are_proved(given: dict[str, An
         for name, length in given["lengths"].items():
             assert _length(design, name) == pytest.approx(length, rel=1e-12)
         assert design.error == 0.0
-        assert design.design.points["A0"] == 0j or design.design.points["B0"] == 0j
+        assert design.points["A0"] == 0j or design.points["B0"] == 0j
     mechanism = lw.api.Mechanism(found.delivered[0].linkage)
-    for value, point in zip(found.delivered[0].design.inputs, _FOUR, strict=True):
-        assert mechanism.solve(at=np.degrees(value)).points["P"] == pytest.approx(point, abs=1e-6)
+    for value, point in zip(found.delivered[0].inputs, _FOUR, strict=True):
+        assert mechanism.solve(at=value).points["P"] == pytest.approx(point, abs=1e-6)
 
 
 def test_more_lengths_than_freedoms_are_met_by_least_squares_or_refused() -> None:
@@ -125,8 +125,8 @@ def test_designs_through_points_near_the_wanted_ones_pass_them_within_their_tole
     design = max(near.delivered, key=lambda design: design.error)
     mechanism = lw.api.Mechanism(design.linkage)
     missed = [
-        np.hypot(*(np.array(mechanism.solve(at=np.degrees(value)).points["P"]) - point))
-        for value, point in zip(design.design.inputs, _FOUR, strict=True)
+        np.hypot(*(np.array(mechanism.solve(at=value).points["P"]) - point))
+        for value, point in zip(design.inputs, _FOUR, strict=True)
     ]
     assert max(missed) == pytest.approx(design.error, rel=1e-6)
 

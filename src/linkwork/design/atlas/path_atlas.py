@@ -12,6 +12,7 @@ import numpy as np
 from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError
+from linkwork.textfile.writer import save_bytes
 
 __all__ = ["SHIPPED", "AtlasFamily", "Nearest", "PathAtlas", "read_atlas"]
 
@@ -108,14 +109,15 @@ class PathAtlas:
         return found[:count]
 
     def write(self, path: Path) -> None:
-        """Write the atlas to a file (.npz)."""
+        """Write the atlas to a file (.npz), completely or not at all."""
         arrays = {
             f"{k}.{name}": np.asarray(getattr(family, name))
             for k, family in enumerate(self.families)
             for name in _KEPT
         }
-        with path.open("wb") as file:
-            np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # arrays alone
+        file = BytesIO()
+        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # arrays alone
+        save_bytes(file.getvalue(), path)
 
 
 def _nearest(family: AtlasFamily, wanted: ComplexArray, count: int) -> list[tuple[float, int, int]]:

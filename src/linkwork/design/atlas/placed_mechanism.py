@@ -11,6 +11,7 @@ from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_w
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.linkage import Linkage
+from linkwork.mechanism.part.slider import Slider
 from linkwork.mechanism.varied_number import number_named, with_numbers
 from linkwork.motion.model import model_of
 from linkwork.motion.sweeping import sweep
@@ -31,6 +32,10 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
     described = read_text(near.family.mechanism, name).description
     if not isinstance(described, Linkage) or len(described.inputs) != 1:
         raise InputError("an atlas can place mechanisms of points and links with one input only")
+    others = sorted({type(part).title for part in described.parts if not isinstance(part, Slider)})
+    if others:
+        told = "an atlas can place mechanisms of links and sliders only, not with parts of the kind"
+        raise InputError(f"{told} {', '.join(others)}")
     numbers = {number_named(described, key): value for key, value in near.numbers.items()}
     design = with_numbers(described, numbers)
     assert isinstance(design, Linkage)
@@ -60,6 +65,14 @@ def placed_on_curve(near: Nearest, curve: ComplexArray, name: str) -> tuple[Link
         points={point: (z.real, z.imag) for point, z in moved.items()},
         lengths={key: float(value(x)) * abs(factor) for key, x in design.lengths.items()},
         angles={key: sense * float(value(x)) for key, x in design.angles.items()},
+        sliders=tuple(
+            replace(
+                slider,
+                offset=sense * float(value(slider.offset)) * abs(factor),
+                angle=None if slider.angle is None else sense * float(value(slider.angle)),
+            )
+            for slider in design.sliders
+        ),
         inputs=(crank,),
     )
     return placed, float(distance[0] * extent[0])

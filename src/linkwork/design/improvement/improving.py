@@ -41,7 +41,7 @@ __all__ = [
 
 STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
-_FAR = 2.0  # longest numbers, by which others may change
+_FAR = 2.0  # longest numbers or links, by which others may change
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
 
@@ -153,7 +153,11 @@ def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement)
         For bounds of a number that does not vary.
     """
     x = np.array([float(q.of(model.description)) for q in numbers])
-    far = _FAR * float(np.abs(x).max())
+    description = model.description
+    lengths = description.lengths.values() if isinstance(description, Draft) else ()
+    # a coordinate of 0 may vary by itself too
+    longest = max((abs(float(description.numbers(length))) for length in lengths), default=0.0)
+    far = _FAR * max(float(np.abs(x).max()), longest)
     is_length = np.array([q.table == "lengths" for q in numbers])
     least = np.where(is_length, x / FACTOR, x - far)
     most = np.where(is_length, x * FACTOR, x + far)

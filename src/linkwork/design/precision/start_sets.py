@@ -10,16 +10,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from linkwork.design.precision.problem import CONDITIONS, PrecisionProblem
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
-from linkwork.numerics.homotopy.monodromy import Member, first_of_each
+from linkwork.numerics.homotopy.monodromy import Family, Member, first_of_each
 from linkwork.numerics.homotopy.parameter_path import ParameterPath, polish_ends
 
-__all__ = ["SHIPPED", "SHIPPED_PROBLEMS", "as_arrays", "member_of_arrays", "start_member"]
+__all__ = [
+    "SHIPPED",
+    "SHIPPED_PROBLEMS",
+    "NamedFamily",
+    "as_arrays",
+    "member_of_arrays",
+    "start_member",
+    "stored_member",
+]
 
 SHIPPED = Path(__file__).with_name("start_linkages.npz")
 #: All families with a point; poses alone are solved by dyads.
@@ -31,7 +40,19 @@ SHIPPED_PROBLEMS = tuple(
 )
 
 
-def as_arrays(problem: PrecisionProblem, member: Member) -> dict[str, AnyArray]:
+class NamedFamily(Family, Protocol):
+    """A family whose solved member is shipped."""
+
+    @property
+    def name(self) -> str:
+        """The name of its start set."""
+
+    @property
+    def last(self) -> slice:
+        """The parameters of the last equation."""
+
+
+def as_arrays(problem: NamedFamily, member: Member) -> dict[str, AnyArray]:
     """A solved member as arrays of the shipped file."""
     name = problem.name
     return {
@@ -42,7 +63,12 @@ def as_arrays(problem: PrecisionProblem, member: Member) -> dict[str, AnyArray]:
 
 @cache
 def start_member(problem: PrecisionProblem) -> Member:
-    """The shipped solved member of a family.
+    """The shipped solved member of a family; raises like :func:`stored_member`."""
+    return stored_member(problem, SHIPPED)
+
+
+def stored_member(problem: NamedFamily, path: Path) -> Member:
+    """The solved member of a family in a shipped file.
 
     Raises
     ------
@@ -50,13 +76,13 @@ def start_member(problem: PrecisionProblem) -> Member:
         If the installation is damaged: the file lacks the family, or has wrong numbers.
     """
     try:
-        with np.load(SHIPPED) as stored:
+        with np.load(path) as stored:
             return member_of_arrays(problem, stored)
     except (OSError, KeyError, ValueError):
-        raise InputError(f"{SHIPPED} is damaged: install Linkwork again") from None
+        raise InputError(f"{path} is damaged: install Linkwork again") from None
 
 
-def member_of_arrays(problem: PrecisionProblem, arrays: Mapping[str, AnyArray]) -> Member:
+def member_of_arrays(problem: NamedFamily, arrays: Mapping[str, AnyArray]) -> Member:
     """The member of :func:`as_arrays`, its solutions polished.
 
     Raises

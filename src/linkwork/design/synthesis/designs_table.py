@@ -13,7 +13,7 @@ from linkwork.results.table import Table
 
 __all__ = ["designs_table"]
 
-_POINTS = ("A0", "B0", "S", "T", "A", "B", "C", "P")
+_POINTS = ("A0", "B0", "C0", "S", "T", "U", "V", "A", "B", "C", "D", "K", "P")
 
 
 def designs_table(found: Synthesis, files: Mapping[int, str] | None = None) -> Table:

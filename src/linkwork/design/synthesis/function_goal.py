@@ -17,14 +17,42 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.plain_numbers import as_told
 
-__all__ = ["FunctionGoal"]
+__all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 
 _VARIABLE = "x"
 _DENSE = 181  # points over the range for fits and structural errors
-_MOST = 5  # precision points of a four-bar with free start angles
-_FIXED = 3  # the same with given start angles
 
 Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExactPairs:
+    """How many pairs of input and output a kind of mechanism meets exactly.
+
+    Parameters
+    ----------
+    mechanism : str
+    least : int
+        Fewer pairs are no task for it.
+    fixed, free : int
+        The most with given start angles, and with free ones.
+    fits : bool
+        Whether it can be fitted to more of them.
+    """
+
+    mechanism: str = "four-bar"
+    least: int = 3
+    fixed: int = 3
+    free: int = 5
+    fits: bool = True
+
+    def told(self, most: int) -> str:
+        """What to do about more than the most."""
+        return f'{most}, or write fit = "least squares"' if self.fits else str(most)
+
+
+#: Those of a four-bar or slider-crank.
+LOOP_PAIRS = ExactPairs()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,11 +71,13 @@ class FunctionGoal:
         Input and output at the ends of the range. Without them, the start angles are free and pairs
         count by their differences.
     positions : int
-        Number of precision points of a formula.
+        Number of precision points of a formula; 0: as many as the mechanism meets.
     spacing : str
         chebyshev or even.
     fit : str
         "", least squares or minimax.
+    exact : ExactPairs
+        How many pairs the wanted mechanism meets.
     """
 
     of: str = ""
@@ -55,9 +85,10 @@ class FunctionGoal:
     pairs: tuple[Pair, ...] = ()
     input: Pair | None = None
     output: Pair | None = None
-    positions: int = _FIXED
+    positions: int = 0
     spacing: str = "chebyshev"
     fit: str = ""
+    exact: ExactPairs = LOOP_PAIRS
 
     def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         """What is wrong, with the key of each problem."""
@@ -69,6 +100,8 @@ class FunctionGoal:
             yield from self._formula_problems()
         else:
             yield from self._pair_problems()
+        if self.fit and not self.exact.fits:
+            yield ("function", "fit"), f"has no effect on {self.exact.mechanism}: leave it out"
         for key in ("input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
@@ -94,26 +127,29 @@ class FunctionGoal:
             )
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
-        if self.positions > _FIXED and not self.fit:
+        exact, count = self.exact, self._count
+        if count > exact.fixed and not self.fit:
             yield (
                 ("function", "positions"),
-                f"{self.positions} precision points leave no four-bar with given start angles: "
-                'use 3, or fit = "least squares"',
+                f"{count} precision points leave no {exact.mechanism} with given start angles: "
+                f"keep {exact.told(exact.fixed)}",
             )
+        elif count < exact.least:
+            yield ("function", "positions"), f"{count} given: give {exact.least} or more"
 
     def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.pairs)
         if self.fit and not self.starts_fixed:
             yield ("function", "input"), "is missing: a fit needs the start angles of both links"
-        if count < _FIXED:
-            yield ("function", "pairs"), f"{count} given: give three or more"
+        exact = self.exact
+        if count < exact.least:
+            yield ("function", "pairs"), f"{count} given: give {exact.least} or more"
         fixed = self.starts_fixed
-        most = _FIXED if fixed else _MOST
+        most = exact.fixed if fixed else exact.free
         if count > most and not self.fit:
             yield (
                 ("function", "pairs"),
-                f"{count} pairs leave no four-bar in general: keep {most}, or write "
-                'fit = "least squares"',
+                f"{count} pairs leave no {exact.mechanism} in general: keep {exact.told(most)}",
             )
         for k, one in enumerate(self.pairs):
             for j in range(k):
@@ -135,6 +171,11 @@ class FunctionGoal:
                     )
 
     @property
+    def _count(self) -> int:
+        """The number of precision points of a formula."""
+        return self.positions or self.exact.fixed
+
+    @property
     def starts_fixed(self) -> bool:
         """Whether the start angles are given."""
         return self.input is not None or self.output is not None
@@ -143,7 +184,7 @@ class FunctionGoal:
         """Inputs and outputs (K,) of the precision points, in order."""
         if self.pairs:
             return self._of_pairs()
-        return self._outputs(self._x(self.positions, self.spacing))
+        return self._outputs(self._x(self._count, self.spacing))
 
     def dense_points(self) -> tuple[Array, Array]:
         """Inputs and outputs (K,) over the whole range, or the pairs."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
-from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
@@ -26,23 +26,16 @@ from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 __all__ = ["ImprovedMechanism"]
 
 
-@internal("linkage", "kinds", "improved")
+@internal("improved")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ImprovedMechanism:
+class ImprovedMechanism(JudgedDesign):
     """An improved mechanism, and what keeps it from doing its task.
 
     Parameters
     ----------
-    task : Task
     improved : ImprovedDesign
     wishes : Wishes
         Those of the task, in radians.
-    number : int
-        Its rank among the sound designs from 1, or its place among the refused ones.
-    delivered : bool
-        Whether it is sound and among the wanted number of designs.
-    score : float
-        The weighted score of the ranking, 0 to 1.
 
     Examples
     --------
@@ -53,12 +46,8 @@ class ImprovedMechanism:
     [{'O2 A': 34.46567317588864}]
     """
 
-    task: Task
     improved: ImprovedDesign
     wishes: Wishes
-    number: int = 0
-    delivered: bool = False
-    score: float = field(default=np.nan)
 
     @property
     def mechanism(self) -> str:
@@ -93,10 +82,15 @@ class ImprovedMechanism:
         return {name: complex(path[0]) for name, path in self._places.items() if len(path)}
 
     @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        return self.improved.inputs
+
+    @property
     def first_input(self) -> float:
         """The input at the first position [file units]."""
-        if self.improved.inputs:
-            return self.improved.inputs[0]
+        if self.inputs:
+            return self.inputs[0]
         motion = self._motion
         if motion is None or not motion.found.any():
             return float("nan")
@@ -105,9 +99,7 @@ class ImprovedMechanism:
     @cached_property
     def linkage(self) -> Description:
         """The mechanism, with the name of its design."""
-        refused = ", refused" if self.kinds else ""
-        name = f"{self.task.name}, design {self.number}{refused}"
-        return replace(self.improved.description, name=name)
+        return replace(self.improved.description, name=self._name)
 
     # Measures
 
@@ -166,10 +158,10 @@ class ImprovedMechanism:
     def defects(self) -> tuple[Defect, ...]:
         """Its defects in words; none for a sound design."""
         return tuple(
-            Defect(kind=kind, between=None, message=message) for kind, message in self._defects()
+            Defect(kind=kind, between=None, message=message) for kind, message in self._found()
         )
 
-    def _defects(self) -> Iterator[tuple[DefectKind, str]]:
+    def _found(self) -> Iterator[tuple[DefectKind, str]]:
         motion, task = self._motion, self.task
         if motion is None or not motion.found.any():
             yield DefectKind.RANGE, self.improved.message
@@ -236,27 +228,13 @@ class ImprovedMechanism:
                         return True
         return False
 
-    def to_dict(self, file: str | None = None) -> dict[str, Any]:
-        """Plain data, as in the command line's JSON."""
+    def _details(self) -> Mapping[str, Any]:
         return {
-            "file": file,
-            "mechanism": self.mechanism,
-            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
-            "drive": self.driven,
-            "delivered": self.delivered,
-            TRANSMISSION_ANGLE.word: self.transmission,
-            "size": self.size,
-            "error": self.error,
-            "score": self.score,
             "numbers": self.numbers,
-            "inputs": list(self.improved.inputs),
+            "inputs": list(self.inputs),
             "misses": list(self.improved.misses),
             "total": self.improved.total,
             "message": self.improved.message,
-            "defects": [
-                {"kind": defect.kind.name.lower(), "between": None, "message": defect.message}
-                for defect in self.defects
-            ],
         }
 
 

@@ -13,12 +13,12 @@ import numpy as np
 from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.defect_messages import Defect, defects_of
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
-from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.summary import Summary
 
 __all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
@@ -100,23 +100,17 @@ class JudgedDesigns:
     output: str
 
 
-@internal("group", "index", "drive", "linkage", "kinds", "design")
+@internal("group", "index", "drive", "design")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SynthesizedDesign:
-    """One design with its verdict.
+class SynthesizedDesign(JudgedDesign):
+    """One design of a loop with its verdict.
 
     Parameters
     ----------
-    number : int
-        Its rank among the sound designs from 1, or its place among the refused ones.
     group : JudgedDesigns
         The designs of its kind.
     index : int
         Its place among them.
-    delivered : bool
-        Whether it is sound and among the wanted number of designs.
-    score : float
-        The weighted score of the ranking, 0 to 1.
 
     Examples
     --------
@@ -127,11 +121,8 @@ class SynthesizedDesign:
     (1, ())
     """
 
-    number: int
     group: JudgedDesigns
     index: int
-    delivered: bool
-    score: float
 
     def __repr__(self) -> str:
         found = ", ".join(kind.value for kind in self.kinds) or "sound"
@@ -216,41 +207,20 @@ class SynthesizedDesign:
         return Design.of(group.given, k, group.drive, inputs, ends, group.zero)
 
     @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        values = self.design.inputs
+        return tuple(map(self.task.angle.from_radians, values)) if self.drive.turns else values
+
+    @property
     def first_input(self) -> float:
         """The input at the first position [file units]."""
-        value = self.design.inputs[0]
-        if not self.drive.turns:
-            return value
-        return self.group.task.angle.from_radians(value)
+        return self.inputs[0]
 
     @cached_property
     def linkage(self) -> Linkage:
-        """The mechanism."""
-        refused = ", refused" if self.kinds else ""
-        name = f"{self.group.task.name}, design {self.number}{refused}"
-        return linkage_of(self.design, self.group.task, name, self.group.output)
-
-    def to_dict(self, file: str | None = None) -> dict[str, Any]:
-        """Plain data, as in the command line's JSON."""
-        return {
-            "file": file,
-            "mechanism": self.mechanism,
-            "points": {name: [z.real, z.imag] for name, z in self.points.items()},
-            "drive": self.driven,
-            "delivered": self.delivered,
-            TRANSMISSION_ANGLE.word: self.transmission,
-            "size": self.size,
-            "error": self.error,
-            "score": self.score,
-            "defects": [
-                {
-                    "kind": defect.kind.name.lower(),
-                    "between": None if defect.between is None else list(defect.between),
-                    "message": defect.message,
-                }
-                for defect in self.defects
-            ],
-        }
+        """The mechanism, with the name of its design."""
+        return linkage_of(self.design, self.task, self._name, self.group.output)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -271,10 +241,9 @@ class Synthesis:
     message : str
         The same in words of the task.
     dyads : tuple of Dyad
-    designs : tuple of SynthesizedDesign
-        Every mechanism with every driven link: sound ones by score, then refused ones. Of
-        ``task = "improve"`` each is an ImprovedMechanism, which has the same properties but those
-        of a loop.
+    designs : tuple of JudgedDesign
+        Every mechanism with every driven link, each a SynthesizedDesign: sound ones by score, then
+        refused ones. Of ``task = "improve"`` each is an ImprovedMechanism.
     starts : int
         Starts of a least-squares fit; 0 where equations are solved.
     interrupted : bool
@@ -290,17 +259,22 @@ class Synthesis:
     completeness: Completeness
     message: str
     dyads: tuple[Dyad, ...]
-    designs: tuple[Any, ...]
+    designs: tuple[JudgedDesign, ...]
     starts: int = 0
     interrupted: bool = False
 
     @property
-    def delivered(self) -> tuple[Any, ...]:
+    def delivered(self) -> tuple[JudgedDesign, ...]:
         """The sound designs that the task asks for."""
         return tuple(design for design in self.designs if design.delivered)
 
+    @cached_property
+    def of_loops(self) -> tuple[SynthesizedDesign, ...]:
+        """The designs that are loops: all but improved mechanisms."""
+        return tuple(d for d in self.designs if isinstance(d, SynthesizedDesign))
+
     @property
-    def refused(self) -> tuple[Any, ...]:
+    def refused(self) -> tuple[JudgedDesign, ...]:
         """The designs with defects."""
         return tuple(design for design in self.designs if design.kinds)
 

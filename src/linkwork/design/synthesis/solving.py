@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -17,8 +18,8 @@ from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.motion_synthesis import solve_motion
 from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
@@ -26,6 +27,7 @@ from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import Wanted
 from linkwork.design.synthesis.travel import Range
 from linkwork.design.synthesis.verdicts import judge
+from linkwork.design.synthesis.watt_synthesis import solve_watt
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
@@ -46,6 +48,7 @@ SOLVERS: dict[str, Solver] = {
     "function": lambda task, wishes, progress: solve_function(task),
 }
 _RIGHT = math.pi / 2.0
+_Alone = TypeVar("_Alone", bound=JudgedDesign)
 
 
 def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
@@ -59,6 +62,8 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
     check_flags(progress)
     if task.kind == "improve":
         return _improved(task, progress)
+    if task.is_six_bar:
+        return _six_bars(task, progress)
     found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
         JudgedDesigns(
@@ -92,17 +97,7 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
-    measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
-    scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
-    entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
-    ranked: list[ImprovedMechanism] = []
-    for place, (refused, _, k) in enumerate(entries, start=1):
-        sound = sum(not other[0] for other in entries)
-        number = place - sound if refused else place
-        delivered = not refused and number <= task.rank.deliver
-        ranked.append(
-            replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
-        )
+    ranked = _ranked_alone(task, designs)
     seed = (task.improvement or Improvement()).seed
     told = f"a sample: different local minima from {starts} starts with seed {seed}"
     return Synthesis(
@@ -115,10 +110,43 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         completeness=Completeness.SAMPLED,
         message=f"interrupted: the best so far of {starts} starts" if interrupted else told,
         dyads=(),
-        designs=tuple(ranked),
+        designs=ranked,
         starts=starts,
         interrupted=interrupted,
     )
+
+
+def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
+    """All Watt-II six-bars of a function, sound ones by falling score."""
+    designs, found, (grade, message) = solve_watt(task, wishes_of(task, Drive.A0), progress)
+    return Synthesis(
+        task=task,
+        complex=len(found.roots.x),
+        real=len(found),
+        proved=int(found.proved.sum()),
+        triples=0,
+        linkages=len(designs),
+        completeness=grade,
+        message=message,
+        dyads=(),
+        designs=_ranked_alone(task, designs),
+    )
+
+
+def _ranked_alone(task: Task, designs: Sequence[_Alone]) -> tuple[_Alone, ...]:
+    """Designs that were judged one by one: sound ones by falling score, then the others."""
+    measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
+    scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
+    entries = sorted((bool(d.kinds), -scores[k] * (not d.kinds), k) for k, d in enumerate(designs))
+    ranked: list[_Alone] = []
+    sound = sum(not refused for refused, _, _ in entries)
+    for place, (refused, _, k) in enumerate(entries, start=1):
+        number = place - sound if refused else place
+        delivered = not refused and number <= task.rank.deliver
+        ranked.append(
+            replace(designs[k], number=number, delivered=delivered, score=float(scores[k]))
+        )
+    return tuple(ranked)
 
 
 def wishes_of(task: Task, drive: Drive) -> Wishes:
@@ -180,6 +208,7 @@ def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesi
         numbers[bool(refused)] += 1
         number = numbers[bool(refused)]
         yield SynthesizedDesign(
+            task=task,
             number=number,
             group=judged[group],
             index=k,

@@ -13,7 +13,6 @@ from typing import TypeVar
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_conditions import (
@@ -25,6 +24,12 @@ from linkwork.design.synthesis.task_conditions import (
     Wanted,
 )
 from linkwork.design.synthesis.task_keys import KINDS
+from linkwork.design.synthesis.wanted_mechanisms import (
+    MECHANISMS,
+    WATT_II,
+    mechanism_problems,
+    watt_pivot_problems,
+)
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
@@ -38,7 +43,6 @@ _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
-MECHANISMS = ("four-bar", "slider-crank", "inverted-slider-crank")
 
 _Item = TypeVar("_Item")
 
@@ -57,7 +61,8 @@ class Task:
     angle : AngleUnit
     mechanisms : tuple of str
         The kinds of mechanisms wanted: four-bar, slider-crank, of poses inverted-slider-crank too;
-        of poses, and only if named, those without a crank.
+        of poses, and only if named, those without a crank;
+        of functions watt-ii alone.
     positions : tuple of PrecisionPosition
         In order of travel.
     given : Given
@@ -107,13 +112,7 @@ class Task:
     def _problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         if self.kind not in KINDS:
             yield ("task",), f"must be one of {', '.join(KINDS)}, got {as_told(self.kind)}"
-        for k, name in enumerate(self.mechanisms):
-            if name not in (*MECHANISMS, *GUIDED) and self.kind != "improve":
-                known = " or ".join(f'"{known}"' for known in (*MECHANISMS, *GUIDED))
-                yield ("mechanism", k), f"must be {known}, got {as_told(name)}"
-            of_poses = name in (MECHANISMS[2], *GUIDED) and self.mechanisms != MECHANISMS
-            if of_poses and self.kind not in ("motion", "improve"):
-                yield ("mechanism", k), "is made from poses only: leave it out"
+        yield from mechanism_problems(self.kind, self.mechanisms)
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:
             yield ("mechanism",), 'points are solved for the "four-bar" only'
@@ -173,6 +172,10 @@ class Task:
         count, timed = len(self.positions), any(p.input is not None for p in self.positions)
         if self.kind == "motion" and count > _MOST_FREE and (fixed or moving):
             yield ("given",), f"leaves no freedom for {count} poses, which determine all pivots"
+        if self.is_six_bar:
+            yield from watt_pivot_problems(fixed, moving, self.function)
+            yield from self._length_problems()
+            return
         if len(fixed) + len(moving) > 2:
             yield ("given",), "fixes more than two pivots: two determine the four-bar"
         if moving and (self.kind != "motion" or timed):
@@ -295,6 +298,11 @@ class Task:
                     f"is {apart:g} from the other one, but lengths are wanted from "
                     f"{wanted.shortest:g} to {wanted.longest:g}",
                 )
+
+    @property
+    def is_six_bar(self) -> bool:
+        """Whether Watt-II six-bars are wanted."""
+        return self.kind == "function" and self.mechanisms == (WATT_II,)
 
     @cached_property
     def is_approximate(self) -> bool:

@@ -12,10 +12,11 @@ import numpy as np
 
 from linkwork.design.improvement.settings import Goal, Improvement
 from linkwork.design.synthesis.curve_file import read_curve
-from linkwork.design.synthesis.function_goal import FunctionGoal
-from linkwork.design.synthesis.task import MECHANISMS, Task
+from linkwork.design.synthesis.function_goal import LOOP_PAIRS, FunctionGoal
+from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import Given, PrecisionPosition, Ranking, Wanted
 from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
+from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS, WATT_II, WATT_PAIRS
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.paths import as_path
@@ -113,7 +114,7 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         mechanisms=(mechanism,) if isinstance(mechanism, str) else tuple(mechanism),
         positions=tuple(map(_position, content.get("positions", ()))),
         given=_given(content.get("given", {})),
-        function=_function(content["function"]) if "function" in content else None,
+        function=_function(content["function"], mechanism) if "function" in content else None,
         wanted=_wanted(content.get("wanted", {})),
         rank=_ranking(content.get("rank", {})),
         curve=curve,
@@ -184,11 +185,12 @@ def _given(table: dict[str, Any]) -> Given:
     return Given(**pivots, lengths=table.get("lengths", {}))
 
 
-def _function(table: dict[str, Any]) -> FunctionGoal:
+def _function(table: dict[str, Any], mechanism: Any) -> FunctionGoal:
+    exact = WATT_PAIRS if WATT_II in mechanism else LOOP_PAIRS
     listed = {key: tuple(v) for key, v in table.items() if isinstance(v, list)}
     if "pairs" in table:
         listed["pairs"] = _points(table["pairs"])
-    return FunctionGoal(**{**table, **listed})
+    return FunctionGoal(**{**table, **listed}, exact=exact)
 
 
 def _improvement(table: dict[str, Any]) -> Improvement:

@@ -49,7 +49,7 @@ _GIVEN = Key(
     "given",
     Table(
         (
-            Key("fixed_pivots", ListOf(_POINT, "pivot", 1, 2), "Fixed pivots: [[0, 0], [100, 0]]"),
+            Key("fixed_pivots", ListOf(_POINT, "pivot", 1, 3), "Fixed pivots: [[0, 0], [100, 0]]"),
             Key(
                 "moving_pivots",
                 ListOf(_POINT, "pivot", 1, 2),
@@ -73,7 +73,11 @@ _FUNCTION = Key(
             ),
             Key("input", _PAIR, "The input angles at the ends of the range; free if left out"),
             Key("output", _PAIR, "The output at the ends: angles, or a slider's displacements"),
-            Key("positions", Whole(3, 5), "Number of precision positions; default 3"),
+            Key(
+                "positions",
+                Whole(3, 9),
+                "Number of precision positions; default 3, of watt-ii 9",
+            ),
             Key(
                 "spacing",
                 Text(("chebyshev", "even")),
@@ -240,7 +244,8 @@ TASK = Form(
             "mechanism",
             Either(Text(), ListOf(Text(), "mechanism", 1), 'a name or a list: ["four-bar"]'),
             'Kinds: "four-bar", "slider-crank", "inverted-slider-crank"; of two guides, if named: '
-            '"double-slider", "rapson-slide", "oldham-coupling"; a file to improve',
+            '"double-slider", "rapson-slide", "oldham-coupling"; of functions "watt-ii"; a file to '
+            "improve",
         ),
         _POSITIONS,
         _GIVEN,

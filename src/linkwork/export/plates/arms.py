@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import itertools
 import math
 from collections.abc import Collection, Iterator, Sequence
@@ -13,6 +12,7 @@ import numpy as np
 from linkwork.export.plates.outline import Outline
 from linkwork.export.plates.packages import shapely
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import phase
 
 __all__ = ["Arms", "arms_between"]
 
@@ -114,7 +114,7 @@ def _around(places: Sequence[complex], arms: Sequence[Ends], out: float) -> Iter
         if after == before:
             return math.tau
         back, onward = (places[k] - places[here] for k in (before, after))
-        return cmath.phase(onward / back) % math.tau
+        return phase(onward / back) % math.tau
 
     begin = before, here = arms[0]
     while True:

@@ -34,6 +34,7 @@ from linkwork.export.plates.wheel_plates import (
     ring_plate,
     wheel_plate,
 )
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.figures import Contour, Disc
@@ -100,7 +101,7 @@ class Construction:
         ends = {name: (float(own.min()), float(own.max())) for name, own in values.items()}
         travel = {way.name: ends[way.name] for way in ways}
         made = cls(linkage, mm, sizes, bodies, ways, travel, holes)
-        turns = {link: cmath.phase(turn) for link, (_, turn) in poses.items()}
+        turns = {link: phase(turn) for link, (_, turn) in poses.items()}
         points = {point: complex(motion.place(point).v[found][0]) for point in linkage.points}
         wheels, meshes = gear_meshes(linkage, model.skeleton, sizes, mm, turns, points)
         racks = list(rack_meshes(linkage, wheels, sizes, mm))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ from linkwork.export.plates.plate import Opening, Plate
 from linkwork.export.plates.rigid_bodies import Guideway
 from linkwork.export.plates.wheel_plates import WheelPlate
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.linkage import Linkage
@@ -105,7 +105,7 @@ def rack_plate(
     seen = (center - way.origin) * way.along.conjugate()
     line = seen.imag - side * radius
     # the tooth of the pinion on the line of centres fills a gap
-    turned = cmath.phase(tooth / (-1j * side * way.along))
+    turned = phase(tooth / (-1j * side * way.along))
     gap = seen.real - now + side * radius * turned
     low, high = (seen.real - end for end in (travel[1], travel[0]))
     low, high = low - _BEYOND * pitch, high + _BEYOND * pitch

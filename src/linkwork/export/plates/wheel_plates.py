@@ -16,6 +16,7 @@ from linkwork.export.plates.outline import Outline, circle
 from linkwork.export.plates.plate import Opening, Plate
 from linkwork.export.plates.rigid_bodies import RigidBody
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.errors import InputError
 
 __all__ = ["Blank", "WheelPlate", "cam_blank", "gear_blank", "ring_plate", "wheel_plate"]
@@ -109,7 +110,7 @@ def wheel_plate(
         # as far out as there is room, or half-way to the next hole
         free = abs(away) - room >= sizes.hole + sizes.web
         reach = room if free else min(room, abs(away) / 2.0)
-        fastened = {f"{name} 1": center + cmath.rect(reach, cmath.phase(away))}
+        fastened = {f"{name} 1": center + cmath.rect(reach, phase(away))}
     openings = (within | fastened).items()
     plate = Plate(
         name=name,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator
 
@@ -25,6 +24,7 @@ from linkwork.export.report.document import (
 )
 from linkwork.export.report.findings import Findings
 from linkwork.export.report.template import Template
+from linkwork.foundation.elementwise import phase
 from linkwork.foundation.names import canonical, pretty
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import varied_numbers
@@ -95,7 +95,7 @@ def vectors(found: Findings, template: Template) -> Iterator[Block]:
         sides = [("left", vector) for vector in loop.left]
         sides += [("right", vector) for vector in loop.right]
         values = [vector.value for _, vector in sides]
-        angles = [math.degrees(cmath.phase(z)) if z else math.nan for z in values]
+        angles = [math.degrees(phase(z)) if z else math.nan for z in values]
         columns = [
             Column(header="vector", cells=[vector.name for _, vector in sides]),
             Column(header="side", cells=[side for side, _ in sides]),

@@ -24,6 +24,8 @@ __all__ = ["Inertia", "Robot"]
 
 _DENSITY = 1.0  # kg/m of bodies without a mass in the file
 _SMALL = 0.01  # of the longest link: the least size of a body, for its inertia
+_TRACE = 1e-3  # of a bar of this size: what stands for no mass
+_LEAST = 1e-14  # kg, and kg m²: MuJoCo refuses bodies below 1e-15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,11 +120,13 @@ class Robot:
         extent = max([abs(a - b) for a in places for b in places] + [least])
         given = self.linkage.spelled_masses().get(body)
         if given is None:
-            mass = _DENSITY * extent
+            mass = max(_DENSITY * extent, _LEAST)
             middle = sum(places) / len(places)
-            return Inertia(mass=mass, center=middle, inertia=mass * extent**2 / 12.0)
+            inertia = max(mass * extent**2 / 12.0, _LEAST)
+            return Inertia(mass=mass, center=middle, inertia=inertia)
         numbers = self.linkage.numbers
         mass = numbers(given.mass) * float(MASSES[self.linkage.mass])
+        mass = max(mass or _TRACE * _DENSITY * least, _LEAST)
         inertia = numbers(given.inertia) * float(MASSES[self.linkage.mass]) * self.metre**2
         first = self.place(self.linkage.links[body][0])
         x, y = map(numbers, given.center or (0, 0))
@@ -132,7 +136,7 @@ class Robot:
             center, inertia = span / 2.0 + 0j, mass * span**2 / 12.0
         turned = center * cmath.rect(1.0, self.frame(body)[1])
         # simulators refuse bodies without inertia
-        inertia = max(inertia, mass * least**2 / 12.0)
+        inertia = max(inertia, mass * least**2 / 12.0, _LEAST)
         return Inertia(mass=mass, center=self.local(body, first + turned), inertia=inertia)
 
     def gravity(self) -> complex:
@@ -186,6 +190,12 @@ class Robot:
         if assumed:
             lines.append(
                 f"Assumed masses, slender bars of {_DENSITY:g} kg/m: {', '.join(assumed)}."
+            )
+        numbers = self.linkage.numbers
+        none = [b for b, own in self.linkage.spelled_masses().items() if numbers(own.mass) == 0.0]
+        if none:
+            lines.append(
+                f"A small mass instead of none, which simulators refuse: {', '.join(none)}."
             )
         if self.linkage.gravity is None:
             lines.append("No gravity.")

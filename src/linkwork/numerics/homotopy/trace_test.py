@@ -75,13 +75,21 @@ class TraceDefect:
 
 
 def trace_defect(
-    system: _WithLast, member: Member, rng: np.random.Generator, tracker: Tracker
+    system: _WithLast,
+    member: Member,
+    rng: np.random.Generator,
+    tracker: Tracker,
+    reach: float = 1.0,
 ) -> TraceDefect:
-    """Move the last equation of a solved member both ways and compare the three traces."""
+    """Move the last equation of a solved member both ways and compare the three traces.
+
+    ``reach``: |s|; of tens of thousands of paths some pass too near to a degenerate solution on
+    their whole way.
+    """
     moving, c = _Moving(system), member.parameters
     width = system.last.stop - system.last.start
     chart, probe = normal_numbers(rng, 2, width)
-    turn = np.exp(2j * np.pi * rng.uniform())
+    turn = reach * np.exp(2j * np.pi * rng.uniform())
     traces, lost = list[complex](), 0
     for s in (-turn, 0.0, turn):
         start, goal = (np.concatenate([c, chart, [end]]) for end in (0.0, s))

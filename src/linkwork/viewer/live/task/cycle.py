@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_file import located_task_error, read_task_text
@@ -27,6 +27,7 @@ from linkwork.viewer.live.task.sketch import TaskSketch
 __all__ = ["SolveTask", "TaskCycle"]
 
 _WHILE_DRAGGED = 0.12  # a task that takes longer is solved when the drag ends [s]
+_SIX_BARS = 'Six-bars are not drawn here: "linkwork synthesize {} -o designs --html" lists them.'
 _NOT_LOADED = "Data of the solver cannot be loaded: check the connection, then solve again."
 _CANCELLED = "The search was ended: no designs are shown."
 
@@ -48,8 +49,8 @@ class _Chosen:
     pivots: ComplexArray
 
     @classmethod
-    def of(cls, design: SynthesizedDesign | ImprovedMechanism) -> _Chosen | None:
-        if isinstance(design, ImprovedMechanism):
+    def of(cls, design: JudgedDesign) -> _Chosen | None:
+        if not isinstance(design, SynthesizedDesign):
             return None  # other starts find other designs: the best one is shown
         given, k = design.group.given, design.index
         ends = [given.fixed_a[k], given.fixed_b[k], given.moving_a[k, 0], given.moving_b[k, 0]]
@@ -116,7 +117,7 @@ class TaskCycle:
             raise InputError("this task is not solved: complete it, or solve it again")
         return self._found
 
-    def design(self, index: int) -> SynthesizedDesign | ImprovedMechanism:
+    def design(self, index: int) -> JudgedDesign:
         """A design by its place in the list.
 
         Raises
@@ -126,8 +127,7 @@ class TaskCycle:
         """
         if not 0 <= index < len(self.found.designs):
             raise InputError(f"there is no design {index + 1}: the task has been solved again")
-        found: SynthesizedDesign | ImprovedMechanism = self.found.designs[index]
-        return found
+        return self.found.designs[index]
 
     def events(self, *, live: bool = False) -> Events:
         """Solve the task, and find the chosen design again.
@@ -137,6 +137,8 @@ class TaskCycle:
         task = self.sketch.task
         if task is None:
             return [self._unsolved(live, "The task is not complete.", self.sketch.problems)]
+        if task.is_six_bar:
+            return [self._unsolved(live, _SIX_BARS.format(self._name))]
         if live and self._took > _WHILE_DRAGGED:
             return [self._unsolved(live, "Designs are found when the drag ends.", slow=True)]
         try:

@@ -10,6 +10,7 @@ from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
@@ -77,7 +78,7 @@ def task_solved(
     )
 
 
-def _shown(design: SynthesizedDesign | ImprovedMechanism, index: int) -> DesignShown:
+def _shown(design: JudgedDesign, index: int) -> DesignShown:
     return DesignShown(
         index=index,
         origin="",
@@ -99,6 +100,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     design = found.designs[index]
     if isinstance(design, ImprovedMechanism):
         return mechanism_found(design, _shown(design, index))
+    assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
     one = np.array([k])
@@ -176,7 +178,8 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
     ``None`` without designs.
     """
     best: tuple[bool, float, int] | None = None
-    groups = {id(design.group): design.group for design in found.designs}
+    of_loops = [(k, d) for k, d in enumerate(found.designs) if isinstance(d, SynthesizedDesign)]
+    groups = {id(design.group): design.group for _, design in of_loops}
     distances: dict[int, Array] = {}
     for name, group in groups.items():
         given = group.given
@@ -184,7 +187,7 @@ def alike(found: Synthesis, kind: str, drive: str, pivots: ComplexArray) -> int 
         off = np.abs(np.stack(own, axis=1) - pivots).sum(axis=1)
         other = (given.kind.value, group.drive.value) != (kind, drive)
         distances[name] = np.where(other, np.inf, off)
-    for k, design in enumerate(found.designs):
+    for k, design in of_loops:
         off = float(distances[id(design.group)][design.index])
         rank = (bool(design.kinds), off, k)
         if best is None or rank < best:
@@ -257,7 +260,7 @@ def _continuous(sides: ComplexArray, size: float) -> Iterable[ComplexArray]:
 def cognates_found(found: Synthesis, index: int) -> tell.CognatesFound:
     """A four-bar and its two cognates, each with its verdict if it is among the designs."""
     design = found.designs[index]
-    if isinstance(design, ImprovedMechanism):
+    if not isinstance(design, SynthesizedDesign):
         return tell.CognatesFound(design=index, cognates=(), curve=())
     own = design.group.given.take(slice(design.index, design.index + 1))
     curve = design_found(found, index).curve
@@ -291,6 +294,8 @@ def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> C
     size = np.abs(wanted - wanted.mean()).max()
     for k in range(len(found.designs)) if index is None else (index,):
         other = found.designs[k]
+        if not isinstance(other, SynthesizedDesign):
+            continue
         given, j = other.group.given, other.index
         ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
         for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):

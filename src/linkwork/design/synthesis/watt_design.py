@@ -1,0 +1,176 @@
+"""A Watt-II six-bar of a task, with the verdict on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.synthesis.wanted_mechanisms import WATT_II
+from linkwork.design.synthesis.watt_group import WattGroup
+from linkwork.design.synthesis.watt_linkage import (
+    ERROR,
+    SIDES,
+    driven_range,
+    first_angle,
+    swept_mechanism,
+    watt_linkage,
+)
+from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.internal import internal
+from linkwork.mechanism.linkage import Linkage
+
+__all__ = ["WattDesign"]
+
+_ROUNDING = 1e-9  # of angles of positions [rad]
+
+
+@internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WattDesign(JudgedDesign):
+    """One Watt-II six-bar with its verdict.
+
+    Parameters
+    ----------
+    group : WattGroup
+        All six-bars of the task.
+    index : int
+        Its place among them.
+    wishes : Wishes
+        Those of the task, in radians.
+    changed : Defect, optional
+        The change of circuit or branch of one of its loops, or that this is not decided.
+    swept : ImprovedMechanism, optional
+        Its motion through the driven range, of a design without such a change.
+
+    Examples
+    --------
+    >>> import linkwork as lw
+    >>> from linkwork.design.synthesis.watt_design import WattDesign
+    >>> issubclass(WattDesign, lw.JudgedDesign)
+    True
+    """
+
+    group: WattGroup
+    index: int
+    wishes: Wishes
+    changed: Defect | None
+    swept: ImprovedMechanism | None
+
+    @classmethod
+    def of(cls, group: WattGroup, k: int, wishes: Wishes) -> WattDesign:
+        """The k-th six-bar, judged."""
+        changed = group.defect(k)
+        swept = None if changed else swept_mechanism(group, k, wishes)
+        return cls(
+            task=group.task, group=group, index=k, wishes=wishes, changed=changed, swept=swept
+        )
+
+    def __repr__(self) -> str:
+        found = ", ".join(kind.value for kind in self.kinds) or "sound"
+        return f"<WattDesign {self.number}: {found}>"
+
+    @property
+    def mechanism(self) -> str:
+        """The kind of mechanism."""
+        return WATT_II
+
+    @property
+    def driven(self) -> str:
+        """The fixed pivot of the driven link."""
+        return Drive.A0.value
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The numbers that vary; none, since all of them are found."""
+        return {}
+
+    @cached_property
+    def points(self) -> dict[str, complex]:
+        """The points at the first position [length]."""
+        return self.group.points(self.index)
+
+    @property
+    def inputs(self) -> tuple[float, ...]:
+        """The inputs at the positions [file units]."""
+        radians = self.group.inputs + first_angle(self.group, self.index)
+        return tuple(map(self.task.angle.from_radians, radians.tolist()))
+
+    @property
+    def first_input(self) -> float:
+        """The input at the first position [file units]."""
+        return self.task.angle.from_radians(first_angle(self.group, self.index))
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The mechanism."""
+        return watt_linkage(self.group, self.index, self.wishes, self._name)
+
+    @property
+    def transmission(self) -> float:
+        """The least transmission angle of both loops in the rows of the driven range, NaN for a
+        design that changes branch or circuit [file's angle unit].
+        """
+        return float("nan") if self.swept is None else self.swept.transmission
+
+    @cached_property
+    def size(self) -> float:
+        """The longest side of a link, or distance of fixed pivots [length]."""
+        return max(abs(self.points[q] - self.points[p]) for p, q in SIDES)
+
+    @cached_property
+    def error(self) -> float:
+        """The largest structural error in the rows of the driven range, 0 for pairs, NaN for a
+        design that changes branch or circuit [file's angle unit].
+        """
+        if self.swept is None:
+            return float("nan")
+        motion, described = self.swept.improved.motion, self.swept.improved.description
+        if motion is None or ERROR not in described.outputs:
+            return 0.0
+        return float(np.abs(motion[ERROR][motion.found]).max(initial=0.0))
+
+    @property
+    def error_unit(self) -> str:
+        """The unit of the error."""
+        return self.task.angle.value
+
+    @property
+    def kinds(self) -> tuple[DefectKind, ...]:
+        """The kinds of its defects; none for a sound design."""
+        return tuple(defect.kind for defect in self.defects)
+
+    @cached_property
+    def defects(self) -> tuple[Defect, ...]:
+        """Its defects in words; none for a sound design.
+
+        Both loops are on one side at all positions, and a sweep without a dead point, each row
+        proved, leads from the first position through the driven range: it passes all of them.
+        """
+        if self.changed is not None:
+            return (self.changed,)
+        swept = () if self.swept is None else self.swept.defects
+        return (*self._order_and_range(), *swept)
+
+    def _order_and_range(self) -> Iterator[Defect]:
+        inputs = self.group.inputs
+        steps = np.diff(inputs)
+        if self.wishes.ordered and not ((steps > 0.0).all() or (steps < 0.0).all()):
+            order = ", ".join(map(str, np.argsort(inputs, kind="stable") + 1))
+            told = f"the input passes the positions in the order {order}"
+            yield Defect(kind=DefectKind.ORDER, between=None, message=told)
+        if self.wishes.range is not None and self.wishes.range.turn:
+            return
+        low, high = sorted(driven_range(self.group, self.index, self.wishes))
+        places = inputs + first_angle(self.group, self.index)
+        outside = np.flatnonzero((places < low - _ROUNDING) | (places > high + _ROUNDING))
+        if len(outside):
+            told = f"position {outside[0] + 1} is outside the driven range"
+            yield Defect(kind=DefectKind.RANGE, between=None, message=told)

@@ -1,0 +1,168 @@
+"""Function tasks with Watt-II six-bars: placed, judged, refused with reasons, written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.six_bars import watt_six_bars
+from linkwork.design.synthesis.watt_synthesis import _nine_pairs
+from linkwork.numerics.homotopy.monodromy import Member
+from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
+
+INPUTS = 90.0 * chebyshev()
+
+
+@pytest.fixture
+def one_path(monkeypatch: pytest.MonkeyPatch) -> Member:
+    """A start set of one path, which leads to a sound six-bar for the logarithm."""
+    member = member_of(ARMS, np.radians(INPUTS))
+    monkeypatch.setattr(watt_six_bars, "watt_member", lambda: member)
+    return member
+
+
+def logarithm(**tables: Any) -> lw.Task:
+    return lw.Task.function(
+        "log10(x)", x=(1, 10), input=(0, 90), output=(0, 90), mechanism="watt-ii", **tables
+    )
+
+
+@pytest.mark.usefixtures("one_path")
+def test_a_design_follows_the_function_at_nine_inputs_and_nearly_between_them(
+    tmp_path: Path,
+) -> None:
+    found = logarithm().solve()
+    assert (found.real, found.proved, found.sound) == (1, 1, 1)
+    (design,) = found.delivered
+    assert design.mechanism == "watt-ii"
+    mechanism = found.defect_free[0]
+    motion = mechanism.sweep()
+    assert motion.certified.all()
+    assert list(motion.inputs["crank"][[0, -1]]) == [0.0, 90.0]
+    for value in INPUTS:
+        at = mechanism.solve(at=value)
+        assert at["rocker"] == pytest.approx(90.0 * np.log10(1.0 + value / 10.0), abs=1e-9)
+    # no four-bar comes near to this; the claim of the design is that of its own file
+    assert 0.01 < design.error < 0.07
+    (file,) = found.save(tmp_path / "designs")
+    assert np.abs(lw.load(file).sweep()["structural_error"]).max() == pytest.approx(design.error)
+    assert found.table()["D.x"][0] == pytest.approx(design.points["D"].real)
+
+
+@pytest.mark.usefixtures("one_path")
+def test_wishes_hold_over_the_whole_driven_range() -> None:
+    def kinds(**wanted: Any) -> list[str]:
+        design = logarithm(wanted=wanted).solve().designs[0]
+        return [kind.name for kind in design.kinds]
+
+    assert kinds() == []
+    assert kinds(transmission={"least": 6}) == []
+    assert kinds(transmission={"least": 7}) == ["TRANSMISSION"]
+    assert kinds(lengths={"ratio": 20}) == ["LENGTHS"]
+    assert kinds(fixed_pivots={"inside": [[-1, -1], [1.1, -1], [1.1, 1], [-1, 1]]}) == ["PIVOTS"]
+    assert kinds(clear_of=[[0.5, 0.0, 0.1]]) == ["OBSTACLE"]
+    assert kinds(input={"from": 10, "to": 80}) == ["RANGE"]
+    assert "RANGE" in kinds(input="turns fully")
+
+
+@pytest.mark.usefixtures("one_path")
+def test_pairs_without_start_angles_have_level_pivots_or_those_given() -> None:
+    outputs = 90.0 * np.log10(1.0 + INPUTS / 10.0)
+    pairs = np.stack([INPUTS, outputs], axis=1).tolist()
+    level = lw.Task.function(pairs, mechanism="watt-ii").solve().designs[0]
+    assert level.points["A0"] == 0
+    assert level.points["B0"] == pytest.approx(1.0)
+    assert level.points["C0"].imag == pytest.approx(0.0, abs=1e-12)
+    pivots = [[10.0, 5.0], [70.0, -20.0], [90.0, 60.0]]
+    task = lw.Task.function(pairs, mechanism="watt-ii", given={"fixed_pivots": pivots})
+    (design,) = task.solve().delivered
+    assert [design.points[name] for name in ("A0", "B0", "C0")] == pytest.approx(
+        [complex(*pivot) for pivot in pivots]
+    )
+    mechanism = task.solve().defect_free[0]
+    first = mechanism.solve(at=design.first_input)["rocker"]
+    last = mechanism.solve(at=design.first_input + INPUTS[-1] - INPUTS[0])["rocker"]
+    assert last - first == pytest.approx(outputs[-1] - outputs[0], abs=1e-9)
+
+
+def test_a_change_of_branch_is_found_loop_by_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rocker's loop is on its other side at the last pair only."""
+    inputs = np.radians(INPUTS)
+    member = member_of(ARMS, inputs)
+    _, _, d, c = ARMS
+    outputs = turned(ARMS, inputs - inputs[0])
+    # the rocker mirrored in the line from C0 to C
+    turns = watt_six_bars.watt_six_bars(inputs, outputs, member=member).turns[0]
+    toward = 1.0 + c * turns[-1]
+    rocker = d * np.exp(1j * outputs[-1])
+    mirrored = rocker.conjugate() * toward / toward.conjugate()
+    outputs[-1] = np.angle(mirrored / d)
+    goal = np.exp(1j * np.stack([inputs - inputs[0], outputs], axis=1)[1:]).ravel()
+    other = Member(parameters=goal, x=member.x)
+    monkeypatch.setattr(watt_six_bars, "watt_member", lambda: other)
+    pairs = np.degrees(np.stack([inputs, outputs], axis=1)).tolist()
+    found = lw.Task.function(pairs, mechanism="watt-ii").solve()
+    (design,) = found.designs
+    assert [defect.message for defect in design.defects] == [
+        "branch of the loop B0 C D C0 changes between positions 8 and 9"
+    ]
+    assert np.isnan(design.transmission)
+    assert not found.delivered
+    assert "refused" in design.linkage.name
+
+
+@pytest.mark.usefixtures("one_path")
+def test_inputs_out_of_order_are_refused_unless_any_order_will_do() -> None:
+    outputs = 90.0 * np.log10(1.0 + INPUTS / 10.0)
+    pairs = np.stack([INPUTS, outputs], axis=1)[[0, 2, 1, *range(3, 9)]].tolist()
+    # the same pairs in another order: the path ends elsewhere, or nowhere
+    for design in lw.Task.function(pairs, mechanism="watt-ii").solve().designs:
+        assert design.kinds
+
+
+def test_missing_pairs_lie_between_those_given() -> None:
+    given = np.array([[0.0, 10.0, 20.0, 30.0, 50.0, 60.0], [0.0, 1.0, 4.0, 9.0, 25.0, 36.0]])
+    every, wanted = _nine_pairs(given)
+    assert every.shape == (2, 9)
+    assert every[:, wanted] == pytest.approx(given)
+    assert (np.diff(every[0]) > 0).all()
+    nine = np.stack([np.arange(9.0), np.arange(9.0) ** 2])
+    assert (_nine_pairs(nine)[0] == nine).all()
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        ({"positions": 5}, "5 given: give 6 or more"),
+        ({"fit": "minimax"}, "has no effect on watt-ii"),
+        ({"mechanism": ["watt-ii", "four-bar"]}, "make it a task of its own"),
+        ({"given": {"fixed_pivots": [[0, 0], [1, 0]]}}, "must be three pivots, A0, B0 and C0"),
+        ({"given": {"fixed_pivots": [[0, 0], [0, 0], [1, 0]]}}, "of which neighbours differ"),
+        ({"given": {"fixed_pivots": [[0, 0], [1, 0], [2, 0]]}}, "leave the start angles no choice"),
+        ({"given": {"moving_pivots": [[0, 0]]}}, "has no effect on functions"),
+        ({"given": {"lengths": {"A B": 2}}}, "belongs to points"),
+    ],
+)  # fmt: skip
+def test_tasks_that_a_six_bar_cannot_do_are_refused(tables: dict[str, Any], message: str) -> None:
+    with pytest.raises(lw.MechanismError, match=message):
+        lw.Task.function(
+            "log10(x)", x=(1, 10), input=(0, 90), output=(0, 90),
+            **{"mechanism": "watt-ii", **tables},
+        )  # fmt: skip
+
+
+def test_pairs_are_counted_and_must_differ() -> None:
+    pairs = [[10.0 * k, float(k * k)] for k in range(10)]
+    with pytest.raises(lw.MechanismError, match="10 pairs leave no watt-ii in general: keep 9"):
+        lw.Task.function(pairs, mechanism="watt-ii")
+    with pytest.raises(lw.MechanismError, match="5 given: give 6 or more"):
+        lw.Task.function(pairs[:5], mechanism="watt-ii")
+    pairs[8] = [360.0, 0.0]
+    with pytest.raises(lw.MechanismError, match="is pair 1 after whole turns"):
+        lw.Task.function(pairs[:9], mechanism="watt-ii").solve()
+    with pytest.raises(lw.MechanismError, match="is made for functions only"):
+        lw.Task.path([(0, 0), (1, 1)], mechanism="watt-ii")
