@@ -81,8 +81,8 @@ def test_no_property_reads_as_a_type_before_its_colon() -> None:
         f"{name}.{member}"
         for name in PUBLIC
         if isinstance(kind := getattr(lw, name), type)
-        for member, value in public_members(kind)
-        if isinstance(value, property | cached_property)
-        and re.match(r"[^`]*: ", (inspect.getdoc(value) or "").partition("\n\n")[0])
+        for member, function in public_members(kind)
+        if isinstance(inspect.getattr_static(kind, member), property | cached_property)
+        and re.match(r"[^`]*: ", (inspect.getdoc(function) or "").partition("\n\n")[0])
     ]
     assert misread == []
