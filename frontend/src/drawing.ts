@@ -50,8 +50,9 @@ export class Drawing {
   private motion!: MotionView;
   /** The view chosen by zooming or panning; null: that of the data. */
   private chosen: View | null = null;
-  /** Height on the screen [px]. */
+  /** Height on the screen, and the window's width [px]. */
   private height = 0;
+  private around = 0;
   /** Called after the view has changed. */
   viewed: () => void = () => {};
 
@@ -137,11 +138,11 @@ export class Drawing {
     this.renew(this.data);
   }
 
-  /** The drawing has another height: in a chosen view everything stays at its place below the upper edge. */
+  /** The drawing has another size: if only its height changed, everything in a chosen view stays at its place. */
   resized(): void {
     const { width, height } = this.size;
-    const lower = this.height ? this.height - height : 0;
-    this.height = height;
+    const lower = this.around === innerWidth ? this.height - height : 0;
+    [this.height, this.around] = [height, innerWidth];
     if (this.chosen && lower) this.pan(0, (lower / 2) * (this.chosen.width / width));
     this.fit();
   }
