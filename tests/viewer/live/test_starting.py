@@ -122,6 +122,7 @@ def test_a_visitor_begins_with_the_library_and_returns_to_it(
     )
     assert shown.count() < len(LIBRARY) / 4
     page.locator(".lw-families [data-example=crank-shaper]").click()
+    page.locator(".lw-bar", has_text="crank-shaper").wait_for()
     page.locator(".lw[data-row]").wait_for()
     assert page.locator(".lw-start").count() == 0
     assert started.text == lw.example_text("crank-shaper")
