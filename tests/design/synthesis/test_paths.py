@@ -95,6 +95,16 @@ def test_given_lengths_hold_and_designs_with_them_are_proved(given: dict[str, An
         assert mechanism.solve(at=value).points["P"] == pytest.approx(point, abs=1e-6)
 
 
+def test_kinds_that_are_not_made_from_points_are_named() -> None:
+    given = {"fixed_pivots": _PIVOTS}
+    usual, named = (
+        lw.Task.path(_FOUR, given=given, **kinds).solve()
+        for kinds in ({}, {"mechanism": ["four-bar", "slider-crank"]})
+    )
+    assert "slider-crank" not in usual.message
+    assert "; no slider-crank: points are solved for four-bars only" in named.message
+
+
 def test_more_lengths_than_freedoms_are_met_by_least_squares_or_refused() -> None:
     lengths = {"A0 A": 40.0, "B0 B": 80.0}
     given = {"fixed_pivots": _PIVOTS, "lengths": lengths}

@@ -34,6 +34,9 @@ def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
             yield ("mechanism", k), "is made from poses only: leave it out"
         if name == WATT_II and len(mechanisms) > 1 and kind == "function":
             yield ("mechanism", k), "meets more pairs than others: make it a task of its own"
+    if kind == "function" and set(mechanisms) == set(MECHANISMS[:2]):
+        told = "of a function is one kind: four-bars give angles, slider-cranks displacements"
+        yield ("mechanism",), told
 
 
 def watt_pivot_problems(
