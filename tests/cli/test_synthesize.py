@@ -130,6 +130,19 @@ def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> N
     assert "The wish that costs most is the least transmission angle: without it" in told
 
 
+def test_wishes_that_cost_most_together_are_named(tmp_path: Path) -> None:
+    text = _TASK.read_text().replace("least = 30", "least = 85").replace("most = 1400", "most = 9")
+    (tmp_path / "task.toml").write_text(text)
+    found = lw.Task.load(tmp_path / "task.toml").solve()
+    assert all(len(design.kinds) > 1 for design in found.designs)
+    wishes, count = found.costliest or ("", 0)
+    told = (
+        "the least transmission angle, together with the bounds of lengths, perhaps also clear_of"
+    )
+    assert wishes == told
+    assert 0 < count == sum(len(design.kinds) == 2 for design in found.designs)
+
+
 def test_options_of_files_need_a_folder() -> None:
     done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "--draw"])
     assert done.exit_code == 2

@@ -103,7 +103,8 @@ def test_a_slider_crank_is_one_design_whichever_way_its_line_is_described() -> N
     turn = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
     points = [(80 * np.cos(a) + 10 * np.cos(2 * a), 35 * np.sin(a)) for a in turn]
     found = lw.Task.path(points, mechanism="slider-crank", improve={"starts": 30}).solve()
-    places = np.array([[d.points[name] for name in "A0 A B P".split()] for d in found.designs])
+    names = ("A0", "A", "B", "P")
+    places = np.array([[d.points[name] for name in names] for d in found.designs])
     apart = np.abs(places[:, None] - places).max(axis=2) + np.eye(len(places)) * 1e3
     assert len(places)
     assert apart.min() > 0.1

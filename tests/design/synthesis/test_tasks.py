@@ -87,7 +87,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "leaves no freedom for 5 poses"),
         (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "angle_tolerance = 1\n"),
          11, "positions[3].angle_tolerance", "has no effect on points"),
-        (_MOTION.replace("'motion'", "'mixed'"), 2, "task", 'has poses only: write task = "motion"'),
+        (_MOTION.replace("'motion'", "'mixed'"), 2, "task",
+         'has poses only: write task = "motion"'),
         (_points(7).replace("path", "mixed").replace("point", "angle = 1\npoint", 2)
          + "[given]\nfixed_pivots = [[0, 9]]\n", None, "positions",
          "and fixed pivots are 9 conditions, but a four-bar meets at most 8"),

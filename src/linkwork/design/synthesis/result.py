@@ -296,16 +296,19 @@ class Synthesis:
 
     @property
     def costliest(self) -> tuple[str, int] | None:
-        """The wish without which most of the refused designs would be sound, and their number."""
-        only = Counter(
-            design.kinds[0]
-            for design in self.designs
-            if len(design.kinds) == 1 and design.kinds[0] in _WISHES
-        )
-        if not only:
+        """The wish without which most of the refused designs would be sound, and their number;
+        several wishes together if no design breaks one alone.
+        """
+        broken = [d.kinds for d in self.refused if all(kind in _WISHES for kind in d.kinds)]
+        if not broken:
             return None
-        kind, count = only.most_common(1)[0]
-        return _WISHES[kind], count
+        fewest = min(map(len, broken))
+        kinds, count = Counter(k for k in broken if len(k) == fewest).most_common(1)[0]
+        told = ", together with ".join(_WISHES[kind] for kind in kinds)
+        # obstacles are noted of designs with few other defects
+        if self.task.wanted.obstacles and fewest > 1 and DefectKind.OBSTACLE not in kinds:
+            told += f", perhaps also {_WISHES[DefectKind.OBSTACLE]}"
+        return told, count
 
     def __repr__(self) -> str:
         solutions = f"{self.complex}: {self.real} real, {self.proved} proved"
