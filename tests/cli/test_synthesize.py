@@ -131,15 +131,13 @@ def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> N
 
 
 def test_wishes_that_cost_most_together_are_named(tmp_path: Path) -> None:
-    text = _TASK.read_text().replace("least = 30", "least = 85").replace("most = 1400", "most = 9")
-    (tmp_path / "task.toml").write_text(text)
+    text = _TASK.read_text().replace("least = 30", "least = 85")
+    (tmp_path / "task.toml").write_text(text.replace("most = 1400", "most = 300"))
     found = lw.Task.load(tmp_path / "task.toml").solve()
     assert all(len(design.kinds) > 1 for design in found.designs)
     wishes, count = found.costliest or ("", 0)
-    told = (
-        "the least transmission angle, together with the bounds of lengths, perhaps also clear_of"
-    )
-    assert wishes == told
+    both = "the least transmission angle, together with the bounds of lengths"
+    assert wishes == f"{both}, perhaps also clear_of"
     assert 0 < count == sum(len(design.kinds) == 2 for design in found.designs)
 
 

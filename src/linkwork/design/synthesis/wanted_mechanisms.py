@@ -27,7 +27,8 @@ def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
         if name == WATT_II and kind in KINDS[:3]:
             yield ("mechanism", k), 'is made for functions only: task = "function"'
         elif name not in (*known, *GUIDED) and kind != "improve":
-            told = " or ".join(f'"{one}"' for one in known)
+            made = (*MECHANISMS[:2], WATT_II) if kind == "function" else known
+            told = " or ".join(f'"{one}"' for one in made)
             yield ("mechanism", k), f"must be {told}, got {as_told(name)}"
         of_poses = name in (MECHANISMS[2], *GUIDED) and tuple(mechanisms) != MECHANISMS
         if of_poses and kind not in ("motion", "improve"):
