@@ -113,6 +113,9 @@ def test_a_slider_crank_is_one_design_whichever_way_its_line_is_described() -> N
 def test_unknown_and_contradicting_settings_are_refused() -> None:
     with pytest.raises(MechanismError, match="is no dimension"):
         _timed(improve={"bounds": {"A C": [1, 2]}})
+    for own in ({"goal": "minimax"}, {"spread": 0.2}, {"vary": ["A B"]}):
+        with pytest.raises(MechanismError, match='belongs to task = "improve"'):
+            _timed(improve=own)
     with pytest.raises(MechanismError, match="hold no number"):
         _timed(improve={"bounds": {"A B": [3, 2]}})
 

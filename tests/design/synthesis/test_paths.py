@@ -38,6 +38,7 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
 def test_five_points_with_given_pivots_are_solved_and_judged() -> None:
     found = lw.Task.path(_ON_A_LINE, given={"fixed_pivots": [(0, 0), (1, 0)]}).solve()
     assert found.real == found.proved == 15
+    assert found.message.endswith("(36 paths, 3 to infinity, 0 lost; closed under conjugation)")
     assert len(found.designs) == 30
     assert sum(found.defects.values()) >= len(found.refused) == 30 - found.sound
     for design in found.designs[:4]:

@@ -171,7 +171,9 @@ def _completeness(
         told += ", in which the missing conditions were drawn" if drawn else ""
         return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{told}"
     roots, grade = solved[0].roots, solved[0].completeness
+    closed = "" if roots.closed is None else "closed" if roots.closed else "not closed"
     message = (
-        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost)"
+        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost"
+        f"{closed and f'; {closed} under conjugation'})"
     )
     return grade, message

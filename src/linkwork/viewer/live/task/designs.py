@@ -15,6 +15,7 @@ from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point
@@ -100,6 +101,8 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     design = found.designs[index]
     if isinstance(design, ImprovedMechanism):
         return mechanism_found(design, _shown(design, index))
+    if isinstance(design, WattDesign):
+        return mechanism_found(design.motion, _shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
