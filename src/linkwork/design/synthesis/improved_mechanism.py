@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,12 +25,29 @@ from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["ImprovedMechanism", "tested_in_rows"]
+__all__ = ["ImprovedMechanism", "SweptDesign", "tested_in_rows"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SweptDesign(JudgedDesign):
+    """A design that is judged by a sweep of its mechanism.
+
+    Examples
+    --------
+    >>> from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, SweptDesign
+    >>> issubclass(ImprovedMechanism, SweptDesign)
+    True
+    """
+
+    @property
+    @abstractmethod
+    def moved(self) -> ImprovedMechanism:
+        """Its mechanism in the rows of the driven range."""
 
 
 @internal("improved")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ImprovedMechanism(JudgedDesign):
+class ImprovedMechanism(SweptDesign):
     """An improved mechanism, and what keeps it from doing its task.
 
     Parameters
@@ -49,6 +67,11 @@ class ImprovedMechanism(JudgedDesign):
 
     improved: ImprovedDesign
     wishes: Wishes
+
+    @property
+    def moved(self) -> ImprovedMechanism:
+        """The design itself."""
+        return self
 
     @property
     def mechanism(self) -> str:

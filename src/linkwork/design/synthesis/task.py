@@ -137,6 +137,7 @@ class Task:
                 )
         yield from self._given_problems()
         yield from self._wish_problems()
+        yield from self.rank.problems()
 
     def _position_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.positions)

@@ -11,8 +11,11 @@ import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, tested_in_rows
-from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.improved_mechanism import (
+    ImprovedMechanism,
+    SweptDesign,
+    tested_in_rows,
+)
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
@@ -35,7 +38,7 @@ _ROUNDING = 1e-9  # of angles of positions [rad]
 
 @internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WattDesign(JudgedDesign):
+class WattDesign(SweptDesign):
     """One Watt-II six-bar with its verdict.
 
     Parameters
@@ -115,7 +118,7 @@ class WattDesign(JudgedDesign):
         return watt_linkage(self.group, self.index, self.wishes, self._name)
 
     @cached_property
-    def motion(self) -> ImprovedMechanism:
+    def moved(self) -> ImprovedMechanism:
         """Its motion through the driven range, also of a design that changes branch or circuit."""
         return self.swept or swept_mechanism(self.group, self.index, self.wishes)
 

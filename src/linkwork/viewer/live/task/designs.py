@@ -9,13 +9,12 @@ import numpy as np
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.improved_mechanism import SweptDesign
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point
@@ -99,10 +98,8 @@ def _shown(design: JudgedDesign, index: int) -> DesignShown:
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
     design = found.designs[index]
-    if isinstance(design, ImprovedMechanism):
-        return mechanism_found(design, _shown(design, index))
-    if isinstance(design, WattDesign):
-        return mechanism_found(design.motion, _shown(design, index), inputs=design.inputs)
+    if isinstance(design, SweptDesign):
+        return mechanism_found(design.moved, _shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
