@@ -150,11 +150,6 @@ class SynthesizedDesign(JudgedDesign):
         return {}
 
     @property
-    def goals(self) -> dict[str, float]:
-        """The misses of goals; none, since positions are met exactly or count as the error."""
-        return {}
-
-    @property
     def points(self) -> dict[str, complex]:
         """The points at the first position [length]."""
         return self.design.points
