@@ -71,7 +71,8 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            verdicts=judge(part, drive, wishes_of(task, drive)),
+            wishes=(wishes := wishes_of(task, drive)),
+            verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
         )
