@@ -43,13 +43,14 @@ _MOST_DYADS = 200
 def task_solved(
     found: Synthesis, chosen: tell.DesignFound | None, *, live: bool
 ) -> tell.TaskSolved:
-    """The counts and the list; ``live``: without the list."""
+    """The counts and the list; ``live``: without the list and what a wish costs."""
     sound = found.sound
     listed = [] if live else [
         *range(min(sound, _MOST_SOUND)),
         *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
     ]  # fmt: skip
-    wish, costs = found.costliest or ("", 0)
+    # to find what a wish costs takes longer than a drag waits
+    wish, costs = (None if live or found.sound else found.costliest) or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
     if found.starts:
         solutions = f"{found.real} local minima from {found.starts} starts"
