@@ -108,6 +108,10 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          'given.lengths."A0 B0"', "is fixed by the given pivots"),
         (_MOTION + "[given]\nlengths = { 'A0 A' = 4 }\n", 19, "given.lengths",
          "belongs to points: leave it out"),
+        (_FUNCTION + "of = 'x^2'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\n"
+         "fit = 'minimax'\nspacing = 'even'\n", 9, "function.spacing", "has no effect on a fit"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\nx = [0, 1]\n", 5, "function.x",
+         "has no effect on pairs"),
         (_MOTION + "[rank]\nby = { size = -1, error = 1 }\n", 19, "rank.by.size",
          "must not be negative, got -1"),
         (_MOTION + "[rank]\nby = { size = 0 }\n", 19, "rank.by", "has no weight above 0"),
