@@ -65,7 +65,7 @@ class JudgedDesign(ABC):
 
     @property
     def goals(self) -> dict[str, float]:
-        """The misses of goals; none where positions are met exactly or count as the error."""
+        """The misses of goals [file units]; none where positions are met, or miss by the error."""
         return {}
 
     @property
