@@ -100,7 +100,7 @@ def test_kinds_that_are_not_made_from_points_are_named() -> None:
     given = {"fixed_pivots": _PIVOTS}
     usual, named = (
         lw.Task.path(_FOUR, given=given, **kinds).solve()
-        for kinds in ({}, {"mechanism": ["four-bar", "slider-crank"]})
+        for kinds in (dict[str, Any](), {"mechanism": ["four-bar", "slider-crank"]})
     )
     assert "slider-crank" not in usual.message
     assert "; no slider-crank: points are solved for four-bars only" in named.message

@@ -168,7 +168,7 @@ class FourBarCurves(CouplerCurves):
 
     def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
         """All dimensions, and the side."""
-        return x, self.side[:, None] + 0j
+        return x, self.side[:, None].astype(complex)
 
 
 class SliderCrankCurves(CouplerCurves):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -24,18 +24,30 @@ from linkwork.results.summary import Summary
 
 __all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
 
-#: Defects that are wishes of the task, not properties of its positions: their words, and the
-#: fields of Wishes.
-_WISHES = {
-    DefectKind.ORDER: ("the order as given", ("ordered",)),
-    DefectKind.RANGE: ("the driven range", ("range",)),
-    DefectKind.TRANSMISSION: ("the least transmission angle", ("transmission",)),
-    DefectKind.PIVOTS: ("the region of fixed pivots", ("region",)),
-    DefectKind.LENGTHS: ("the bounds of lengths", ("shortest", "longest", "ratio")),
-    DefectKind.TOLERANCE: ("the tolerances", ("points", "reach")),
-    DefectKind.OBSTACLE: ("clear_of", ("obstacles",)),
+_NONE = Wishes()
+#: Defects that are wishes of the task, not properties of its positions: their words, and the wishes
+#: without them.
+_WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
+    DefectKind.ORDER: ("the order as given", lambda own: replace(own, ordered=False)),
+    DefectKind.RANGE: ("the driven range", lambda own: replace(own, range=None)),
+    DefectKind.TRANSMISSION: (
+        "the least transmission angle",
+        lambda own: replace(own, transmission=0.0),
+    ),
+    DefectKind.PIVOTS: (
+        "the region of fixed pivots",
+        lambda own: replace(own, region=_NONE.region),
+    ),
+    DefectKind.LENGTHS: (
+        "the bounds of lengths",
+        lambda own: replace(own, shortest=0.0, longest=np.inf, ratio=np.inf),
+    ),
+    DefectKind.TOLERANCE: (
+        "the tolerances",
+        lambda own: replace(own, points=_NONE.points, reach=_NONE.reach),
+    ),
+    DefectKind.OBSTACLE: ("clear_of", lambda own: replace(own, obstacles=_NONE.obstacles)),
 }
-_NONE = Wishes(ordered=False)
 _MOST_JUDGED = 3  # sets of wishes that are left out to see what they cost
 
 
@@ -321,10 +333,12 @@ class Synthesis:
         loops = [design for design in own if isinstance(design, SynthesizedDesign)]
         if not loops:
             return sum(design.kinds == kinds for design in own)
-        count, fields = 0, [name for kind in kinds for name in _WISHES[kind][1]]
+        count = 0
         for group in {id(design.group): design.group for design in loops}.values():
             index = np.array([design.index for design in loops if design.group is group])
-            without = replace(group.wishes, **{name: getattr(_NONE, name) for name in fields})
+            without = group.wishes
+            for kind in kinds:
+                without = _WISHES[kind][1](without)
             count += int(judge(group.given.take(index), group.drive, without).sound.sum())
         return count
 
