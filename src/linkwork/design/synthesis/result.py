@@ -287,7 +287,7 @@ class Synthesis:
 
     @cached_property
     def of_loops(self) -> tuple[SynthesizedDesign, ...]:
-        """The designs that are loops: all but improved mechanisms."""
+        """The designs that are loops, without improved mechanisms and six-bars."""
         return tuple(d for d in self.designs if isinstance(d, SynthesizedDesign))
 
     @property
