@@ -130,6 +130,30 @@ def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> N
     assert "The wish that costs most is the least transmission angle: without it" in told
 
 
+def test_wishes_that_cost_most_together_are_named_with_the_designs_they_cost(
+    tmp_path: Path,
+) -> None:
+    text = _TASK.read_text().replace("least = 30", "least = 85")
+    path = tmp_path / "task.toml"
+    path.write_text(text.replace("most = 1400", "most = 300"))
+    found = lw.Task.load(path).solve()
+    assert all(len(design.kinds) > 1 for design in found.designs)
+    wishes, count = found.costliest or ("", 0)
+    assert wishes == "the least transmission angle, together with the bounds of lengths"
+    free = text.replace("least = 85", "least = 0").replace("{ most = 1400, ratio = 20 }", "{}")
+    path.write_text(free)
+    relaxed = lw.Task.load(path).solve()
+    assert 0 < count == relaxed.sound
+
+
+def test_without_a_driven_range_the_range_of_the_positions_counts(tmp_path: Path) -> None:
+    """Nothing is sound in the given range; without it some designs fall to other wishes."""
+    text, path = _TASK.read_text(), tmp_path / "task.toml"
+    path.write_text(text.replace("[wanted]", "[wanted]\ninput = { from = 20, to = 21 }"))
+    cost = lw.Task.load(path).solve().costliest
+    assert cost == ("the driven range", lw.Task.load(_TASK).solve().sound)
+
+
 def test_options_of_files_need_a_folder() -> None:
     done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "--draw"])
     assert done.exit_code == 2

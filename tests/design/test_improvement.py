@@ -96,6 +96,8 @@ def test_goals_without_a_meaning_are_refused() -> None:
         bar.improve({"point": "B", "points": [(1, 2), (3, 4)], "inputs": [1]})
     with pytest.raises(MechanismError, match="same as point 1"):
         bar.improve({"point": "B", "points": [(1, 2), (1, 2)]})
+    with pytest.raises(InputError, match="got 'least squares'; how misses count is fit ="):
+        bar.improve("least squares")  # type: ignore[arg-type]  # as a caller without types may
     with pytest.raises(MechanismError, match=r"is no key of a goal \(keys: target"):
         bar.improve({"of": "rocker", "taget": 1.0})
     with pytest.raises(InputError, match="mixes numbers of the motion"):

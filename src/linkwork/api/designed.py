@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from linkwork import design
 from linkwork.api.dynamic import DynamicMechanism
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.plain_numbers import as_told
 
 if TYPE_CHECKING:
     from linkwork.design.improvement.improved_design import ImprovedDesign
@@ -173,6 +174,12 @@ class DesignedMechanism(DynamicMechanism):
         [0.0, 49.7146]
         """
         wanted = (goal,) if isinstance(goal, Mapping) else tuple(goal)
+        for one in wanted:
+            if not isinstance(one, Mapping):
+                raise InputError(
+                    f'a goal is a table, {{"of": "stroke(d)", "target": 40}}, got {as_told(goal)}; '
+                    'how misses count is fit = "least squares" or "minimax"'
+                )
         settings = design.Improvement(
             vary=(vary,) if isinstance(vary, str) else tuple(vary),
             bounds=bounds or {},

@@ -59,6 +59,11 @@ def test_wishes_hold_over_the_whole_driven_range() -> None:
         design = logarithm(wanted=wanted).solve().designs[0]
         return [kind.name for kind in design.kinds]
 
+    found = logarithm(wanted={"transmission": {"least": 6}}).solve()
+    assert found.message.endswith(
+        "; transmission tested in the rows of the table, all else on the whole motion"
+    )
+    assert found.to_dict()["designs"][0]["tested_in_rows"] == ["transmission"]
     assert kinds() == []
     assert kinds(transmission={"least": 6}) == []
     assert kinds(transmission={"least": 7}) == ["TRANSMISSION"]

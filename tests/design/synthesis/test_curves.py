@@ -99,9 +99,23 @@ def test_a_file_without_a_curve_is_refused_with_its_place(
         lw.Task.load(tmp_path / "task.toml")
 
 
+def test_a_slider_crank_is_one_design_whichever_way_its_line_is_described() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
+    points = [(80 * np.cos(a) + 10 * np.cos(2 * a), 35 * np.sin(a)) for a in turn]
+    found = lw.Task.path(points, mechanism="slider-crank", improve={"starts": 30}).solve()
+    names = ("A0", "A", "B", "P")
+    places = np.array([[d.points[name] for name in names] for d in found.designs])
+    apart = np.abs(places[:, None] - places).max(axis=2) + np.eye(len(places)) * 1e3
+    assert len(places)
+    assert apart.min() > 0.1
+
+
 def test_unknown_and_contradicting_settings_are_refused() -> None:
     with pytest.raises(MechanismError, match="is no dimension"):
         _timed(improve={"bounds": {"A C": [1, 2]}})
+    for own in ({"goal": "minimax"}, {"spread": 0.2}, {"vary": ["A B"]}):
+        with pytest.raises(MechanismError, match='belongs to task = "improve"'):
+            _timed(improve=own)
     with pytest.raises(MechanismError, match="hold no number"):
         _timed(improve={"bounds": {"A B": [3, 2]}})
 

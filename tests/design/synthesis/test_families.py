@@ -193,6 +193,27 @@ def test_a_timed_crank_turns_by_the_given_angles() -> None:
         assert np.mod(turned - inputs + 180.0, 360.0) - 180.0 == pytest.approx(0.0, abs=1e-6)
 
 
+def test_moving_pivots_of_four_poses_are_circle_points() -> None:
+    poses = [(5, 0, 20), *_POSES[1:]]
+    found = lw.Task.motion(poses).solve()
+    one, other = found.dyads[10], found.dyads[30]
+    first = 5 + complex(*one.moving) * np.exp(1j * np.radians(20))
+    own = {"moving_pivots": [(first.real, first.imag)], "fixed_pivots": [other.fixed]}
+    bars = lw.Task.motion(poses, mechanism="four-bar", given=own).solve()
+    assert (bars.linkages, bars.proved) == (1, 2)
+    pivots = bars.designs[0].points
+    assert sorted([pivots["A0"].real, pivots["B0"].real]) == pytest.approx(
+        sorted([one.fixed[0], other.fixed[0]]), rel=1e-8
+    )
+    with pytest.raises(lw.MechanismError, match="is not on the circle-point curve") as caught:
+        lw.Task.motion(poses, given={"moving_pivots": [(first.real + 1, first.imag)]}).solve()
+    near = complex(*map(float, str(caught.value).split("[")[-1].split("]")[0].split(",")))
+    assert abs(near - first) < 2.0
+    parallel = [(0, 0, 0), (9, 4, 0), (20, 30, 0), (4, 30, 50)]
+    with pytest.raises(lw.MechanismError, match="of which three are parallel"):
+        lw.Task.motion(parallel, given={"fixed_pivots": [(0, 0)]}).solve()
+
+
 def test_a_pivot_off_the_curve_of_four_poses_is_refused_with_the_nearest_point() -> None:
     with pytest.raises(lw.MechanismError, match="is not on the centre-point curve"):
         lw.Task.motion(_POSES, given={"fixed_pivots": [(0, 0)]}).solve()

@@ -122,17 +122,15 @@ def test_the_minimax_fit_has_four_equal_errors_of_alternating_sign() -> None:
 _SLIDE = "cos(x) + sqrt(9 - (0.2 - sin(x))^2)"  # crank 1, rod 3, offset 0.2
 
 
-@pytest.mark.parametrize("how", [{}, {"fit": "least squares"}, {"fit": "minimax"}])
-@pytest.mark.parametrize("spacing", ["chebyshev", "even"])
-def test_a_slider_crank_is_found_again_from_its_own_displacements(
-    how: dict[str, str], spacing: str
-) -> None:
+@pytest.mark.parametrize(
+    "how", [{}, {"spacing": "even"}, {"fit": "least squares"}, {"fit": "minimax"}]
+)
+def test_a_slider_crank_is_found_again_from_its_own_displacements(how: dict[str, str]) -> None:
     """The closed form of its displacement, in radians, is the function."""
     x = np.array([0.5, 2.0])
     ends = np.cos(x) + np.sqrt(9.0 - (0.2 - np.sin(x)) ** 2)
     task = lw.Task.function(
-        _SLIDE, x=x, input=np.degrees(x), output=ends, spacing=spacing, mechanism="slider-crank",
-        **how,
+        _SLIDE, x=x, input=np.degrees(x), output=ends, mechanism="slider-crank", **how
     )  # fmt: skip
     found = task.solve()
     (design,) = found.defect_free

@@ -38,6 +38,7 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
 def test_five_points_with_given_pivots_are_solved_and_judged() -> None:
     found = lw.Task.path(_ON_A_LINE, given={"fixed_pivots": [(0, 0), (1, 0)]}).solve()
     assert found.real == found.proved == 15
+    assert found.message.endswith("(36 paths, 3 to infinity, 0 lost; closed under conjugation)")
     assert len(found.designs) == 30
     assert sum(found.defects.values()) >= len(found.refused) == 30 - found.sound
     for design in found.designs[:4]:
@@ -93,6 +94,16 @@ def test_given_lengths_hold_and_designs_with_them_are_proved(given: dict[str, An
     mechanism = lw.api.Mechanism(found.delivered[0].linkage)
     for value, point in zip(found.delivered[0].inputs, _FOUR, strict=True):
         assert mechanism.solve(at=value).points["P"] == pytest.approx(point, abs=1e-6)
+
+
+def test_kinds_that_are_not_made_from_points_are_named() -> None:
+    given = {"fixed_pivots": _PIVOTS}
+    usual, named = (
+        lw.Task.path(_FOUR, given=given, **kinds).solve()
+        for kinds in (dict[str, Any](), {"mechanism": ["four-bar", "slider-crank"]})
+    )
+    assert "slider-crank" not in usual.message
+    assert "; no slider-crank: points are solved for four-bars only" in named.message
 
 
 def test_more_lengths_than_freedoms_are_met_by_least_squares_or_refused() -> None:

@@ -87,6 +87,13 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "leaves no freedom for 5 poses"),
         (_MOTION.replace("'motion'", "'mixed'").replace("angle = 25\n", "angle_tolerance = 1\n"),
          11, "positions[3].angle_tolerance", "has no effect on points"),
+        (_MOTION.replace("'motion'", "'mixed'"), 2, "task",
+         'has poses only: write task = "motion"'),
+        (_points(7).replace("path", "mixed").replace("point", "angle = 1\npoint", 2)
+         + "[given]\nfixed_pivots = [[0, 9]]\n", None, "positions",
+         "and fixed pivots are 9 conditions, but a four-bar meets at most 8"),
+        (_FUNCTION.replace("[function]", "mechanism = ['slider-crank', 'four-bar']\n[function]")
+         + "pairs = [[0, 0], [10, 5], [20, 9]]\n", 3, "mechanism", "of a function is one kind"),
         (_points(10, "tolerance = 0.5") + "[[positions]]\npoint = [99, 0]\n", 33,
          "positions[11].tolerance", "is missing: points that are met by least squares all have"),
         (_points(4) + "[given]\nlengths = { 'A0 C' = 4 }\n", 12, 'given.lengths."A0 C"',
@@ -101,6 +108,13 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          'given.lengths."A0 B0"', "is fixed by the given pivots"),
         (_MOTION + "[given]\nlengths = { 'A0 A' = 4 }\n", 19, "given.lengths",
          "belongs to points: leave it out"),
+        (_FUNCTION + "of = 'x^2'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\n"
+         "fit = 'minimax'\nspacing = 'even'\n", 9, "function.spacing", "has no effect on a fit"),
+        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\nx = [0, 1]\n", 5, "function.x",
+         "has no effect on pairs"),
+        (_MOTION + "[rank]\nby = { size = -1, error = 1 }\n", 19, "rank.by.size",
+         "must not be negative, got -1"),
+        (_MOTION + "[rank]\nby = { size = 0 }\n", 19, "rank.by", "has no weight above 0"),
         (_MOTION + "[curve]\nfile = 'foot.csv'\n", 18, "curve",
          'has no effect on task = "motion"'),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\n[given]\nfixed_pivots = [[0, 0]]\n", 6,

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.six_bars import watt_six_bars
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.synthesis.task import Task
@@ -23,6 +24,7 @@ from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template, template_names
 from linkwork.viewer.live.workbench import Workbench
+from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of
 
 
 def opened(folder: Path, name: str, solve: SolveTask = solve_task) -> Bench:
@@ -63,6 +65,28 @@ def test_a_task_to_begin_with_has_sound_designs(tmp_path: Path, name: str) -> No
     assert found.sound >= 1
     assert found.chosen is not None
     assert found.chosen.design.sound
+
+
+def test_a_six_bar_is_shown_moving_through_its_positions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    member = member_of(ARMS, np.radians(90.0 * chebyshev()))
+    monkeypatch.setattr(watt_six_bars, "watt_member", lambda: member)
+    path = tmp_path / "log.toml"
+    path.write_text(
+        'format = 1\ntask = "function"\nmechanism = "watt-ii"\n'
+        '[function]\nof = "log10(x)"\nx = [1, 10]\ninput = [0, 90]\noutput = [0, 90]\n'
+    )
+    bench = Bench(MechanismFile(path), lw.loads, solve_task)
+    found = solved(bench.opened()).chosen
+    assert found is not None
+    assert found.skeleton is not None
+    assert (found.design.mechanism, found.design.sound) == ("watt-ii", True)
+    assert len(found.skeleton.fixed) == 3
+    assert len(found.rows) > 80
+    assert np.allclose(found.marks, np.array(90.0 * chebyshev()) / 90.0 * (len(found.rows) - 1))
+    events = bench.handle(do.ShowDesign(design=0))
+    assert last(events, tell.DesignFound) == found
 
 
 def test_every_task_to_begin_with_can_be_read() -> None:

@@ -71,6 +71,12 @@ class CouplerCurves(ABC):
         grows by the angle of the factor.
         """
 
+    @abstractmethod
+    def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
+        """Lengths (D, K) and directions (D, M) that are the same for the same mechanism with P,
+        however its dimensions (D, P) describe it.
+        """
+
 
 class FourBarCurves(CouplerCurves):
     """A0, B0, crank a, coupler c, rocker b, P = A + (p + iq) e^{iψ}."""
@@ -160,6 +166,10 @@ class FourBarCurves(CouplerCurves):
         found[:, 4:] *= np.abs(factor)[:, None]
         return found
 
+    def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
+        """All dimensions, and the side."""
+        return x, self.side[:, None].astype(complex)
+
 
 class SliderCrankCurves(CouplerCurves):
     """A0, crank a, rod c, offset h and direction φ of B's line, P = A + (p + iq) e^{iψ}."""
@@ -237,6 +247,16 @@ class SliderCrankCurves(CouplerCurves):
             found[:, k] *= size
         found[:, 5] += np.angle(factor)
         return found
+
+    def shapes(self, x: Array) -> tuple[Array, ComplexArray]:
+        """All lengths, the foot of A0 on the line, and the line's direction from it towards B.
+
+        A line that is turned by 180° with -h and the other side is the same one.
+        """
+        line = np.exp(1j * x[:, 5])
+        foot = 1j * x[:, 4] * line
+        lengths = np.column_stack([x[:, [0, 1, 2, 3, 6, 7]], foot.real, foot.imag])
+        return lengths, (self.side * line)[:, None]
 
 
 def _dot(v: ComplexArray, w: ComplexArray) -> Array:

@@ -35,7 +35,7 @@ _STAGES = (
 )
 _FEWEST = 12  # lanes of a stage
 _PART = 128  # lanes of one thread
-_SAME_DIMENSIONS = 0.01  # relative difference of dimensions
+_SAME_DIMENSIONS = 0.01  # relative difference of lengths, and of unit vectors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -204,16 +204,15 @@ class _Problem:
         missed = there.rows[:, :, :2]
         total = np.einsum("dnm,dnm->d", missed, missed)
         order = [int(k) for k in np.argsort(total, kind="stable") if np.isfinite(total[k])]
-        scale = self.goal.size
+        lengths, turns = self.curves.take(numbers).shapes(fit.x[:, :count])
+        # of timed points the common angle of the inputs
+        turns = np.concatenate([turns, np.exp(1j * fit.x[:, count:])], axis=1)
         chosen: list[int] = []
         for k in order:
-            same = [
-                self.curves.side[numbers[j]] == self.curves.side[numbers[k]]
-                and np.abs(fit.x[j] - fit.x[k]).max()
-                <= _SAME_DIMENSIONS * (scale + np.abs(fit.x[k]).max())
-                for j in chosen
-            ]
-            if not any(same):
+            scale = self.goal.size + np.abs(lengths[k]).max()
+            apart = np.abs(lengths[chosen] - lengths[k]).max(axis=1) / scale
+            turned = np.abs(turns[chosen] - turns[k]).max(axis=1)
+            if (np.maximum(apart, turned) > _SAME_DIMENSIONS).all():
                 chosen.append(k)
         index = np.array(chosen, dtype=int)
         angles = self.angles(fit.x[index], fit.t[index], numbers[index])

@@ -127,6 +127,8 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
             "goals": settings.goals,
             "front": settings.front,
             "point": settings.point,
+            "goal": settings.fit != Improvement.fit,
+            "spread": settings.spread != Improvement.spread,
         }
         for key, entry in others.items():
             if entry:

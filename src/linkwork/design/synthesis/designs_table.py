@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.foundation.arrays import AnyArray
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
@@ -58,7 +58,7 @@ def front_of(found: Synthesis) -> dict[str, list[float]]:
     return goal_misses(found.delivered) if improvement is not None and improvement.front else {}
 
 
-def goal_misses(designs: Sequence[Any]) -> dict[str, list[float]]:
+def goal_misses(designs: Sequence[JudgedDesign]) -> dict[str, list[float]]:
     """The misses of every goal that improved designs have, in their order."""
     names = dict.fromkeys(name for design in designs for name in design.goals)
     return {name: [design.goals.get(name, np.nan) for design in designs] for name in names}

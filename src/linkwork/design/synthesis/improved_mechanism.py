@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,6 +14,7 @@ import numpy as np
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
 from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
@@ -23,12 +25,29 @@ from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["ImprovedMechanism"]
+__all__ = ["ImprovedMechanism", "SweptDesign", "tested_in_rows"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SweptDesign(JudgedDesign):
+    """A design that is judged by a sweep of its mechanism.
+
+    Examples
+    --------
+    >>> from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, SweptDesign
+    >>> issubclass(ImprovedMechanism, SweptDesign)
+    True
+    """
+
+    @property
+    @abstractmethod
+    def moved(self) -> ImprovedMechanism:
+        """Its mechanism in the rows of the driven range."""
 
 
 @internal("improved")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ImprovedMechanism(JudgedDesign):
+class ImprovedMechanism(SweptDesign):
     """An improved mechanism, and what keeps it from doing its task.
 
     Parameters
@@ -48,6 +67,11 @@ class ImprovedMechanism(JudgedDesign):
 
     improved: ImprovedDesign
     wishes: Wishes
+
+    @property
+    def moved(self) -> ImprovedMechanism:
+        """The design itself."""
+        return self
 
     @property
     def mechanism(self) -> str:
@@ -236,14 +260,8 @@ class ImprovedMechanism(JudgedDesign):
 
     @property
     def tested_in_rows(self) -> tuple[str, ...]:
-        """Wishes that are tested in the rows of the table only.
-
-        The motion between the rows is proved, and with it branch, order and range; lengths and
-        fixed pivots do not change.
-        """
-        wanted = self.task.wanted
-        asked = ((TRANSMISSION_ANGLE.word, wanted.transmission), ("clear_of", wanted.obstacles))
-        return tuple(word for word, given in asked if given)
+        """Wishes that are tested in the rows of the table only."""
+        return tested_in_rows(self.task)
 
     def _details(self) -> Mapping[str, Any]:
         return {
@@ -255,6 +273,19 @@ class ImprovedMechanism(JudgedDesign):
             "total": self.improved.total,
             "message": self.improved.message,
         }
+
+
+def tested_in_rows(task: Task) -> tuple[str, ...]:
+    """Wishes of a task that are tested in the rows of a table only.
+
+    The motion between the rows is proved, and with it branch, order and range; lengths and fixed
+    pivots do not change.
+    """
+    asked = (
+        (TRANSMISSION_ANGLE.word, task.wanted.transmission),
+        ("clear_of", task.wanted.obstacles),
+    )
+    return tuple(word for word, given in asked if given)
 
 
 def _is_in_order(inputs: tuple[float, ...]) -> bool:

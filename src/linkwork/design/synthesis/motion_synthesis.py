@@ -211,46 +211,59 @@ def _guided(points: ComplexArray, turns: ComplexArray, pivots: ComplexArray) -> 
 def _through_four(
     task: Task, fixed: ComplexArray, moving: ComplexArray, points: ComplexArray, angles: Array
 ) -> _Family:
-    if moving.size:
-        raise _refused(
-            task,
-            "given",
-            "moving pivots cannot be chosen with four poses: the circle-point curve decides; give "
-            "fixed pivots on the centre-point curve, or leave out a pose",
-            "moving_pivots",
-        )
+    turns = np.exp(1j * angles)
     curve = centre_points(points, angles)
-    dyads = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
-    if fixed.size and curve is not None:
-        _check_on_curve(task, fixed, curve, points)
-        dyads.insert(0, through_fixed(fixed, points[:3], np.exp(1j * angles[:3])))
+    given = []
+    if fixed.size:
+        _check_on_curve(task, "fixed_pivots", fixed, curve, points, (0j, 1.0 + 0j))
+        given.append(through_fixed(fixed, points[:3], turns[:3]))
+    # the body sees the fixed pivots move: its circle points are centre points of that motion
+    body = centre_points(inverted(points, turns)[0], -angles)
+    if moving.size:
+        _check_on_curve(task, "moving_pivots", moving, body, points, (points[0], turns[0]))
+        given.append(through_moving(moving, points[:3], turns[:3]))
+    free = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
+    number = len(fixed) + len(moving)
     arcs = () if curve is None else curve.arcs
     proved = "proved" if curve is not None and all(arc.proved for arc in arcs) else "unproved"
     return _Family(
-        dyads=DyadSet.joined(dyads[:1] if len(fixed) > 1 else dyads),
-        leading=len(dyads[0]) if len(fixed) == 1 else 0,
+        dyads=DyadSet.joined(given if number > 1 else [*given, *free]),
+        leading=sum(map(len, given)) if number == 1 else 0,
         message=f"a sample of dyads along the centre-point curve: {len(arcs)} {proved} "
         f"arc{'' if len(arcs) == 1 else 's'}",
     )
 
 
 def _check_on_curve(
-    task: Task, fixed: ComplexArray, curve: CentrePoints, points: ComplexArray
+    task: Task,
+    key: str,
+    pivots: ComplexArray,
+    curve: CentrePoints | None,
+    points: ComplexArray,
+    frame: tuple[complex, complex],
 ) -> None:
-    """Refuse given pivots that are not on the centre-point curve, and name the nearest point."""
-    size = float(np.abs(points - points.mean()).max())
-    for k, pivot in enumerate(fixed):
+    """Refuse given pivots that are not on their curve, and name its nearest point.
+
+    ``frame``: origin and direction of the curve's frame at the first pose.
+    """
+    size, (origin, turn) = float(np.abs(points - points.mean()).max()), frame
+    name = "centre-point" if key == "fixed_pivots" else "circle-point"
+    if curve is None:
+        told = f"are not made for four poses of which three are parallel: the {name} curve is no "
+        raise _refused(task, "given", f"{told}cubic; leave them out", key)
+    for k, pivot in enumerate(pivots):
         near = curve.points(np.angle([pivot - curve.pole]))[0]
         if (np.abs(near - pivot) < _ON_CURVE * size).any():
             continue
-        sampled = curve.points(np.linspace(0.0, np.pi, _CURVE_SAMPLES)).ravel()
-        best = sampled[np.nanargmin(np.abs(sampled - pivot))]
+        sampled = curve.points(np.linspace(0.0, np.pi, _CURVE_SAMPLES))
+        sampled = np.concatenate([near, sampled.ravel()])
+        best = origin + turn * sampled[np.nanargmin(np.abs(sampled - pivot))]
         raise _refused(
             task,
             "given",
-            "is not on the centre-point curve of the four poses; the nearest point of it is about "
+            f"is not on the {name} curve of the four poses; the nearest point of it is about "
             f"[{best.real:.6g}, {best.imag:.6g}]",
-            "fixed_pivots",
+            key,
             k,
         )
 

@@ -19,7 +19,7 @@ from linkwork.design.precision import (
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.pose_tolerance import drawn_within, is_tolerant
-from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task import MECHANISMS, Task
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.completeness import Completeness
@@ -81,7 +81,7 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
             proved=sum(map(_proved, solved)),
             triples=sum(part.real for part in solved if len(part) > part.real),
             completeness=grade,
-            message=message,
+            message=message + _of_four_bars(task),
         )
     fitted = []
     for part in near:
@@ -94,7 +94,8 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
         real=number,
         proved=sum(int(part.proved.sum()) for part in fitted),
         completeness=Completeness.SAMPLED,
-        message=f"a sample: four-bars with the given lengths, from those of {len(solved)} tasks",
+        message=f"a sample: four-bars with the given lengths, from those of {len(solved)} tasks"
+        + _of_four_bars(task),
     )
 
 
@@ -148,6 +149,14 @@ def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tup
     )
 
 
+def _of_four_bars(task: Task) -> str:
+    """That other kinds are not made, if the task names them."""
+    others = [name for name in task.mechanisms if name != LoopKind.FOUR_BAR.value]
+    if not others or task.mechanisms == MECHANISMS:
+        return ""
+    return f"; no {' or '.join(others)}: points are solved for four-bars only"
+
+
 def _proved(found: PrecisionFourBars) -> int:
     """The number of real solutions that are proved with all their cognates."""
     return found.real - len(np.unique(found.triple[~found.proved]))
@@ -162,7 +171,9 @@ def _completeness(
         told += ", in which the missing conditions were drawn" if drawn else ""
         return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{told}"
     roots, grade = solved[0].roots, solved[0].completeness
+    closed = "" if roots.closed is None else "closed" if roots.closed else "not closed"
     message = (
-        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost)"
+        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost"
+        f"{closed and f'; {closed} under conjugation'})"
     )
     return grade, message

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,8 @@ from linkwork.design.synthesis.defect_messages import Defect, defects_of
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
+from linkwork.design.synthesis.verdicts import DefectKind, Verdicts, judge
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
@@ -23,16 +24,31 @@ from linkwork.results.summary import Summary
 
 __all__ = ["Dyad", "JudgedDesigns", "Synthesis", "SynthesizedDesign"]
 
-#: Defects that are wishes of the task, not properties of its positions.
-_WISHES = {
-    DefectKind.ORDER: "the order as given",
-    DefectKind.RANGE: "the driven range",
-    DefectKind.TRANSMISSION: "the least transmission angle",
-    DefectKind.PIVOTS: "the region of fixed pivots",
-    DefectKind.LENGTHS: "the bounds of lengths",
-    DefectKind.TOLERANCE: "the tolerances",
-    DefectKind.OBSTACLE: "clear_of",
+_NONE = Wishes()
+#: Defects that are wishes of the task, not properties of its positions: their words, and the wishes
+#: without them.
+_WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
+    DefectKind.ORDER: ("the order as given", lambda own: replace(own, ordered=False)),
+    DefectKind.RANGE: ("the driven range", lambda own: replace(own, range=None)),
+    DefectKind.TRANSMISSION: (
+        "the least transmission angle",
+        lambda own: replace(own, transmission=0.0),
+    ),
+    DefectKind.PIVOTS: (
+        "the region of fixed pivots",
+        lambda own: replace(own, region=_NONE.region),
+    ),
+    DefectKind.LENGTHS: (
+        "the bounds of lengths",
+        lambda own: replace(own, shortest=0.0, longest=np.inf, ratio=np.inf),
+    ),
+    DefectKind.TOLERANCE: (
+        "the tolerances",
+        lambda own: replace(own, points=_NONE.points, reach=_NONE.reach),
+    ),
+    DefectKind.OBSTACLE: ("clear_of", lambda own: replace(own, obstacles=_NONE.obstacles)),
 }
+_MOST_JUDGED = 3  # sets of wishes that are left out to see what they cost
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +111,7 @@ class JudgedDesigns:
     task: Task
     given: Candidates
     drive: Drive
+    wishes: Wishes
     verdicts: Verdicts
     zero: tuple[float, float] | None
     output: str
@@ -289,18 +306,41 @@ class Synthesis:
         counts = Counter(kind for design in self.designs for kind in design.kinds)
         return {kind: counts[kind] for kind in DefectKind if counts[kind]}
 
-    @property
+    @cached_property
     def costliest(self) -> tuple[str, int] | None:
-        """The wish without which most of the refused designs would be sound, and their number."""
-        only = Counter(
-            design.kinds[0]
-            for design in self.designs
-            if len(design.kinds) == 1 and design.kinds[0] in _WISHES
-        )
-        if not only:
-            return None
-        kind, count = only.most_common(1)[0]
-        return _WISHES[kind], count
+        """The wish without which most of the refused designs would be sound, and their number;
+        several wishes together if no design breaks one alone.
+        """
+        broken = Counter(d.kinds for d in self.refused if _WISHES.keys() >= {*d.kinds})
+        for number in sorted({len(kinds) for kinds in broken}):
+            alike = Counter({kinds: n for kinds, n in broken.items() if len(kinds) == number})
+            costs = [
+                (self._sound_without(kinds), kinds) for kinds, _ in alike.most_common(_MOST_JUDGED)
+            ]
+            count, kinds = max(costs, key=lambda cost: cost[0])
+            if count:
+                first, *others = (_WISHES[kind][0] for kind in kinds)
+                return first + (f", together with {' and '.join(others)}" * bool(others)), count
+        return None
+
+    def _sound_without(self, kinds: tuple[DefectKind, ...]) -> int:
+        """How many of the refused designs would be sound without some wishes.
+
+        Loops are judged anew: without a driven range another one counts, and obstacles are noted of
+        designs with few other defects only.
+        """
+        own = [d for d in self.refused if {*kinds} & {*d.kinds} and _WISHES.keys() >= {*d.kinds}]
+        loops = [design for design in own if isinstance(design, SynthesizedDesign)]
+        if not loops:
+            return sum(design.kinds == kinds for design in own)
+        count = 0
+        for group in {id(design.group): design.group for design in loops}.values():
+            index = np.array([design.index for design in loops if design.group is group])
+            without = group.wishes
+            for kind in kinds:
+                without = _WISHES[kind][1](without)
+            count += int(judge(group.given.take(index), group.drive, without).sound.sum())
+        return count
 
     def __repr__(self) -> str:
         solutions = f"{self.complex}: {self.real} real, {self.proved} proved"

@@ -18,6 +18,7 @@ from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
+from linkwork.design.synthesis.improved_mechanism import tested_in_rows
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.motion_synthesis import solve_motion
@@ -70,7 +71,8 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            verdicts=judge(part, drive, wishes_of(task, drive)),
+            wishes=(wishes := wishes_of(task, drive)),
+            verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
         )
@@ -106,9 +108,8 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         else "different local minima"
     )
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
-    if ranked and ranked[0].tested_in_rows:
-        wishes = " and ".join(ranked[0].tested_in_rows)
-        told += f"; {wishes} tested in the rows of the table, all else on the whole motion"
+    if ranked:
+        told += _of_rows(task)
     return Synthesis(
         task=task,
         complex=len(designs),
@@ -136,10 +137,17 @@ def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         triples=0,
         linkages=len(designs),
         completeness=grade,
-        message=message,
+        message=message + (_of_rows(task) if designs else ""),
         dyads=(),
         designs=_ranked_alone(task, designs),
     )
+
+
+def _of_rows(task: Task) -> str:
+    """Which wishes are tested in the rows of a table, of mechanisms that are swept."""
+    wishes = " and ".join(tested_in_rows(task))
+    told = "tested in the rows of the table, all else on the whole motion"
+    return f"; {wishes} {told}" if wishes else ""
 
 
 def _ranked_alone(

@@ -123,6 +123,8 @@ class Task:
                 yield from self.function.problems()
         elif self.kind != "improve" or self.positions:
             yield from self._position_problems()
+        if self.kind == "mixed":
+            yield from self._mixed_problems()
         if self.improvement is not None:
             for key, message in self.improvement.problems():
                 yield ("improve", *key), message
@@ -135,6 +137,7 @@ class Task:
                 )
         yield from self._given_problems()
         yield from self._wish_problems()
+        yield from self.rank.problems()
 
     def _position_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.positions)
@@ -170,6 +173,20 @@ class Task:
         if 0 < timed < count:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
+
+    def _mixed_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Poses alone, and more conditions than a four-bar meets."""
+        poses, count = sum(p.angle is not None for p in self.positions), len(self.positions)
+        if poses == count:
+            yield ("task",), 'has poses only: write task = "motion", or leave out an angle'
+        conditions = count - 1 + max(poses - 1, 0) + 2 * len(self.given.fixed_pivots)
+        if conditions > _MOST_CONDITIONS:
+            yield (
+                ("positions",),
+                f"and fixed pivots are {conditions} conditions, but a four-bar meets at most "
+                f"{_MOST_CONDITIONS}: a pose after the first one and a pivot are two, a point is "
+                "one",
+            )
 
     def _given_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         """Pivots and timing that the kind of task cannot use."""

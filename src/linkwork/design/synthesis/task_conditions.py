@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["LENGTHS", "Given", "Point", "PrecisionPosition", "Ranking", "Wanted"]
 
@@ -89,3 +91,14 @@ class Ranking:
     size: float = 1.0
     error: float = 1.0
     deliver: int = 20
+
+    def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """Weights that rank nothing, with their keys."""
+        weights = {
+            TRANSMISSION_ANGLE.word: self.transmission, "size": self.size, "error": self.error,
+        }  # fmt: skip
+        for name, weight in weights.items():
+            if weight < 0.0:
+                yield ("rank", "by", name), f"must not be negative, got {weight:g}"
+        if not any(weights.values()):
+            yield ("rank", "by"), "has no weight above 0: give one, or leave it out"

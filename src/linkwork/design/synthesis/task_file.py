@@ -133,15 +133,28 @@ _USED = {
     "improve": {"positions", "curve", "improve"},
 }
 
+#: Keys of a function that have no effect if another one is given.
+_IDLE = {
+    "fit": ("a fit", ("positions", "spacing")),
+    "pairs": ("pairs", ("x", "positions", "spacing")),
+}
+
 
 def _check_tables(content: Mapping[str, Any]) -> None:
-    """Refuse tables without effect."""
+    """Refuse tables, and keys of functions, without effect."""
     every = set().union(*_USED.values())
     kind = content["task"]
     problems = [
         Problem(key=(table,), message=f'has no effect on task = "{kind}": leave it out')
         for table in content
         if table in every - _USED[kind]
+    ]
+    function = content.get("function", {})
+    problems += [
+        Problem(key=("function", key), message=f"has no effect on {told}: leave it out")
+        for name, (told, idle) in _IDLE.items()
+        for key in idle
+        if name in function and key in function
     ]
     if problems:
         raise MechanismError(problems, "the task")

@@ -27,13 +27,17 @@ def mechanism_problems(kind: str, mechanisms: Sequence[str]) -> _Problems:
         if name == WATT_II and kind in KINDS[:3]:
             yield ("mechanism", k), 'is made for functions only: task = "function"'
         elif name not in (*known, *GUIDED) and kind != "improve":
-            told = " or ".join(f'"{one}"' for one in known)
+            made = (*MECHANISMS[:2], WATT_II) if kind == "function" else known
+            told = " or ".join(f'"{one}"' for one in made)
             yield ("mechanism", k), f"must be {told}, got {as_told(name)}"
         of_poses = name in (MECHANISMS[2], *GUIDED) and tuple(mechanisms) != MECHANISMS
         if of_poses and kind not in ("motion", "improve"):
             yield ("mechanism", k), "is made from poses only: leave it out"
         if name == WATT_II and len(mechanisms) > 1 and kind == "function":
             yield ("mechanism", k), "meets more pairs than others: make it a task of its own"
+    if kind == "function" and set(mechanisms) == set(MECHANISMS[:2]):
+        told = "of a function is one kind: four-bars give angles, slider-cranks displacements"
+        yield ("mechanism",), told
 
 
 def watt_pivot_problems(

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.improved_mechanism import (
+    ImprovedMechanism,
+    SweptDesign,
+    tested_in_rows,
+)
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
@@ -34,7 +38,7 @@ _ROUNDING = 1e-9  # of angles of positions [rad]
 
 @internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WattDesign(JudgedDesign):
+class WattDesign(SweptDesign):
     """One Watt-II six-bar with its verdict.
 
     Parameters
@@ -113,6 +117,11 @@ class WattDesign(JudgedDesign):
         """The mechanism."""
         return watt_linkage(self.group, self.index, self.wishes, self._name)
 
+    @cached_property
+    def moved(self) -> ImprovedMechanism:
+        """Its motion through the driven range, also of a design that changes branch or circuit."""
+        return self.swept or swept_mechanism(self.group, self.index, self.wishes)
+
     @property
     def transmission(self) -> float:
         """The least transmission angle of both loops in the rows of the driven range, NaN for a
@@ -174,3 +183,6 @@ class WattDesign(JudgedDesign):
         if len(outside):
             told = f"position {outside[0] + 1} is outside the driven range"
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
+
+    def _details(self) -> Mapping[str, Any]:
+        return {"inputs": list(self.inputs), "tested_in_rows": list(tested_in_rows(self.task))}

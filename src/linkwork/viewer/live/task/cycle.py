@@ -27,7 +27,6 @@ from linkwork.viewer.live.task.sketch import TaskSketch
 __all__ = ["SolveTask", "TaskCycle"]
 
 _WHILE_DRAGGED = 0.12  # a task that takes longer is solved when the drag ends [s]
-_SIX_BARS = 'Six-bars are not drawn here: "linkwork synthesize {} -o designs --html" lists them.'
 _NOT_LOADED = "Data of the solver cannot be loaded: check the connection, then solve again."
 _CANCELLED = "The search was ended: no designs are shown."
 
@@ -137,8 +136,6 @@ class TaskCycle:
         task = self.sketch.task
         if task is None:
             return [self._unsolved(live, "The task is not complete.", self.sketch.problems)]
-        if task.is_six_bar:
-            return [self._unsolved(live, _SIX_BARS.format(self._name))]
         if live and self._took > _WHILE_DRAGGED:
             return [self._unsolved(live, "Designs are found when the drag ends.", slow=True)]
         try:

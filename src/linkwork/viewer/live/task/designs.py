@@ -9,7 +9,7 @@ import numpy as np
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.improved_mechanism import SweptDesign
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
@@ -43,13 +43,14 @@ _MOST_DYADS = 200
 def task_solved(
     found: Synthesis, chosen: tell.DesignFound | None, *, live: bool
 ) -> tell.TaskSolved:
-    """The counts and the list; ``live``: without the list."""
+    """The counts and the list; ``live``: without the list and what a wish costs."""
     sound = found.sound
     listed = [] if live else [
         *range(min(sound, _MOST_SOUND)),
         *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
     ]  # fmt: skip
-    wish, costs = found.costliest or ("", 0)
+    # to find what a wish costs takes longer than a drag waits
+    wish, costs = (None if live or found.sound else found.costliest) or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
     if found.starts:
         solutions = f"{found.real} local minima from {found.starts} starts"
@@ -98,8 +99,8 @@ def _shown(design: JudgedDesign, index: int) -> DesignShown:
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
     design = found.designs[index]
-    if isinstance(design, ImprovedMechanism):
-        return mechanism_found(design, _shown(design, index))
+    if isinstance(design, SweptDesign):
+        return mechanism_found(design.moved, _shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive

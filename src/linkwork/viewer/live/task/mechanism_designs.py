@@ -48,9 +48,14 @@ def finite(value: float) -> float | None:
 
 
 def mechanism_found(
-    design: ImprovedMechanism, shown: DesignShown, point: str = ""
+    design: ImprovedMechanism,
+    shown: DesignShown,
+    point: str = "",
+    inputs: tuple[float, ...] = (),
 ) -> tell.DesignFound:
-    """A design with the rows of its table that have a position; ``point`` draws its path."""
+    """A design with the rows of its table that have a position; ``point`` draws its path,
+    ``inputs`` are those at the positions, by default the improved ones.
+    """
     found = tell.DesignFound(
         design=shown,
         skeleton=None,
@@ -76,7 +81,7 @@ def mechanism_found(
         skeleton=_skeleton(motion.skeleton, names),
         guided=traced,
         rows=tuple(map(tuple, table.T.tolist())),
-        marks=_marks(motion, design.improved.inputs, rows),
+        marks=_marks(motion, inputs or design.improved.inputs, rows),
         curve=tuple(pieces(motion.trace(traced))) if traced else (),
     )
 
