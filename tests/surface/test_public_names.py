@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 import subprocess
 import sys
+from functools import cached_property
 from importlib import import_module
 
 import linkwork as lw
-from scripts.docsite.api_page import api_page
+from scripts.docsite.api_page import api_page, public_members
 
 PUBLIC: list[str] = import_module("linkwork").__all__
 
@@ -71,3 +73,16 @@ def test_methods_work_in_any_order_of_first_use() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("2 2\n", "")
+
+
+def test_no_property_reads_as_a_type_before_its_colon() -> None:
+    # the reference takes what stands before a colon in the first line of a property as its type
+    misread = [
+        f"{name}.{member}"
+        for name in PUBLIC
+        if isinstance(kind := getattr(lw, name), type)
+        for member, function in public_members(kind)
+        if isinstance(inspect.getattr_static(kind, member), property | cached_property)
+        and re.match(r"[^`]*: ", (inspect.getdoc(function) or "").partition("\n\n")[0])
+    ]
+    assert misread == []

@@ -64,6 +64,11 @@ class JudgedDesign(ABC):
         """The numbers that vary [file units]; none where all of them are found."""
 
     @property
+    def goals(self) -> dict[str, float]:
+        """The misses of goals [file units]; none where positions are met, or miss by the error."""
+        return {}
+
+    @property
     @abstractmethod
     def points(self) -> dict[str, complex]:
         """The points at the first position [length]."""

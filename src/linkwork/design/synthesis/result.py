@@ -150,11 +150,6 @@ class SynthesizedDesign(JudgedDesign):
         return {}
 
     @property
-    def goals(self) -> dict[str, float]:
-        """The misses of goals; none, since positions are met exactly or count as the error."""
-        return {}
-
-    @property
     def points(self) -> dict[str, complex]:
         """The points at the first position [length]."""
         return self.design.points
@@ -275,7 +270,7 @@ class Synthesis:
 
     @cached_property
     def of_loops(self) -> tuple[SynthesizedDesign, ...]:
-        """The designs that are loops: all but improved mechanisms."""
+        """The designs that are loops, without improved mechanisms and six-bars."""
         return tuple(d for d in self.designs if isinstance(d, SynthesizedDesign))
 
     @property

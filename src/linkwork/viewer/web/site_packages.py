@@ -15,6 +15,7 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a ZIP archive
 _LATE = (
     "design/atlas/paths.npz",
     "design/precision/start_linkages.npz",
+    "design/six_bars/start_six_bars.npz",
     "numerics/homotopy/start_sets.npz",
 )
 #: What a page never imports: commands, studies, and the front end (but for the pages
