@@ -53,8 +53,8 @@ def columns_of(file: Path) -> tuple[dict[str, Array], list[str]]:
 def largest_differences(columns: dict[str, Array], motion: Motion) -> dict[str, float]:
     """By how much each column differs from the motion's, relative to its largest value.
 
-    A link that does not turn has an angle of 0 to rounding: the largest value of an angle counts as
-    one radian at least, of a length as one unit or the largest length, if that is less than a unit.
+    What is 0 in all rows is computed to rounding: the largest value of an angle counts as one
+    radian at least, that of a length or coordinate as the largest of all of them.
 
     Derivatives are computed with the inverse of the Jacobian, and second ones with its square:
     their differences are divided by the condition of the row, or its square. Infinite where only
@@ -66,7 +66,7 @@ def largest_differences(columns: dict[str, Array], motion: Motion) -> dict[str, 
         for name, column in asked.items()
         if column.own.kind is Kind.LENGTH and column.rate is None
     ]
-    unit = min(1.0, max(lengths, default=0.0) or 1.0)
+    longest = max(lengths, default=0.0) or 1.0
     found = {}
     for name, own in columns.items():
         right = np.asarray(motion[name])[motion.asked]
@@ -75,7 +75,8 @@ def largest_differences(columns: dict[str, Array], motion: Motion) -> dict[str, 
             found[name] = np.inf
             continue
         kind, is_rate = asked[name].own.kind, asked[name].rate is not None
-        least = unit if kind is Kind.LENGTH else 1.0 if is_rate else 1.0 / motion.units.scale(kind)
+        least = 1.0 if is_rate else 1.0 / motion.units.scale(kind)
+        least = longest if kind is Kind.LENGTH else least
         size = max(float(np.nanmax(np.abs(right), initial=0.0)), least)
         away = np.abs(own - right) / size / motion.condition[motion.asked] ** order
         found[name] = float(np.nanmax(away, initial=0.0))
