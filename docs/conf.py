@@ -37,6 +37,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "Linkwork"
 templates_path = ["_templates"]
 html_static_path = ["_static"]
+html_favicon = "_static/linkwork.svg"
 html_css_files = ["linkwork.css"]
 html_math_renderer = "mathml"  # in scripts/docsite/mathml.py: no script, no font
 html_show_sourcelink = False

@@ -31,10 +31,12 @@ from scripts.docsite.commands_run import commands_of, run_command
 __all__ = ["Checked", "check_page", "check_pages"]
 
 _BLOCK = re.compile(
-    r"(?:<!-- (?P<word>before|not run): (?P<comment>.*?)-->\n\n?)?"
+    r"(?:<!-- (?P<word>before|not run):\s(?P<comment>.*?)-->\n\n?)?"
     r"^```(?P<language>python|sh|bash|toml)\n(?P<code>.*?)^```$",
     re.DOTALL | re.MULTILINE,
 )
+#: A block of any language, with its end: what a block without one contains is not known.
+_FENCED = re.compile(r"^```(?P<language>[^\n]*)\n.*?^```$", re.DOTALL | re.MULTILINE)
 _EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 _LONGEST = 300  # seconds that a block may take; the first one of an installation compiles kernels
 _INSTALLS = ("pip ", "pipx ", "uvx ", "uv ", "python3 -m venv", "scripts/", "eval ")
@@ -61,7 +63,7 @@ def check_page(path: Path) -> Checked:
     mpl.use("Agg")
     signal.signal(signal.SIGALRM, _too_long)
     text = path.read_text(encoding="utf-8")
-    run, left, errors = 0, [], []
+    run, left, errors = 0, [], _unnamed(path.name, text)
     names: dict[str, Any] = {"__name__": "__main__"}
     exec("import linkwork as lw", names)  # what every page has said before
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
@@ -83,6 +85,16 @@ def check_page(path: Path) -> Checked:
             finally:
                 signal.alarm(0)
     return Checked(page=path.name, run=run, left=tuple(left), errors=tuple(errors))
+
+
+def _unnamed(page: str, text: str) -> list[str]:
+    """Blocks that would not be run for want of a language."""
+    told = "name the language of this block; text is not run"
+    return [
+        f"{page}:{1 + text.count(chr(10), 0, block.start())}: {told}"
+        for block in _FENCED.finditer(text)
+        if not block["language"].strip()
+    ]
 
 
 def _too_long(_signal: int, _frame: object) -> None:

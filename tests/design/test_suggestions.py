@@ -60,6 +60,31 @@ def test_another_task_judges_anew() -> None:
     assert DefectKind.TRANSMISSION not in before.kinds
 
 
+def test_designs_without_the_given_lengths_and_pivots_are_refused() -> None:
+    task = path_task(count=8)
+    found = suggesting.nearest(task, 8, told)
+    bar, crank = (
+        next(d for d in found if d.mechanism.startswith(kind)) for kind in ("Four-bar", "Slider")
+    )
+    points = bar.judged(task, suggesting.wishes(task)).points
+    length, pivot = abs(points["A"] - points["A0"]), points["A0"]
+    own = replace(
+        task.given,
+        lengths={"A0 A": length, "B0 B": abs(points["B"] - points["B0"])},
+        fixed_pivots=((pivot.real, pivot.imag),),
+    )
+    same = replace(task, given=own)
+    assert bar.judged(same, suggesting.wishes(same)).kinds == ()
+    messages = [d.message for d in crank.judged(same, suggesting.wishes(same)).defects]
+    assert len(messages) == 3
+    assert messages[0].startswith("no fixed pivot at (")
+    assert messages[2].startswith('no length "B0 B", given as ')
+    other = replace(task, given=replace(own, lengths={"A0 A": 1.01 * length}))
+    assert [d.message for d in bar.judged(other, suggesting.wishes(other)).defects] == [
+        f'the length "A0 A" is {length:.6g} in, given as {1.01 * length:g} in'
+    ]
+
+
 def test_a_stopped_improvement_keeps_a_design_that_meets_the_positions_better() -> None:
     task = path_task(count=8)
     found = suggesting.nearest(task, 8, told)

@@ -13,6 +13,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.results.motion import Motion
+from linkwork.results.quantity import Kind
 
 __all__ = ["RUNNERS", "columns_of", "largest_differences"]
 
@@ -52,10 +53,20 @@ def columns_of(file: Path) -> tuple[dict[str, Array], list[str]]:
 def largest_differences(columns: dict[str, Array], motion: Motion) -> dict[str, float]:
     """By how much each column differs from the motion's, relative to its largest value.
 
+    What is 0 in all rows is computed to rounding: the largest value of an angle counts as one
+    radian at least, that of a length or coordinate as the largest of all of them.
+
     Derivatives are computed with the inverse of the Jacobian, and second ones with its square:
     their differences are divided by the condition of the row, or its square. Infinite where only
     one of the two has a position.
     """
+    asked = {name: motion.quantity(name) for name in columns}
+    lengths = [
+        float(np.nanmax(np.abs(columns[name]), initial=0.0))
+        for name, column in asked.items()
+        if column.own.kind is Kind.LENGTH and column.rate is None
+    ]
+    longest = max(lengths, default=0.0) or 1.0
     found = {}
     for name, own in columns.items():
         right = np.asarray(motion[name])[motion.asked]
@@ -63,7 +74,10 @@ def largest_differences(columns: dict[str, Array], motion: Motion) -> dict[str, 
         if (np.isnan(own) != np.isnan(right)).any():
             found[name] = np.inf
             continue
-        size = max(float(np.nanmax(np.abs(right), initial=0.0)), 1.0)
+        kind, is_rate = asked[name].own.kind, asked[name].rate is not None
+        least = 1.0 if is_rate else 1.0 / motion.units.scale(kind)
+        least = longest if kind is Kind.LENGTH else least
+        size = max(float(np.nanmax(np.abs(right), initial=0.0)), least)
         away = np.abs(own - right) / size / motion.condition[motion.asked] ** order
         found[name] = float(np.nanmax(away, initial=0.0))
     return found

@@ -16,13 +16,14 @@ def test_blocks_share_names_and_broken_ones_are_reported(tmp_path: Path) -> None
         "```python\nx = 1\n```\n\n```python\nx + y\n```\n\n```sh\nlinkwork check no-such\n```\n\n"
         "<!-- before: y = 2 -->\n```python\nassert x + y == 3\n```\n\n"
         "<!-- not run: it takes a day -->\n```sh\nlinkwork sweep no-such\n```\n\n"
-        "```toml\na = 1 +\n```\n\n```sh\nlinkwork check four-bar.toml\n```\n"
+        "```toml\na = 1 +\n```\n\n```sh\nlinkwork check four-bar.toml\n```\n\n"
+        "```text\nlinkwork\n```\n\n```\nlinkwork check no-such\n```\n"
     )
     checked = check_page(page)
     assert checked.run == 3
     assert checked.left == ("page.md:19: it takes a day",)
     places = [error.split(": ")[0] for error in checked.errors]
-    assert places == ["page.md:5", "page.md:9", "page.md:23"]
+    assert places == ["page.md:35", "page.md:5", "page.md:9", "page.md:23"]
 
 
 @pytest.mark.extended

@@ -17,7 +17,7 @@ from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improvement_synthesis import improve_description, mechanism_of
 from linkwork.design.synthesis.solving import wishes_of
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import Point
+from linkwork.design.synthesis.task_conditions import SAME_GIVEN, Point
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError, LinkworkError
@@ -34,7 +34,6 @@ _FEWEST = 5  # positions of a curve
 _READ = 0.2  # of the progress
 _STARTS, _SPREAD = 2, 0.02  # near a chosen design
 _FACTOR, _REACH = 2.0, 0.5  # by which lengths may change, and pivots [longest length]
-_SAME_PIVOT = 1e-6  # of the task's size
 
 
 def wishes(task: Task) -> Wishes:
@@ -164,7 +163,7 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
     held: set[str] = set()
     if len(fixed) and isinstance(description, Draft):
         value = description.numbers
-        near = _SAME_PIVOT * max(abs(complex(*point)) for point in _points(task))
+        near = SAME_GIVEN * max(abs(complex(*point)) for point in _points(task))
         held = {
             name
             for name, (x, y) in description.points.items()
@@ -172,7 +171,7 @@ def _free_numbers(task: Task, description: Description) -> tuple[VariedNumber, .
         }
     lengths = {q.key: float(q.of(description)) for q in numbers if q.table == "lengths"}
     for name, length in task.given.lengths.items():
-        if abs(lengths.get(name, math.inf) - length) > _SAME_PIVOT * length:
+        if abs(lengths.get(name, math.inf) - length) > SAME_GIVEN * length:
             raise InputError(
                 f'the length "{name}" is given as {length:g}, which this design does not have: '
                 "choose one that the search has found"

@@ -15,6 +15,7 @@ from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import SAME_GIVEN
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
@@ -219,6 +220,8 @@ class ImprovedMechanism(SweptDesign):
         yield from self._geometric_defects()
 
     def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        if self.task.kind != "improve":  # improvements vary what their tasks name
+            yield from self._missed_givens()
         outside = [
             name
             for name, place in self._pivots().items()
@@ -235,6 +238,24 @@ class ImprovedMechanism(SweptDesign):
         if self._meets_obstacle():
             told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
             yield DefectKind.OBSTACLE, told
+
+    def _missed_givens(self) -> Iterator[tuple[DefectKind, str]]:
+        """Pivots and lengths that the task gives and the design does not have."""
+        given, points, unit = self.task.given, self.points, self.task.length
+        near = SAME_GIVEN * max(abs(complex(*position.point)) for position in self.task.positions)
+        pivots = np.array([*self._pivots().values()], dtype=complex)
+        for place in given.fixed_pivots:
+            if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:
+                yield DefectKind.PIVOTS, f"no fixed pivot at ({place[0]:g}, {place[1]:g}) as given"
+        for name, wanted in given.lengths.items():
+            one, other = name.split()
+            if not {one, other} <= points.keys():
+                yield DefectKind.LENGTHS, f'no length "{name}", given as {wanted:g} {unit}'
+                continue
+            found = abs(points[one] - points[other])
+            if abs(found - wanted) > SAME_GIVEN * wanted:
+                told = f'the length "{name}" is {found:.6g} {unit}, given as {wanted:g} {unit}'
+                yield DefectKind.LENGTHS, told
 
     def _pivots(self) -> dict[str, complex]:
         description = self.improved.description

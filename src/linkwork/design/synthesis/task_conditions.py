@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["LENGTHS", "Given", "Point", "PrecisionPosition", "Ranking", "Wanted"]
+__all__ = ["LENGTHS", "SAME_GIVEN", "Given", "Point", "PrecisionPosition", "Ranking", "Wanted"]
 
 #: Lengths that a task of points may give.
 LENGTHS = ("A0 A", "A B", "B0 B", "A0 B0", "A P", "B P")
+#: Lengths, and pivots by the task's size, that differ by less are those given.
+SAME_GIVEN = 1e-6
 
 Point = tuple[float, float]
 

@@ -5,9 +5,9 @@ At a crossing D = [J, F_t] loses rank: a left null vector w has wᵀJ = 0 and w�
     F(x, t) + β c = 0,   J(x, t)ᵀ w = 0,   wᵀF_t(x, t) = 0,   wᵀw = 1
 
 for (x, t, β, w), with a fixed vector c near w, is regular at a simple crossing, where β = 0
-(Griewank & Reddien 1984, doi:10.1137/0721012). With a basis z1, z2 of D's null space the crossing
-tangents a z1 + b z2 solve A a² + 2 B ab + C b² = 0 with A = wᵀD²F[z1, z1], B = wᵀD²F[z1, z2],
-C = wᵀD²F[z2, z2].
+(Griewank & Reddien 1984, SIAM J. Numer. Anal. 21). With a basis z1, z2 of D's null space the
+crossing tangents a z1 + b z2 solve A a² + 2 B ab + C b² = 0 with A = wᵀD²F[z1, z1],
+B = wᵀD²F[z1, z2], C = wᵀD²F[z2, z2].
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 At a fold F(x, p) = 0 and dF/dx has the left and right null vectors w and z; near it, on the side
 where -2 (wᵀF_p)(p - p0) / wᵀD²F[z, z] > 0, there are two solutions x + a z ± ..., beyond it none.
-The singularity is measured by bordering (Griewank & Reddien 1984, doi:10.1137/0721012).
+The singularity is measured by bordering (Griewank & Reddien 1984, SIAM J. Numer. Anal. 21).
 """
 
 from __future__ import annotations
