@@ -30,7 +30,7 @@ from linkwork.numerics.lane_least_squares import (
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["FitProblem", "FittedNumbers", "inputs_away"]
+__all__ = ["FitProblem", "FittedNumbers", "Fitting", "inputs_away"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
 _APPROACH = 4  # parts of the way from the mechanism to a start
@@ -82,17 +82,36 @@ def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
     return np.where(motion.found, np.abs(away), np.inf)
 
 
-class FitProblem:
-    """Residuals of all goals, for lanes of designs.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fitting:
+    """What is fitted.
 
     Parameters
     ----------
     model, motion : Model, Motion
         The mechanism as it is.
     numbers : sequence of VariedNumber
+        Those that vary.
     box : Box
+        Their bounds.
     path : PathGoal, optional
     goals : sequence of Goal
+    """
+
+    model: Model
+    motion: Motion
+    numbers: Sequence[VariedNumber]
+    box: Box
+    path: PathGoal | None
+    goals: Sequence[Goal]
+
+
+class FitProblem:
+    """Residuals of all goals, for lanes of designs.
+
+    Parameters
+    ----------
+    given : Fitting
     lanes : int
 
     Attributes
@@ -103,25 +122,17 @@ class FitProblem:
         Weights and limits of objectives; ``None``: the sum of all.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        motion: Motion,
-        numbers: Sequence[VariedNumber],
-        box: Box,
-        path: PathGoal | None,
-        goals: Sequence[Goal],
-        lanes: int,
-    ) -> None:
-        self.model, self.numbers, self.motion = model, numbers, motion
-        self.box, self.path, self.lanes = box, path, lanes
-        self.x = np.array([float(q.of(model.description)) for q in numbers])
+    def __init__(self, given: Fitting, lanes: int) -> None:
+        model, motion, path = given.model, given.motion, given.path
+        self.model, self.numbers, self.motion = model, given.numbers, motion
+        self.box, self.path, self.lanes = given.box, path, lanes
+        self.x = np.array([float(q.of(model.description)) for q in given.numbers])
         lead = next(iter(motion.inputs))
         scale = float(model.input_scale[0])
         # limits between the rows of the table move with the numbers
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
-        self.goals = [goal_of(model, goal, table, there, scale) for goal in goals]
+        self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
         self.points = None if path is None else self._rows(path.inputs)
         # goals of the same rows share their positions
         self.rows: dict[bytes, SolvedLanes] = {}

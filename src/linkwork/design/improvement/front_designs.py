@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting
 from linkwork.design.improvement.front_fit import BROKEN
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
@@ -94,7 +94,17 @@ def _measured(
     if design.motion is None or not design.motion.found.any():
         return design
     at = None if path is None else replace(path, inputs=t, timed=True)
-    own = FitProblem(model_of(design.description), design.motion, numbers, box, at, goals, 1)
+    own = FitProblem(
+        Fitting(
+            model=model_of(design.description),
+            motion=design.motion,
+            numbers=numbers,
+            box=box,
+            path=at,
+            goals=goals,
+        ),
+        1,
+    )
     x = np.array(list(design.numbers.values()))[None]
     misses = own.measured(starts_of(x, np.zeros((1, 0))), np.zeros(1, dtype=int))
     values = own.objectives.values(misses)[0]

@@ -18,16 +18,10 @@ from itertools import combinations, product
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers
-from linkwork.design.improvement.goals import PathGoal
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting
 from linkwork.design.improvement.pareto_front import objective_spans, undominated
-from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.trade_off import TradeOff
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.motion.model import Model
-from linkwork.numerics.lane_least_squares import Box
-from linkwork.results.motion import Motion
 
 __all__ = ["BROKEN", "fit_front"]
 
@@ -42,19 +36,14 @@ BROKEN = 1e-5
 
 
 def fit_front(
-    model: Model,
-    motion: Motion,
-    numbers: Sequence[VariedNumber],
-    box: Box,
+    given: Fitting,
     starts: Array,
-    path: PathGoal | None,
-    goals: Sequence[Goal],
     count: int,
     *,
     progress: Callable[[float], None] | None = None,
 ) -> FittedNumbers:
-    """All designs on the way to a front of ``count`` designs; parameters as of ``fit_numbers``."""
-    front = _Front(model, motion, numbers, box, starts, path, goals, count)
+    """All designs on the way to a front of ``count`` designs, from starts (D, P)."""
+    front = _Front(given, starts, count)
     front.problem.tell = progress
     for stage in (front.minimise_each, front.weigh, front.limit):
         stage()
@@ -66,18 +55,8 @@ def fit_front(
 class _Front:
     """Lanes of one problem, taken into use stage by stage."""
 
-    def __init__(
-        self,
-        model: Model,
-        motion: Motion,
-        numbers: Sequence[VariedNumber],
-        box: Box,
-        starts: Array,
-        path: PathGoal | None,
-        goals: Sequence[Goal],
-        count: int,
-    ) -> None:
-        probe = FitProblem(model, motion, numbers, box, path, goals, 1)
+    def __init__(self, given: Fitting, starts: Array, count: int) -> None:
+        probe = FitProblem(given, 1)
         self.size, self.count = len(probe.objectives.names), count
         self.weights = _weights(self.size, count)
         self.limits = _levels(self.size, count)
@@ -85,7 +64,7 @@ class _Front:
         weighted = len(self.weights) * self.size * _BEST
         between = 2 * count * _FILLINGS if self.size == 2 else len(self.limits)
         self.used, lanes = 0, alone + weighted + between
-        self.problem = FitProblem(model, motion, numbers, box, path, goals, lanes)
+        self.problem = FitProblem(given, lanes)
         fit = self.problem.begun(np.tile(starts, (self.size, 1)))
         self.alone = np.arange(alone)
         # lanes that are not used yet

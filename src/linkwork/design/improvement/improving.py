@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
-from linkwork.design.improvement.fit_problem import FittedNumbers
+from linkwork.design.improvement.fit_problem import FittedNumbers, Fitting
 from linkwork.design.improvement.free_timing import freely_timed
 from linkwork.design.improvement.front_designs import front_designs
 from linkwork.design.improvement.front_fit import fit_front
@@ -115,11 +115,13 @@ def _fits(
                 progress((done + fraction) / len(paths))
 
         begin = box.inside(starts)
-        given = (model, motion, numbers, box, begin, path, goals)
+        given = Fitting(
+            model=model, motion=motion, numbers=numbers, box=box, path=path, goals=goals
+        )
         if settings.front:
-            found = fit_front(*given, settings.front, progress=tell)
+            found = fit_front(given, begin, settings.front, progress=tell)
         else:
-            found = fit_numbers(*given, minimax=settings.fit == "minimax", progress=tell)
+            found = fit_numbers(given, begin, minimax=settings.fit == "minimax", progress=tell)
         fits.append((path, found))
         if found.interrupted:
             break

@@ -6,15 +6,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, inputs_away
+from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting, inputs_away
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.largest_miss import POWERS
-from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
-from linkwork.numerics.lane_least_squares import Box
 from linkwork.results.motion import Motion
 
 __all__ = ["fit_numbers", "path_misses"]
@@ -26,18 +24,13 @@ _ALL = 64  # so few lanes all go on
 
 
 def fit_numbers(
-    model: Model,
-    motion: Motion,
-    numbers: Sequence[VariedNumber],
-    box: Box,
+    given: Fitting,
     starts: Array,
-    path: PathGoal | None,
-    goals: Sequence[Goal],
     *,
     minimax: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> FittedNumbers:
-    """Improve starts (D, P); the motion is that of the mechanism as it is.
+    """Improve starts (D, P).
 
     ``minimax``: the largest miss counts, instead of the sum of squares.
 
@@ -46,7 +39,7 @@ def fit_numbers(
     UnknownNameError, InputError
         For goals that are not known, or whose derivatives are not known.
     """
-    problem = FitProblem(model, motion, numbers, box, path, goals, len(starts))
+    problem = FitProblem(given, len(starts))
     rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.has_bounds else _STEPS)]
     rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
     problem.tell, problem.whole = progress, sum(steps for _, steps in rounds)

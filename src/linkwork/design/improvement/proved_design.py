@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +13,13 @@ from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import path_misses
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
+from linkwork.foundation.frozen import FrozenDict
+from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model, model_of
 from linkwork.motion.sweeping import sweep
 
-__all__ = ["fitted_design"]
+__all__ = ["fitted_design", "proved_design"]
 
 
 def fitted_design(
@@ -29,8 +31,11 @@ def fitted_design(
 ) -> ImprovedDesign:
     """The design of one lane of a fit."""
     told = "interrupted: the best so far; " if found.interrupted else ""
+    new = dict(zip(numbers, map(float, found.x[k]), strict=True))
     design = replace(
-        _proved(model, numbers, found.x[k], told),
+        proved_design(
+            with_numbers(model.description, new), {q.name: x for q, x in new.items()}, told
+        ),
         total=float(found.total[k]),
         largest=float(found.largest[k]),
         goals=dict(zip(found.names, map(float, found.objectives[k]), strict=True)),
@@ -41,10 +46,13 @@ def fitted_design(
     return _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
 
 
-def _proved(model: Model, numbers: Sequence[VariedNumber], x: Array, told: str) -> ImprovedDesign:
-    """The design with its proof: a certified sweep of its whole table."""
-    new = dict(zip(numbers, map(float, x), strict=True))
-    description = with_numbers(model.description, new)
+def proved_design(
+    description: Description, numbers: Mapping[str, float] = FrozenDict(), told: str = ""
+) -> ImprovedDesign:
+    """A mechanism with its proof: a certified sweep of its whole table.
+
+    ``numbers``: those that were found; ``told``: what the message begins with.
+    """
     motion = None
     try:
         motion = sweep(model_of(description))
@@ -54,7 +62,7 @@ def _proved(model: Model, numbers: Sequence[VariedNumber], x: Array, told: str) 
         lost, told = 1, f"{told}{error}"
     return ImprovedDesign(
         description=description,
-        numbers={q.name: value for q, value in new.items()},
+        numbers=numbers,
         total=np.nan,
         largest=np.nan,
         rms=0.0,

@@ -57,11 +57,7 @@ class PrecisionFourBars(FourBarPositions):
     @property
     def completeness(self) -> Completeness:
         """Whether all four-bars are listed."""
-        if self.roots.complete and self.proved.all():
-            if len(self.roots.singular):
-                return Completeness.MULTIPLE
-            return Completeness.WITH_PROBABILITY_ONE
-        return Completeness.NOT_PROVED
+        return self.roots.graded(self.proved)
 
 
 def four_bars_through(

@@ -61,11 +61,7 @@ class WattSixBars:
     @property
     def completeness(self) -> Completeness:
         """Whether all real six-bars are listed."""
-        if self.roots.complete and self.proved.all():
-            if len(self.roots.singular):
-                return Completeness.MULTIPLE
-            return Completeness.WITH_PROBABILITY_ONE
-        return Completeness.NOT_PROVED
+        return self.roots.graded(self.proved)
 
 
 def watt_six_bars(

@@ -15,7 +15,6 @@ from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import Point
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.mechanism.description import Description
-from linkwork.results.motion import Motion
 
 __all__ = ["Origin", "SuggestedDesign", "Suggesting"]
 
@@ -71,21 +70,6 @@ class SuggestedDesign:
             float(distances_to_segments(np.array(complex(*p)), one, other).min(initial=np.inf))
             for p in points
         )
-
-
-def unimproved(description: Description, motion: Motion | None, message: str) -> ImprovedDesign:
-    """A mechanism as it is, in the form of an improved one."""
-    sound = motion is not None and bool(motion.certified.all())
-    return ImprovedDesign(
-        description=description,
-        numbers={},
-        total=np.nan,
-        largest=np.nan,
-        rms=0.0,
-        sound=sound,
-        message=message,
-        motion=motion,
-    )
 
 
 class Suggesting(Protocol):

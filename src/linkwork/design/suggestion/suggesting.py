@@ -11,8 +11,9 @@ import numpy as np
 from linkwork.design.atlas.path_atlas import Nearest, read_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
 from linkwork.design.improvement.improving import numbers_to_vary
+from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign, unimproved
+from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improvement_synthesis import improve_description, mechanism_of
 from linkwork.design.synthesis.solving import wishes_of
@@ -20,13 +21,12 @@ from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import SAME_GIVEN, Point
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
-from linkwork.foundation.errors import InputError, LinkworkError
+from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import model_of
-from linkwork.motion.sweeping import sweep
 
 __all__ = ["given", "improved", "nearest", "wishes"]
 
@@ -237,15 +237,10 @@ def _suggested(
     origin: Origin, mechanism: str, description: Description, point: str
 ) -> SuggestedDesign:
     """A mechanism as it is with its proved motion, if it has one."""
-    motion, message = None, ""
-    try:
-        motion = sweep(model_of(description))
-    except LinkworkError as error:
-        message = str(error)
     return SuggestedDesign(
         origin=origin,
         mechanism=mechanism,
-        improved=unimproved(description, motion, message),
+        improved=proved_design(description),
         point=point,
         positions=(),
     )

@@ -242,7 +242,7 @@ class ImprovedMechanism(SweptDesign):
     def _missed_givens(self) -> Iterator[tuple[DefectKind, str]]:
         """Pivots and lengths that the task gives and the design does not have."""
         given, points, unit = self.task.given, self.points, self.task.length
-        near = SAME_GIVEN * max(abs(complex(*position.point)) for position in self.task.positions)
+        near = SAME_GIVEN * self.size
         pivots = np.array([*self._pivots().values()], dtype=complex)
         for place in given.fixed_pivots:
             if not np.abs(pivots - complex(*place)).min(initial=np.inf) <= near:

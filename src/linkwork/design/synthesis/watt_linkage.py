@@ -5,19 +5,14 @@ from __future__ import annotations
 import math
 from itertools import combinations
 
-import numpy as np
-
-from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.watt_group import WattGroup
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
-from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
-from linkwork.motion.model import model_of
-from linkwork.motion.sweeping import sweep
 
 __all__ = ["ERROR", "SIDES", "driven_range", "first_angle", "swept_mechanism", "watt_linkage"]
 
@@ -89,19 +84,5 @@ def watt_linkage(group: WattGroup, k: int, wishes: Wishes, name: str) -> Linkage
 def swept_mechanism(group: WattGroup, k: int, wishes: Wishes) -> ImprovedMechanism:
     """A design moved through its driven range, each row with its proof."""
     task = group.task
-    described, motion, message = watt_linkage(group, k, wishes, task.name), None, ""
-    try:
-        motion = sweep(model_of(described))
-    except LinkworkError as error:
-        message = str(error)
-    design = ImprovedDesign(
-        description=described,
-        numbers={},
-        total=np.nan,
-        largest=np.nan,
-        rms=0.0,
-        sound=motion is not None and bool(motion.certified.all()),
-        message=message,
-        motion=motion,
-    )
+    design = proved_design(watt_linkage(group, k, wishes, task.name))
     return ImprovedMechanism(task=task, improved=design, wishes=wishes)

@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray, IndexArray
+from linkwork.foundation.completeness import Completeness
 from linkwork.marching.solution_path import ARRIVED, SINGULAR, PathOptions
 from linkwork.numerics.homotopy.monodromy import Family, Member, first_of_each
 from linkwork.numerics.homotopy.parameter_path import (
@@ -76,6 +77,13 @@ class ParameterRoots:
         """Whether every path has an end of its own."""
         ends = len(self.x) + len(self.singular) + self.at_infinity
         return ends == self.paths and self.closed is not False
+
+    def graded(self, proved: BoolArray) -> Completeness:
+        """Whether a list of real solutions, each ``proved`` or not (R,), has all of them."""
+        if not self.complete or not proved.all():
+            return Completeness.NOT_PROVED
+        several = len(self.singular) > 0
+        return Completeness.MULTIPLE if several else Completeness.WITH_PROBABILITY_ONE
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,6 @@ from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.improved_mechanism import SweptDesign
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
@@ -18,8 +17,12 @@ from linkwork.design.synthesis.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point
-from linkwork.viewer.live.task.mechanism_designs import finite, mechanism_found, pieces
-from linkwork.viewer.live.task_events import CognateShown, DesignShown, DyadShown
+from linkwork.viewer.live.task.mechanism_designs import (
+    design_shown,
+    mechanism_found,
+    pieces,
+)
+from linkwork.viewer.live.task_events import CognateShown, DyadShown
 
 __all__ = [
     "alike",
@@ -68,7 +71,7 @@ def task_solved(
         defects={kind.value: count for kind, count in found.defects.items()},
         costliest=wish,
         costs=costs,
-        designs=tuple(_shown(found.designs[k], k) for k in listed),
+        designs=tuple(design_shown(found.designs[k], k) for k in listed),
         left_out=len(found.designs) - len(listed),
         dyads=tuple(
             DyadShown(kind=dyad.kind, fixed=dyad.fixed, proved=dyad.proved)
@@ -79,28 +82,11 @@ def task_solved(
     )
 
 
-def _shown(design: JudgedDesign, index: int) -> DesignShown:
-    return DesignShown(
-        index=index,
-        origin="",
-        number=design.number,
-        mechanism=design.mechanism,
-        drive=design.driven,
-        sound=not design.kinds,
-        delivered=design.delivered,
-        transmission=finite(design.transmission),
-        size=finite(design.size),
-        error=finite(design.error),
-        score=finite(design.score),
-        reason=design.defects[0].message if design.kinds else "",
-    )
-
-
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     """A design at the positions, and moving through its driven range if it is sound."""
     design = found.designs[index]
     if isinstance(design, SweptDesign):
-        return mechanism_found(design.moved, _shown(design, index), inputs=design.inputs)
+        return mechanism_found(design.moved, design_shown(design, index), inputs=design.inputs)
     assert isinstance(design, SynthesizedDesign)
     group, k = design.group, design.index
     own, drive = group.given.take(slice(k, k + 1)), group.drive
@@ -116,7 +102,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
         span = (last - first) or 1.0
         marks = tuple(((travel.place[k] - first) / span * (_ROWS - 1)).tolist())
     return tell.DesignFound(
-        design=_shown(design, index),
+        design=design_shown(design, index),
         skeleton=None,
         fixed=tuple(_fixed(own, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
@@ -301,7 +287,7 @@ def _cognate(found: Synthesis, points: dict[str, Point], index: int | None) -> C
         ends = [given.fixed_a[j], given.fixed_b[j], given.moving_a[j, 0], given.moving_b[j, 0]]
         for exchanged, order in enumerate(([0, 1, 2, 3], [1, 0, 3, 2])):
             if np.abs(np.array(ends)[order] - wanted).max() < _COGNATE * size:
-                shown = _shown(other, k)
+                shown = design_shown(other, k)
                 drive = {"A0": "B0", "B0": "A0"}[shown.drive] if exchanged else shown.drive
                 return CognateShown(
                     points=points, drive=drive, index=k, sound=shown.sound, reason=shown.reason

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from linkwork.design.suggestion.suggested_design import Origin
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.skeleton import Skeleton
@@ -17,27 +17,25 @@ from linkwork.results.motion import Motion
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.task_events import DesignShown, SkeletonShown
 
-__all__ = ["finite", "mechanism_found", "pieces", "suggested_shown"]
+__all__ = ["design_shown", "finite", "mechanism_found", "pieces"]
 
 _ROWS = 181  # of a motion
 
 
-def suggested_shown(
-    design: ImprovedMechanism, index: int, number: int, origin: Origin, mechanism: str
-) -> DesignShown:
-    """A design that the search has not found, in the list."""
+def design_shown(design: JudgedDesign, index: int) -> DesignShown:
+    """A design in the list."""
     return DesignShown(
         index=index,
-        origin=origin.value,
-        number=number,
-        mechanism=mechanism,
+        origin="",
+        number=design.number,
+        mechanism=design.mechanism,
         drive=design.driven,
         sound=not design.kinds,
-        delivered=False,
+        delivered=design.delivered,
         transmission=finite(design.transmission),
         size=finite(design.size),
         error=finite(design.error),
-        score=None,
+        score=finite(design.score),
         reason=design.defects[0].message if design.kinds else "",
     )
 

@@ -13,7 +13,7 @@ from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.mechanism.description import Description
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.opened_file import Events
-from linkwork.viewer.live.task.mechanism_designs import mechanism_found, suggested_shown
+from linkwork.viewer.live.task.mechanism_designs import design_shown, mechanism_found
 from linkwork.viewer.live.task_events import DesignShown, DesignsSuggested
 
 __all__ = ["FIRST", "Suggestions"]
@@ -158,8 +158,12 @@ class Suggestions:
         numbers = dict.fromkeys(Origin, 0)
         for k, (design, judged) in enumerate(zip(self._designs, self._judged, strict=True)):
             numbers[design.origin] += 1
-            number = numbers[design.origin]
-            yield suggested_shown(judged, FIRST - k, number, design.origin, design.mechanism)
+            yield replace(
+                design_shown(judged, FIRST - k),
+                origin=design.origin.value,
+                number=numbers[design.origin],
+                mechanism=design.mechanism,
+            )
 
 
 def _is_closed(task: Task) -> bool:
