@@ -89,14 +89,9 @@ def _check_ground(
     dimensions: list[Distance | VertexAngle] = [*distances, *vertices]
     for given in dimensions:
         if not given.agrees(sketch, _AGREE):
-            told = (
-                f"{given.shown(sketch)}, not {given.amount_text}: change [points] or leave this out"
-            )
-            if "…" in told:
-                # a number that varies alone would change one of both
-                told = f'"{given.key}" in [{given.table}] as well: leave that out'
             raise ShapeError(
-                f"ground coordinates are exact and give {told}",
+                f"ground coordinates are exact and give {given.shown(sketch)}, "
+                f"not {given.amount_text}: change [points] or leave this out",
                 given.table,
                 given.key,
             )

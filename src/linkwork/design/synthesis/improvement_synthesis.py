@@ -127,7 +127,7 @@ def _mechanism(task: Task) -> Description:
     path = as_path(name) if task.folder is None else task.folder / as_path(name)
     if not path.is_file():
         known = choices("examples", examples(), name)
-        told = f'"{name}" is no file beside the task and no example {known}'
+        told = f'"{name}" is no file in the folder of the task and no example {known}'
         _refuse(task, [Problem(key=("mechanism",), message=told)])
     return read_text(text_of(bytes_of(path, str(path)), str(path)), str(path)).description
 
