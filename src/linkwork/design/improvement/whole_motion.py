@@ -28,7 +28,7 @@ from linkwork.results.motion import Motion
 
 __all__ = ["Contact", "LeastAngle", "WholeMotion"]
 
-_MOST_BOXES = 4000  # that a proof may take, besides those of the rows
+_MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
 _CLOSE = 1e-6  # rad: between the bounds of the least angle, unless a wanted one is between them
 _ROUNDING = 1e-12  # rad: of angles in proved positions
 
