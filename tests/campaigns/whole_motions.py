@@ -7,7 +7,7 @@ more or less a part of the longest link, from a tenth to a ten-millionth.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -15,13 +15,13 @@ import numpy as np
 
 from linkwork.api import Mechanism
 from linkwork.design.improvement.whole_motion import Contact, WholeMotion
-from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
 from tests.library_mechanisms import driven_examples, read_example
 
-__all__ = ["EVERY", "whole_motion_campaign"]
+__all__ = ["EVERY", "distances", "whole_motion_campaign"]
 
 #: All driven mechanisms of the library.
 EVERY = len(driven_examples())
@@ -51,20 +51,22 @@ class _Case:
 
     def distance(self, motion: Motion, centre: complex) -> float:
         """The least distance of all sides from a point in the rows of a motion."""
-        return min(
-            float(_from_side(motion.trace(p) - centre, motion.trace(q) - centre).min())
-            for p, q in self.sides
-        )
+        return distances([(motion.trace(p), motion.trace(q)) for p, q in self.sides], centre)
 
 
-def _from_side(a: ComplexArray, b: ComplexArray) -> ComplexArray:
+def distances(sides: Sequence[tuple[ComplexArray, ComplexArray]], centre: complex) -> float:
+    """The least distance of sides between points in rows from a centre."""
+    return min(float(_from_side(a - centre, b - centre).min()) for a, b in sides)
+
+
+def _from_side(a: ComplexArray, b: ComplexArray) -> Array:
     """The distances of sides between a and b from the origin, by three cases."""
     ends = np.minimum(np.abs(a), np.abs(b))
     length = np.abs(b - a)
     with np.errstate(all="ignore"):
         along = ((b - a).conj() * -a).real / length
         line = np.abs(((b - a).conj() * a).imag) / length
-    return np.where((along > 0.0) & (along < length), line, ends)
+    return np.asarray(np.where((along > 0.0) & (along < length), line, ends))
 
 
 def _case(part: int, rng: np.random.Generator) -> _Case | None:

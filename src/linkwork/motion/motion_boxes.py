@@ -130,9 +130,8 @@ def boxes_of(model: Model, motion: Motion, v: Array) -> Boxes:
     apart = (np.diff(met) > 1) | ~joined[met[:-1]]
     steps[apart] = 0.0
     last, dead = np.append(apart, True), dead[found]
-    first = np.insert(apart, 0, True) & ~np.append(last[1:], False)
     # boxes are symmetric: those of the first and the last row would leave the table
-    reached = dead | last | first
+    reached = dead | last | np.insert(apart, 0, True)
     half = np.zeros_like(inputs)
     half[1:] = np.maximum(half[1:], steps * np.where(reached[:-1], 1.0, 0.5)[:, None])
     half[:-1] = np.maximum(half[:-1], steps * np.where(reached[1:], 1.0, 0.5)[:, None])

@@ -220,25 +220,23 @@ class ImprovedMechanism(SweptDesign):
         yield from self._geometric_defects()
 
     def _transmission_defects(self) -> Iterator[tuple[DefectKind, str]]:
-        angle, wanted, whole = (
-            self.task.angle,
-            self.task.wanted.transmission,
-            self.improved.whole_motion,
-        )
+        angle, wanted = self.task.angle, self.task.wanted.transmission
+        whole, least = self.improved.whole_motion, self.wishes.transmission
         if not wanted or self.transmission >= wanted:
             return
-        down, place = self.transmission, ""
+        kind, told, place = DefectKind.TRANSMISSION, "transmission angle down to", ""
+        down = self.transmission
         if whole is not None and whole.dyads:
-            least = whole.least_transmission(self.wishes.transmission)
-            if least.high >= self.wishes.transmission:
-                told = (
-                    f"not proved: the transmission angle is {down:.9g}{angle.sign} or more, wanted"
+            found = whole.least_transmission(least)
+            down, place = angle.from_radians(found.high), f" at {self._input_text(found.at)}"
+            if found.high >= least:
+                kind, told = (
+                    DefectKind.NOT_PROVED,
+                    "not proved: the transmission angle comes down to",
                 )
-                yield DefectKind.NOT_PROVED, f"{told} {wanted:g}{angle.sign}"
-                return
-            down, place = angle.from_radians(least.high), f" at {self._input_text(least.at)}"
-        told = f"transmission angle down to {down:.6g}{angle.sign}{place}"
-        yield DefectKind.TRANSMISSION, f"{told}, wanted {wanted:g}{angle.sign}"
+        # as many digits as tell it from the wanted one
+        digits = next((k for k in range(6, 16) if f"{down:.{k}g}" != f"{wanted:.{k}g}"), 6)
+        yield kind, f"{told} {down:.{digits}g}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
 
     def _input_text(self, value: float) -> str:
         """A value of the leading input with its name."""
