@@ -14,7 +14,8 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.api import Mechanism
-from linkwork.design.improvement.whole_motion import Contact, WholeMotion
+from linkwork.design.improvement.motion_bounds import Contact
+from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.draft import Draft

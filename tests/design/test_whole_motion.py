@@ -12,6 +12,7 @@ from linkwork.design.improvement import whole_motion
 from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.names import GROUND
+from linkwork.motion.motion_boxes import motions_of_points
 from tests.campaigns import whole_motions as campaign
 from tests.library_mechanisms import driven_examples, read_example
 
@@ -84,7 +85,7 @@ def test_whole_motions_agree_with_finer_rows(name: str) -> None:
 
 def test_the_referee_finds_bounds_that_are_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes whose points do not move keep clear of obstacles that they meet."""
-    right = whole_motion.motions_of_points
+    right = motions_of_points
 
     def still(model, boxes):  # type: ignore[no-untyped-def]
         found = right(model, boxes)

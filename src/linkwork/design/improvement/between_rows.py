@@ -65,7 +65,7 @@ class BetweenRows:
         tried = np.stack([*ends, np.where(np.isfinite(t), t, ends[0])])
         heights = ((tried[..., None] ** np.arange(5)) * c).sum(axis=-1)
         best = np.nan_to_num(heights, nan=np.inf).argmin(axis=0)
-        return np.take_along_axis(tried, best[None], axis=0)[0]
+        return np.asarray(np.take_along_axis(tried, best[None], axis=0)[0])
 
     def _missed(self, value: Array, t: Array) -> Array:
         """What quartics miss, from the fifth differences next to a row, (D, R)."""

@@ -302,8 +302,10 @@ class _NumberMisses(Misses):
 
 
 def _is_transmission(model: Model, text: str) -> bool:
-    found = _is_name(model, text) and model.quantities.find(text)
-    return bool(found) and found.row is TRANSMISSION_ANGLE and found.rate is None
+    if not _is_name(model, text):
+        return False
+    found = model.quantities.find(text)
+    return found.row is TRANSMISSION_ANGLE and found.rate is None
 
 
 def _is_name(model: Model, text: str) -> bool:

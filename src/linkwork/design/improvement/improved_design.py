@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from linkwork.design.improvement.whole_motion import WholeMotion
+from linkwork.design.improvement.motion_bounds import MotionBounds
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.description import Description
 from linkwork.results.motion import Motion
@@ -43,7 +43,7 @@ class ImprovedDesign:
         without its weight [file units].
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
-    whole_motion : WholeMotion, optional
+    whole_motion : MotionBounds, optional
         The motion between the rows too; ``None`` if that is not proved.
 
     Examples
@@ -66,7 +66,7 @@ class ImprovedDesign:
     misses: tuple[float, ...] = ()
     goals: Mapping[str, float] = field(default_factory=dict)
     motion: Motion | None = None
-    whole_motion: WholeMotion | None = None
+    whole_motion: MotionBounds | None = None
 
     def __repr__(self) -> str:
         return f"<ImprovedDesign: total {self.total:.4g}, {self.message}>"

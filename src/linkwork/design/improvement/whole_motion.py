@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.design.improvement.motion_bounds import Contact, LeastAngle
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.rounding import PROOF_SLACK
 from linkwork.mechanism.dyad import Dyad
@@ -26,30 +27,11 @@ from linkwork.motion.motion_boxes import (
 )
 from linkwork.results.motion import Motion
 
-__all__ = ["Contact", "LeastAngle", "WholeMotion"]
+__all__ = ["WholeMotion"]
 
 _MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
 _CLOSE = 1e-6  # rad: between the bounds of the least angle, unless a wanted one is between them
 _ROUNDING = 1e-12  # rad: of angles in proved positions
-
-
-@dataclass(frozen=True, kw_only=True)
-class LeastAngle:
-    """The least angle is between ``low`` and ``high`` [rad], the angle at the input ``at``."""
-
-    low: float
-    high: float
-    at: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Contact:
-    """``met``: the side in a circle and the input there, if one is found; ``open``: the interval
-    of the input in which contact is not excluded.
-    """
-
-    met: tuple[int, float] | None
-    open: tuple[float, float] | None
 
 
 class WholeMotion:
@@ -99,9 +81,7 @@ class WholeMotion:
         return tuple(found.values())
 
     def least_transmission(self, wanted: float) -> LeastAngle:
-        """The least transmission angle of all dyads, of which there is at least one, folded to 0 to
-        a quarter of a turn; ``wanted``: decide whether it is smaller than this [rad].
-        """
+        """See :meth:`MotionBounds.least_transmission`."""
         if wanted not in self._least:
             self._least[wanted] = self._least_transmission(wanted)
         return self._least[wanted]
@@ -160,14 +140,7 @@ class WholeMotion:
         return _Direction(angle=np.angle(line), rate=rate.imag, error=error)
 
     def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
-        """Whether sides between two points of a link come into circles.
-
-        Parameters
-        ----------
-        sides : sequence of (str, str)
-        circles : (M, 3)
-            x, y, radius [length].
-        """
+        """See :meth:`MotionBounds.contact`."""
         key = circles.tobytes()
         if key not in self._contacts:
             self._contacts[key] = self._contact(sides, circles)
