@@ -157,7 +157,7 @@ class OwnVariables:
     def _bounds(self, count: int) -> tuple[Array, Array]:
         """Bounds of each row, which leave room for those before and after it."""
         steps = self.gap * np.arange(count)
-        return self.least + steps, self.most - steps[::-1]
+        return np.asarray(self.least + steps), np.asarray(self.most - steps[::-1])
 
 
 _ANYWHERE = OwnVariables()

@@ -196,7 +196,7 @@ def test_a_curve_whose_ends_meet_is_a_part_of_one_if_the_crank_swings() -> None:
 def test_a_range_that_excludes_given_inputs_is_refused() -> None:
     points, wanted = _part_of_a_four_bar(20.0, 140.0), {"input": {"from": 20.0, "to": 100.0}}
     inputs = [10.0 * k for k in range(12)]
-    with pytest.raises(MechanismError, match="spans 80, but the inputs of the positions span 110"):
+    with pytest.raises(MechanismError, match="spans 80, but the given inputs span 110"):
         lw.Task.path(points, inputs=inputs, wanted=wanted)
     wanted["input"]["to"] = 140.0
     bounds = {"starts": 2, "bounds": {"input": [200.0, 210.0]}}
