@@ -23,7 +23,7 @@ _POLYGONS = [
 @pytest.mark.parametrize("corners", _POLYGONS)
 @pytest.mark.parametrize("turned", [1.0, -1.0])
 def test_points_are_inside_and_spread_by_area(corners: list[complex], turned: float) -> None:
-    polygon = turned * np.array(corners, dtype=complex)
+    polygon = np.array(corners, dtype=complex) * complex(turned)
     z = points_in_polygon(polygon, np.random.default_rng(1).uniform(size=(4000, 2)))
     wishes = Wishes(region=polygon)
     assert wishes.within_region(z, np.full(len(z), 1e-12)).all()
