@@ -18,6 +18,7 @@ from linkwork.design.precision.positions import GivenLength, PrecisionPositions
 from linkwork.design.precision.problem import PrecisionProblem
 from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.numerics.homotopy.confirmed_member import solve_and_confirm
 from linkwork.numerics.homotopy.monodromy import Member, solve_by_few
 from linkwork.numerics.homotopy.parameter_roots import roots_at
 from linkwork.numerics.homotopy.trace_test import trace_defect
@@ -178,11 +179,10 @@ def test_a_task_without_a_start_set_is_sampled_and_says_why(
     for name, value in changes.items():
         monkeypatch.setattr(own_start_sets, name, value)
     if "_ROUNDS" in changes:
-        solve = own_start_sets.solve_and_confirm
         monkeypatch.setattr(
             own_start_sets,
             "solve_and_confirm",
-            lambda *given, **more: replace(solve(*given, **more), denied=True),
+            lambda *given, **more: replace(solve_and_confirm(*given, **more), denied=True),
         )
     found = lw.Task.path(_FOUR, given=_GIVEN).solve()
     assert found.completeness is Completeness.SAMPLED

@@ -88,7 +88,7 @@ def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
     for step in range(1, _STEPS + 1):
         wanted = begin + (goal - begin) * (step / _STEPS)
         for _ in range(_CORRECTIONS if step < _STEPS else _POLISH):
-            f, jacobian = _conditions(given, wanted.T, linkage)
+            f, jacobian = _conditions(given, list(wanted.T), linkage)
             # the shortest correction; rows of one size, since their squares are solved
             rows = np.linalg.norm(jacobian, axis=2)
             f, jacobian = f / rows, jacobian / rows[:, :, None]

@@ -186,8 +186,9 @@ class PrecisionProblem:
             moved = _positions_of(linkage, turns, normal_numbers(rng, 2, count))
             if np.abs(moved).max(initial=0.0) < _FAR:  # also false for numbers that are none
                 break
-        squares = np.array(
-            [_length_row(linkage, ends, 0.0, 0.0)[0] for ends in self.lengths], dtype=complex
+        ends = linkage.tolist()
+        squares: ComplexArray = np.array(
+            [_length_row(ends, pair, 0.0, 0.0)[0] for pair in self.lengths], dtype=np.complex128
         )
         return (
             self._parameters(turns[: self.poses], moved, linkage[list(self.given)], squares),
