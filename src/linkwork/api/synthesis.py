@@ -172,7 +172,7 @@ class Task:
             motion = mechanism.sweep(start=start, stop=stop, step=step, certify=False)
             if is_passed(motion, inputs, places):
                 return ()
-        return defects_by_circuits(mechanism.circuits(certify=False), inputs, places)
+        return defects_by_circuits(mechanism.model, inputs, places)
 
     def __repr__(self) -> str:
         return f'<Task "{self.name}": {self.described.kind}>'
