@@ -13,19 +13,18 @@ from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
-from linkwork.motion.circuit.followed_circuit import FollowedCircuit, is_regular
+from linkwork.motion.circuit.followed_circuit import FollowedCircuit, is_regular, straight_way
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.motion.start import first_position
 from linkwork.numerics.newton import NewtonOptions
-from linkwork.results.motion import Motion
 
-__all__ = ["defects_by_circuits", "is_passed"]
+__all__ = ["defects_by_circuits"]
 
-# of a point's way: cubics between rows miss a position of the branch by less, and other branches
-# are farther away, unless the input is nearer than the square of this to a dead point
+# of a point's way: a position that is missed by less lies on the branch, and other branches are
+# farther away, unless the input is nearer than the square of this to a dead point
 _MISSED = 1e-6
 # of the mechanism's size: nearer to a place than this, configurations are equally near
 _EQUALLY_NEAR = 1e-9
@@ -39,8 +38,9 @@ def defects_by_circuits(
 ) -> tuple[Defect, ...]:
     """The circuit or branch defect of a mechanism that passes positions; none if it has neither.
 
-    A position is the configuration at its input that comes nearest to its places. The circuit of
-    the first one is followed until all are met, or it is closed without one of them.
+    Most mechanisms pass their positions on the branch of the guess, straight from the least to
+    the greatest input. Else a position is the configuration at its input that comes nearest to its
+    places, and the circuit of the first one is followed until all are met, or all of it.
 
     Parameters
     ----------
@@ -56,33 +56,6 @@ def defects_by_circuits(
         If the mechanism has no input, or several that time drives.
     """
     return _Search(Drive.of_circuits(model), inputs, places).defects()
-
-
-def is_passed(motion: Motion, inputs: Sequence[float], places: Sequence[Places]) -> bool:
-    """Whether a motion on one branch, found in all rows, passes positions as exactly as can be told
-    from its rows. Then the mechanism has no defect, whatever its other circuits.
-
-    ``motion``: rows from the least input to the greatest; ``inputs``, ``places``: as for
-    :func:`defects_by_circuits`.
-    """
-    if len(motion) < 2 or not motion.found.all() or len(set(motion.branch)) > 1:
-        return False
-    name, along = next(iter(motion.inputs.items()))
-    row = np.clip(np.searchsorted(along, inputs) - 1, 0, len(along) - 2)
-    step = along[row + 1] - along[row]
-    t = (np.asarray(inputs) - along[row]) / step
-    step = step * {"deg": np.pi / 180.0}.get(motion.input_units[name], 1.0)
-    for point in places[0]:
-        x, y = motion.series(f"{point}.x"), motion.series(f"{point}.y")
-        z, slope = x.value + 1j * y.value, x.first + 1j * y.first
-        # Hermite's cubic between rows
-        change = z[row + 1] - z[row]
-        begin, end = slope[row] * step - change, change - slope[row + 1] * step
-        there = z[row] + t * (change + (1.0 - t) * (begin * (1.0 - t) + end * t))
-        missed = np.abs(there - [place[point] for place in places]).max()
-        if not missed <= _MISSED * np.abs(np.diff(z)).sum():
-            return False
-    return True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,7 +77,12 @@ class _Search:
 
     def defects(self) -> tuple[Defect, ...]:
         """None if one branch passes all positions, else the defect of that which comes farthest."""
-        starts = self._starts()
+        guess = self._guess()
+        if len(self.values) < 2 or (guess is not None and self._is_straight(guess)):
+            return ()
+        if any(self._is_straight(v) for v in self._regular_starts()):
+            return ()
+        starts = self._starts(guess)
         found = [] if starts else [self._no_start()]
         for start in starts:
             defect = self._first_defect(start)
@@ -113,26 +91,41 @@ class _Search:
             found.append(defect)
         return (min(found, key=_claim),)
 
-    def _starts(self) -> list[_Start]:
+    def _guess(self) -> Array | None:
+        """The position (N,) of the guess, if the input can lead there."""
+        inputs = self.model.start_inputs
+        done = first_position(self.model, inputs, NewtonOptions(), explained=False)
+        return done.v if done.status.ok and is_regular(self.leads, done.v) else None
+
+    def _is_straight(self, v: Array) -> bool:
+        """Whether the branch of a position (N,) passes all positions, followed straight."""
+        here = straight_way(self.drive, v, self.values)
+        if here is None:
+            return False
+        way = sum(float(np.abs(np.diff(z)).sum()) for z in self._points(here))
+        missed = [self._distances(here[k : k + 1], k)[0] for k in range(len(here))]
+        return bool(max(missed) <= _MISSED * way)
+
+    def _starts(self, guess: Array | None) -> list[_Start]:
         """Every circuit and branch that the first position may lie on."""
         if self._list(0).completeness is Completeness.NOT_LISTED:
-            done = first_position(
-                self.model, self.model.start_inputs, NewtonOptions(), explained=False
-            )
-            if not done.status.ok or not is_regular(self.leads, done.v):
+            if guess is None:
                 return []
-            circuit = FollowedCircuit(self.drive, done.v)
+            circuit = FollowedCircuit(self.drive, guess)
             branches = [b for b in circuit.branches() if self._passes(circuit, b, 0)]
-            return [_Start(v=done.v, circuit=circuit, branches=branches)] if branches else []
+            return [_Start(v=guess, circuit=circuit, branches=branches)] if branches else []
         starts: list[_Start] = []
-        for v in self._nearest(0):
-            if is_regular(self.leads, v):
-                known = (one.circuit for one in starts if one.circuit.branch_of(v) is not None)
-                circuit = next(known, None) or FollowedCircuit(self.drive, v)
-                branch = circuit.branch_of(v)
-                if branch is not None:
-                    starts.append(_Start(v=v, circuit=circuit, branches=[branch]))
+        for v in self._regular_starts():
+            known = (one.circuit for one in starts if one.circuit.branch_of(v) is not None)
+            circuit = next(known, None) or FollowedCircuit(self.drive, v)
+            branch = circuit.branch_of(v)
+            if branch is not None:
+                starts.append(_Start(v=v, circuit=circuit, branches=[branch]))
         return starts
+
+    def _regular_starts(self) -> list[Array]:
+        """The configurations (N,) nearest to the first position at which the input can lead."""
+        return [v for v in self._nearest(0) if is_regular(self.leads, v)]
 
     def _first_defect(self, start: _Start) -> Defect | None:
         """Where the first branch is left that passes all positions up to there."""
@@ -196,10 +189,11 @@ class _Search:
                 if turn is None:
                     continue
                 gap = within_half_a_turn(np.array([turn.t - self.values[k]]), turns)
+                if abs(float(gap[0])) > _MISSED * scale:
+                    continue
                 missed = float(self._distances(turn.v[None, :], k)[0])
                 # next to a dead point places move by about the square root of the input's change
-                near = missed <= np.sqrt(_MISSED) * self._way(branch)
-                if near and abs(float(gap[0])) <= _MISSED * scale:
+                if missed <= np.sqrt(_MISSED) * self._way(branch):
                     return True
         return False
 

@@ -2,20 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import REGULAR_CONDITION
+from linkwork.foundation.status import CONVERGED
 from linkwork.motion.circuit.arcs import Explorer, positions_at_value
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
+from linkwork.motion.redundancy import FITS, misfit
+from linkwork.motion.tracking import track_to
+from linkwork.numerics.continuation.branch_tracking import node_at, rows_on_track
 from linkwork.numerics.continuation.local_parametrization import Parametrizations, same_position
 
-__all__ = ["FollowedCircuit", "is_regular"]
+__all__ = ["FollowedCircuit", "is_regular", "straight_way"]
+
+
+def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Array | None:
+    """The positions (K, N) at values of the input on the branch of a position (N,).
+
+    ``None`` if the branch, followed straight to the least and the greatest value, ends before, or
+    redundant links do not fit along it.
+    """
+    solver, t = drive.solver, np.array(values)
+    node = node_at(solver, drive.path, float(start[drive.leads.parameter]), start)
+    track = track_to(solver, drive.path, node, values)
+    if track.ends:
+        return None
+    rows = rows_on_track(solver, drive.path, track, t)
+    way = np.concatenate([np.stack([node.v for node in track.nodes]), rows.v])
+    if not (rows.status == CONVERGED).all() or (misfit(drive.model.equations, way) > FITS).any():
+        return None
+    return rows.v
 
 
 class FollowedCircuit:
@@ -31,16 +53,18 @@ class FollowedCircuit:
         self.leads = drive.leads
         self._explorer = Explorer(Walks(drive, certify=False))
         self._further = self._explorer.follow(start)
+        self._branches: list[CurveBranch] = []
 
     def branches(self) -> Iterator[CurveBranch]:
         """All branches; those behind a change point are followed when they are asked for."""
-        number = 0
-        while number < len(self._explorer.arcs) or next(self._further, None) is not None:
+        yield from self._branches
+        while (number := next(self._further, None)) is not None:
             arc = self._explorer.arcs[number]
-            number += 1
             # where redundant links do not fit, nothing moves along the arc
             if self._explorer.fits(arc):
-                yield from arc.branches
+                begin = len(self._branches)
+                self._branches += arc.branches
+                yield from self._branches[begin:]
 
     @property
     def is_open(self) -> bool:
