@@ -51,7 +51,7 @@ class FollowedCircuit:
 
     def __init__(self, drive: Drive, start: Array) -> None:
         self.leads = drive.leads
-        self._explorer = Explorer(Walks(drive, certify=False))
+        self._explorer = Explorer(Walks(drive, certify=False, prove_turns=False))
         self._further = self._explorer.follow(start)
         self._branches: list[CurveBranch] = []
 
