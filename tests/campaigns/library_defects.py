@@ -4,6 +4,7 @@ that all circuits give.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -16,9 +17,20 @@ from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.results.circuits import Circuit, Circuits
 
-__all__ = ["JudgedCase", "branches_at", "change_of_branches", "library_cases"]
+__all__ = [
+    "MECHANISMS",
+    "JudgedCase",
+    "branches_at",
+    "judged_change",
+    "library_cases",
+    "library_defect_campaign",
+]
 
-_EQUAL = 1e-5  # of a path: points of two branches at one input that are no farther apart
+#: The mechanisms of the library.
+MECHANISMS = tuple(lw.examples())
+_CASES = 24  # of a mechanism
+
+_EQUAL = 1e-5  # of the longest path: points of two branches at one input that are no farther apart
 _BEYOND = 1e-6  # more than a segment of a circuit: rows at its ends are rounded
 _EDGE = 0.06  # of a branch's range of input: positions this near to its ends are left out
 
@@ -36,8 +48,33 @@ class JudgedCase:
     change: Change | None
 
 
+def judged_change(mechanism: lw.Mechanism, case: JudgedCase) -> Change | None:
+    """The verdict on a case; ``NOT_PROVED`` and other kinds lie between no positions: (0, 0)."""
+    places = [(place.real, place.imag) for place in case.places]
+    found = lw.Task.path(places).defects_of(mechanism, case.inputs, point=case.point)
+    return next(((defect.kind, defect.between or (0, 0)) for defect in found), None)
+
+
+def library_defect_campaign(part: int) -> tuple[Counter[str], list[str]]:
+    """Counts by defect and false claims about one mechanism of the library."""
+    name = MECHANISMS[part % len(MECHANISMS)]
+    mechanism = lw.example(name)
+    counts: Counter[str] = Counter()
+    false: list[str] = []
+    for case in library_cases(mechanism, _CASES, part):
+        found = judged_change(mechanism, case)
+        counts["neither" if found is None else found[0].value] += 1
+        proved = found is None or found[0] is not DefectKind.NOT_PROVED
+        if proved and found != case.change:
+            what = f"{found}, by circuits {case.change}"
+            false.append(f"part {part}, {name}, {case.point} at {case.inputs}: {what}")
+    return counts, false
+
+
 def library_cases(mechanism: lw.Mechanism, count: int, seed: int) -> Iterator[JudgedCase]:
     """Cases of 2 to 5 positions on one branch, on two of a circuit, on any two, or on any."""
+    if not mechanism.description.inputs:
+        return
     circuits = mechanism.circuits(certify=False)
     pieces = [
         (circuit, branch.name)
@@ -66,7 +103,7 @@ def library_cases(mechanism: lw.Mechanism, count: int, seed: int) -> Iterator[Ju
             for value, place in zip(inputs, places, strict=True)
         ]
         yield JudgedCase(
-            point=point, inputs=inputs, places=places, change=change_of_branches(found)
+            point=point, inputs=inputs, places=places, change=_change_of_branches(found)
         )
 
 
@@ -101,7 +138,7 @@ def _place(circuit: Circuit, point: str) -> tuple[Array, Array]:
     return x.value + 1j * y.value, x.first + 1j * y.first
 
 
-def change_of_branches(found: Sequence[set[str]]) -> Change | None:
+def _change_of_branches(found: Sequence[set[str]]) -> Change | None:
     """The first change, if no branch passes all positions; ``found``: the branches at each."""
     branches = found[0]
     for number, (_, there) in enumerate(pairwise(found), start=1):
@@ -121,15 +158,15 @@ def branches_at(
     circuits: Circuits, value: float, places: Mapping[str, complex], within: float
 ) -> set[str]:
     """The branches that come nearest to places at an input; more than one if they come equally
-    near, to this part of the length of a path.
+    near, to this part of the longest path.
     """
     found = [
-        (missed, within * way, name)
-        for circuit in circuits
-        for missed, way, name in _misses(circuit, circuits.input, value, places)
+        miss for circuit in circuits for miss in _misses(circuit, circuits.input, value, places)
     ]
+    # a point may rest on one branch
+    allowed = within * max((way for _, way, _ in found), default=0.0)
     least = min((missed for missed, _, _ in found), default=np.inf)
-    return {name for missed, allowed, name in found if missed <= least + allowed}
+    return {name for missed, _, name in found if missed <= least + allowed}
 
 
 def _misses(

@@ -169,16 +169,47 @@ class _Search:
                 return _changes(DefectKind.BRANCH, k)
             return _unlisted(k)
         near = self._nearest(k)
-        if not near:
+        if not near and not self._is_limit(circuit, k):
             return _unreached(listed, k)
         near = [v for v in near if is_regular(self.leads, v)]
-        if any(circuit.branch_of(v) is not None for v in near):
+        joined = self._are_joined(start, near) if near else None
+        if joined:
             return _changes(DefectKind.BRANCH, k)
         if not near or self._is_limit(circuit, k):
             return _at_dead_point(k)
-        if circuit.is_open and not all(self._is_elsewhere(v, start.v) for v in near):
+        if joined is None:
             return _not_proved(f"the circuit of position {k} was not followed to its end")
         return _changes(DefectKind.CIRCUIT, k)
+
+    def _are_joined(self, start: _Start, near: Sequence[Array]) -> bool | None:
+        """Whether one of some positions (N,) is on the circuit of the first one; ``None`` if the
+        circuits cannot be followed to their ends.
+
+        From both sides: two circuits are one where their arcs meet at a change point, and they are
+        two as soon as one of them is whole without the other's position.
+        """
+        mine = start.circuit
+        others = [(v, FollowedCircuit(self.drive, v)) for v in near]
+        fresh = list(mine.known)
+        while not any(mine.lies_on(branch, v) for branch in fresh for v, _ in others):
+            others = [(v, other) for v, other in others if not other.is_whole]
+            if mine.is_whole or not others:
+                return False
+            ahead = [one for one in (mine, *(o for _, o in others)) if not one.ended]
+            if not ahead:
+                return None
+            # one arc of each other circuit, which may meet the first arc, then all of this one
+            following = min(ahead, key=lambda one: (len(one.arcs) > 0, one is not mine))
+            known = len(following.known)
+            following.follow_next()
+            fresh = following.known[known:]
+            if any(mine.meets(other) for _, other in others):
+                return True
+            if following is not mine:
+                if any(following.lies_on(branch, start.v) for branch in fresh):
+                    return True
+                fresh = []
+        return True
 
     def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
         """Whether a position is at an end of a branch, to the rounding of its input."""
@@ -196,11 +227,6 @@ class _Search:
                 if missed <= np.sqrt(_MISSED) * self._way(branch):
                     return True
         return False
-
-    def _is_elsewhere(self, v: Array, start: Array) -> bool:
-        """Whether the circuit of a position (N,) closes without the first position."""
-        circuit = FollowedCircuit(self.drive, v)
-        return circuit.branch_of(start) is None and not circuit.is_open
 
     def _no_start(self) -> Defect:
         """Why no circuit of the first position can be followed."""

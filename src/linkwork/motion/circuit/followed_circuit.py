@@ -10,14 +10,18 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import REGULAR_CONDITION
 from linkwork.foundation.status import CONVERGED
-from linkwork.motion.circuit.arcs import Explorer, positions_at_value
+from linkwork.motion.circuit.arcs import Arc, Explorer, positions_at_value
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.motion.tracking import track_to
 from linkwork.numerics.continuation.branch_tracking import node_at, rows_on_track
-from linkwork.numerics.continuation.local_parametrization import Parametrizations, same_position
+from linkwork.numerics.continuation.local_parametrization import (
+    Parametrizations,
+    coincide,
+    same_position,
+)
 
 __all__ = ["FollowedCircuit", "is_regular", "straight_way"]
 
@@ -47,31 +51,74 @@ class FollowedCircuit:
     ----------
     drive : Drive
     start : (N,)
+
+    Attributes
+    ----------
+    arcs, known : list of Arc, list of CurveBranch
+        Its curves between change points, and their branches, as far as they are followed.
+    ended : bool
+        Whether no other arc is left to follow.
     """
 
     def __init__(self, drive: Drive, start: Array) -> None:
         self.leads = drive.leads
+        self.arcs: list[Arc] = []
+        self.known: list[CurveBranch] = []
+        self.ended = False
         self._explorer = Explorer(Walks(drive, certify=False, prove_turns=False))
         self._further = self._explorer.follow(start)
-        self._branches: list[CurveBranch] = []
+        self._apart: list[Arc] = []
+
+    def follow_next(self) -> bool:
+        """Follow one more of the arcs that change points may join; whether there was one."""
+        number = next(self._further, None)
+        self.ended = number is None or not self._explorer.crossings
+        if number is not None and self._explorer.fits(self._explorer.arcs[number]):
+            self._apart.append(self._explorer.arcs[number])
+            self._join_arcs()
+        return number is not None
+
+    def _join_arcs(self) -> None:
+        """Take over the arcs that meet those of the circuit: none through an arc that does not fit,
+        on which nothing can move.
+        """
+        joined = True
+        while joined and self._apart:
+            met = {crossing for arc in self.arcs for crossing in arc.crossings}
+            joined = False
+            for arc in list(self._apart):
+                if arc is self._explorer.arcs[0] or met.intersection(arc.crossings):
+                    self._apart.remove(arc)
+                    self.arcs.append(arc)
+                    self.known += arc.branches
+                    joined = True
 
     def branches(self) -> Iterator[CurveBranch]:
         """All branches; those behind a change point are followed when they are asked for."""
-        yield from self._branches
-        while (number := next(self._further, None)) is not None:
-            arc = self._explorer.arcs[number]
-            # where redundant links do not fit, nothing moves along the arc
-            if self._explorer.fits(arc):
-                begin = len(self._branches)
-                self._branches += arc.branches
-                yield from self._branches[begin:]
+        number = 0
+        while number < len(self.known) or self.follow_next():
+            yield from self.known[number : number + 1]
+            number = min(number + 1, len(self.known))
 
     @property
     def is_open(self) -> bool:
         """Whether a curve of the circuit, as far as it is followed, was given up on its way."""
-        return any(
-            arc.end in (CircuitEnd.NEVER_CLOSES, CircuitEnd.SINGULAR) for arc in self._explorer.arcs
-        )
+        given_up = (CircuitEnd.NEVER_CLOSES, CircuitEnd.SINGULAR)
+        return any(arc.end in given_up for arc in self.arcs)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of it is followed."""
+        return self.ended and not self.is_open
+
+    def meets(self, other: FollowedCircuit) -> bool:
+        """Whether both have a change point in common, as far as they are followed."""
+        mine, theirs = self._crossings(), other._crossings()
+        return any(coincide(self.leads, v, w) for v in mine for w in theirs)
+
+    def _crossings(self) -> list[Array]:
+        met = {crossing for arc in self.arcs for crossing in arc.crossings}
+        return [self._explorer.crossings[number].v for number in met]
 
     def branch_of(self, v: Array) -> CurveBranch | None:
         """The branch with a position (N,) at which the input can lead."""
