@@ -6,13 +6,13 @@ between positions of the task.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from linkwork.design.precision.polygon_points import points_in_polygon
-from linkwork.design.precision.positions import PrecisionPositions
+from linkwork.design.precision.positions import GivenLength, PrecisionPositions
 from linkwork.design.precision.problem import CONDITIONS
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError
@@ -30,8 +30,10 @@ def positions_with_samples(
     samples: int,
     rng: np.random.Generator,
     region: ComplexArray | None = None,
+    lengths: Sequence[GivenLength] = (),
 ) -> Iterator[PrecisionPositions]:
-    """Tasks with eight conditions, one if the given ones are that many, else ``samples``.
+    """Tasks with eight conditions, one if the given ones are that many, else ``samples`` without
+    the lengths.
 
     Parameters
     ----------
@@ -45,6 +47,7 @@ def positions_with_samples(
     rng : numpy.random.Generator
     region : (K,) complex, optional
         Corners of the rectangle's diagonal, or of a polygon, around drawn pivots [length].
+    lengths : sequence of GivenLength, optional
 
     Raises
     ------
@@ -52,8 +55,8 @@ def positions_with_samples(
         For positions that are equal, too many conditions, or poses alone.
     """
     missing = _missing(points, angles, pivots)
-    if not missing:
-        yield PrecisionPositions.of(points, angles, pivots)
+    if missing == len(lengths):
+        yield PrecisionPositions.of(points, angles, pivots, lengths)
         return
     drawn = min(2 - len(pivots), missing // 2)
     extra = missing - 2 * drawn
