@@ -48,5 +48,5 @@ def test_what_a_list_does_not_have_is_named(found: Callable[[], Any], second: st
         members[second + "x"]
     with pytest.raises(IndexError):
         members[2]
-    with pytest.raises(TypeError):
+    with pytest.raises(lw.UnknownNameError, match=r'there is no .*"1\.0"'):
         members[1.0]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from operator import index
 from typing import SupportsIndex, TypeVar, overload
 
 from linkwork.foundation.errors import UnknownNameError, choices
@@ -23,7 +22,7 @@ class NamedSequence(Sequence[T]):
         """The members in their order, with their names."""
 
     @abstractmethod
-    def _unknown(self, name: str) -> tuple[str, str]:
+    def _unknown(self, name: object) -> tuple[str, str]:
         """The problem with a name that no member has, and the word for members."""
 
     def __len__(self) -> int:
@@ -38,8 +37,8 @@ class NamedSequence(Sequence[T]):
         members = self._by_name
         if isinstance(which, slice):
             return tuple(member for _, member in members[which])
-        if not isinstance(which, str):
-            return members[index(which)][1]
+        if isinstance(which, SupportsIndex):
+            return members[which][1]
         for name, member in members:
             if name == which:
                 return member

@@ -198,7 +198,7 @@ class Circuits(NamedSequence[Circuit]):
     def _by_name(self) -> tuple[tuple[str, Circuit], ...]:
         return tuple((circuit.name, circuit) for circuit in self.circuits)
 
-    def _unknown(self, name: str) -> tuple[str, str]:
+    def _unknown(self, name: object) -> tuple[str, str]:
         return f'there is no "{name}"', "circuits"
 
     def branch(self, name: str) -> Branch:

@@ -120,7 +120,7 @@ class Configurations(NamedSequence[Position]):
     def _by_name(self) -> tuple[tuple[str, Position], ...]:
         return tuple((position.configuration, position) for position in self.positions)
 
-    def _unknown(self, name: str) -> tuple[str, str]:
+    def _unknown(self, name: object) -> tuple[str, str]:
         here = f"of {self.mechanism} at this input"
         return f'there is no configuration "{name}" {here}', "configurations"
 
