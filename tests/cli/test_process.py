@@ -83,7 +83,8 @@ def test_an_interrupt_while_the_program_is_imported_is_quiet(environment: dict[s
         "from linkwork.__main__ import main\n"
         "main()\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    words = [sys.executable, "-c", program]
+    ended = subprocess.run(words, env=environment, capture_output=True, preexec_fn=interruptible)
     assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
 
 
@@ -144,7 +145,8 @@ def test_an_interrupt_of_a_deletion_is_not_lost(environment: dict[str, str]) -> 
         "from linkwork.__main__ import main\n"
         "main()\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    words = [sys.executable, "-c", program]
+    ended = subprocess.run(words, env=environment, capture_output=True, preexec_fn=interruptible)
     assert (ended.returncode, ended.stderr) == (130, b"\nInterrupted.\n")
 
 
@@ -180,7 +182,8 @@ def test_an_interrupt_at_the_very_end_changes_nothing(environment: dict[str, str
         "from linkwork.__main__ import main\n"
         "main()\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True)
+    words = [sys.executable, "-c", program]
+    ended = subprocess.run(words, env=environment, capture_output=True, preexec_fn=interruptible)
     assert (ended.returncode, ended.stderr) == (0, b"")
 
 

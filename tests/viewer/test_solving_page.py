@@ -178,18 +178,18 @@ def test_the_page_shows_points_columns_and_rates_of_the_changed_mechanism(
 def test_lengths_are_dragged_and_the_whole_cycle_is_drawn_again(open_solving: Any) -> None:
     page = open_solving("four-bar", ["O2 A", "A B"])
     row = page.locator('[data-number="A B"]')
-    before = page.locator(".lw-canvas").inner_html()
+    before = page.locator(".lw-shapes").inner_html()
     row.locator("input[type=range]").focus()
     for _ in range(4):
         page.keyboard.press("ArrowRight")
     page.wait_for_timeout(200)
-    assert page.locator(".lw-canvas").inner_html() != before
+    assert page.locator(".lw-shapes").inner_html() != before
     assert float(row.locator("input[type=number]").input_value()) > 120.0
     assert page.locator(".lw-summary").inner_text() == "361 positions found, each proved"
     page.get_by_role("button", name="Reset").click()
     page.wait_for_timeout(200)
     assert float(row.locator("input[type=number]").input_value()) == 120.0
-    assert page.locator(".lw-canvas").inner_html() == before
+    assert page.locator(".lw-shapes").inner_html() == before
 
 
 def test_the_page_says_where_the_branch_ends_and_where_nothing_is(open_solving: Any) -> None:

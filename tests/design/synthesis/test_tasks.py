@@ -80,8 +80,6 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "function.positions", "5 precision points leave no four-bar with given start angles"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [10, 9]]\n", 4, "function.pairs[3]",
          "has the input 10 of pair 2"),
-        (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\nfit = 'minimax'\n", None,
-         "function.input", "is missing: a fit needs the start angles"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),
         (_MOTION + "[given]\nfixed_pivots = [[0, 0]]\n", 18, "given",
          "leaves no freedom for 5 poses"),

@@ -282,8 +282,8 @@ def test_what_no_longer_moves_can_be_edited_at_once(open_live: Open, served: Ser
 
 
 def test_a_part_is_added_from_the_palette(open_live: Open, served: Served) -> None:
-    served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page = open_live()
+    served.path.write_text(FOUR_BAR.replace("rocker = [", 'wheel = ["O4"]\nrocker = [') + BELT)
     page.get_by_text("has been read again").wait_for()
     page.get_by_role("tab", name="Build").click()
     page.locator(".lw-group summary", has_text="Remove").click()

@@ -46,7 +46,7 @@ SOLVERS: dict[str, Solver] = {
         task, wishes, progress
     ),
     "mixed": solve_path,
-    "function": lambda task, wishes, progress: solve_function(task),
+    "function": lambda task, wishes, progress: solve_function(task, progress),
 }
 _RIGHT = math.pi / 2.0
 _Alone = TypeVar("_Alone", bound=JudgedDesign)
