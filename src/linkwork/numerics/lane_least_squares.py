@@ -22,7 +22,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON
 
-__all__ = ["Box", "LaneFit", "Residuals", "Sequenced", "minimise", "starts_of"]
+__all__ = ["Box", "LaneFit", "OwnVariables", "Residuals", "minimise", "starts_of"]
 
 _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
 _LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
@@ -106,23 +106,61 @@ class Box:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sequenced:
-    """Own variables that rise from row to row by ``gap`` or more, and by less than ``span``."""
+class OwnVariables:
+    """Where the own variables of rows may be: between bounds, and in order.
 
-    gap: float
-    span: float
+    Parameters
+    ----------
+    least, most : float
+        The bounds of all of them.
+    in_order : bool
+        Whether they rise from row to row.
+    gap, span : float
+        Of variables in order: they rise by ``gap`` or more, and by less than ``span`` altogether.
+    """
 
-    def ordered(self, t: Array) -> Array:
-        """Variables (D, N) moved into order, each as little as those before it allow."""
-        steps = self.gap * np.arange(t.shape[1])
-        risen = np.maximum.accumulate(t - steps, axis=1) + steps
-        return np.asarray(np.minimum(risen, risen[:, :1] + self.span - (steps[-1] - steps)))
+    least: float = -np.inf
+    most: float = np.inf
+    in_order: bool = False
+    gap: float = 0.0
+    span: float = np.inf
 
-    def contacts(self, t: Array) -> BoolArray:
-        """Whether a row is at the least distance from the row before it, (D, N)."""
-        touching = np.zeros(t.shape, dtype=bool)
-        touching[:, 1:] = np.diff(t, axis=1) <= self.gap * (1.0 + 1e-3)
-        return touching
+    def inside(self, t: Array) -> Array:
+        """Variables (D, N) moved into order, each as little as those before it allow, and between
+        the bounds.
+        """
+        low, high = self._bounds(t.shape[1])
+        if self.in_order:
+            steps = self.gap * np.arange(t.shape[1])
+            t = np.maximum.accumulate(t - steps, axis=1) + steps
+            t = np.minimum(t, t[:, :1] + self.span - steps[::-1])
+        return np.asarray(np.clip(t, low, high))
+
+    def held(self, t: Array, slope: Array) -> BoolArray:
+        """Whether a row is at a bound that it would pass down the slope, (D, N)."""
+        low, high = self._bounds(t.shape[1])
+        return np.asarray(((t <= low) & (slope > 0.0)) | ((t >= high) & (slope < 0.0)))
+
+    def together(self, t: Array, pull: Array) -> Array | None:
+        """Which rows move as one, (D, N, N): those that touch and are pushed together."""
+        if not self.in_order:
+            return None
+        contact = np.zeros(t.shape, dtype=bool)
+        # down the slope the later row would come before the earlier one
+        contact[:, 1:] = np.diff(t, axis=1) <= self.gap * (1.0 + 1e-3)
+        contact[:, 1:] &= pull[:, 1:] >= pull[:, :-1]
+        if not contact.any():
+            return None
+        group = np.cumsum(~contact, axis=1)
+        return np.asarray((group[:, :, None] == group[:, None, :]).astype(float))
+
+    def _bounds(self, count: int) -> tuple[Array, Array]:
+        """Bounds of each row, which leave room for those before and after it."""
+        steps = self.gap * np.arange(count)
+        return np.asarray(self.least + steps), np.asarray(self.most - steps[::-1])
+
+
+_ANYWHERE = OwnVariables()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -197,7 +235,7 @@ def minimise(
     box: Box,
     steps: int,
     *,
-    sequenced: Sequenced | None = None,
+    own: OwnVariables = _ANYWHERE,
 ) -> LaneFit:
     """Lanes after some steps, or fewer where they gain nothing more.
 
@@ -207,8 +245,7 @@ def minimise(
     fit : LaneFit
     box : Box
     steps : int
-    sequenced : Sequenced, optional
-        The order of the own variables.
+    own : OwnVariables
 
     Returns
     -------
@@ -222,7 +259,7 @@ def minimise(
     kept = [np.array(getattr(fit, name)) for name in _ARRAYS]
     lanes = np.arange(len(fit))
     x = box.inside(fit.x)
-    t = fit.t if sequenced is None else sequenced.ordered(fit.t)
+    t = own.inside(fit.t)
     now = evaluate(x, t, lanes)
     # sums and damping of another problem are of no use here
     damping = np.minimum(fit.damping, _FIRST_DAMPING)
@@ -238,7 +275,7 @@ def minimise(
                 lanes, work, now = lanes[left], work.take(left), now.take(left)
             if not len(lanes):
                 break
-            work, now = _step(evaluate, work, now, lanes, box, sequenced)
+            work, now = _step(evaluate, work, now, lanes, box, own)
     except KeyboardInterrupt:
         interrupted = True
     _keep(kept, lanes, work)
@@ -258,13 +295,11 @@ def _step(
     now: Residuals,
     lanes: IndexArray,
     box: Box,
-    sequenced: Sequenced | None,
+    own: OwnVariables,
 ) -> tuple[LaneFit, Residuals]:
     """One step of every lane; those that gain nothing by it stay and are damped more."""
-    dx, dt = _newton_step(work, now, box, sequenced)
-    x, t = box.inside(work.x + dx), work.t + dt
-    if sequenced is not None:
-        t = sequenced.ordered(t)
+    dx, dt = _newton_step(work, now, box, own)
+    x, t = box.inside(work.x + dx), own.inside(work.t + dt)
     there = evaluate(x, t, lanes)
     total = there.total
     better = total < work.total
@@ -301,7 +336,7 @@ def _either(which: BoolArray, new: Array, old: Array) -> Array:
 
 @np.errstate(all="ignore")  # lanes without residuals have no step
 def _newton_step(
-    work: LaneFit, now: Residuals, box: Box, sequenced: Sequenced | None
+    work: LaneFit, now: Residuals, box: Box, rows: OwnVariables
 ) -> tuple[Array, Array]:
     """Changes of x (D, P) and t (D, N)."""
     count, parameters = work.x.shape
@@ -324,29 +359,21 @@ def _newton_step(
     curve = own * (1.0 + work.damping[:, None]) + EPSILON * (
         own.max(axis=1, keepdims=True) + 1e-300
     )
-    together = None if sequenced is None else _together(sequenced, work.t, slope / curve)
+    together = rows.together(work.t, slope / curve)
     summed, slopes, mixtures = curve, slope, mixed
     if together is not None:
         summed = (together @ curve[:, :, None])[:, :, 0]
         slopes = (together @ slope[:, :, None])[:, :, 0]
         mixtures = together @ mixed
-    shares = mixtures / summed[:, :, None]
+    held = rows.held(work.t, slopes)
+    if together is not None:
+        held = (together @ held[:, :, None])[:, :, 0] > 0.0
+    shares = np.where(held[:, :, None], 0.0, mixtures / summed[:, :, None])
     normal = normal - mixed.transpose(0, 2, 1) @ shares
     gradient = gradient - (shares.transpose(0, 2, 1) @ slope[:, :, None])[:, :, 0]
     dx = _solved(normal, gradient, scale, work, box)
     dt = -(slopes + (mixtures @ dx[:, :, None])[:, :, 0]) / summed
-    return dx, dt
-
-
-def _together(sequenced: Sequenced, t: Array, pull: Array) -> Array | None:
-    """Which rows move as one, (D, N, N): those that touch and are pushed together."""
-    contact = sequenced.contacts(t)
-    # down the slope the later row would come before the earlier one
-    contact[:, 1:] &= pull[:, 1:] >= pull[:, :-1]
-    if not contact.any():
-        return None
-    group = np.cumsum(~contact, axis=1)
-    return np.asarray((group[:, :, None] == group[:, None, :]).astype(float))
+    return dx, np.where(held, 0.0, dt)
 
 
 def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Box) -> Array:

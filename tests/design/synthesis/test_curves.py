@@ -16,6 +16,9 @@ from linkwork.design.improvement.coupler_curves import (
 )
 from linkwork.design.improvement.curve_constraints import CurveConstraints
 from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.curve_synthesis import curve_goal_of
+from linkwork.design.synthesis.solving import wishes_of
 from linkwork.foundation.errors import MechanismError, MechanismFileError
 
 # Kunjur and Krishnamurty's 18 points, as printed by Bulatovic et al. 2016
@@ -138,3 +141,113 @@ def test_bounds_of_lengths_and_arms_have_the_derivatives_of_their_differences(
         change = step * np.eye(x.shape[1])[k]
         ahead, behind = (constraints.residuals(x + s * change, lanes)[0] for s in (1.0, -1.0))
         assert by_x[:, :, k] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-8)
+
+
+def _part_of_a_four_bar(low: float, high: float) -> list[tuple[float, float]]:
+    """Places of P on a four-bar with crank 1.5, coupler 3.5, rocker 3 and ground 4."""
+    crank = 1.5 * np.exp(1j * np.radians(np.linspace(low, high, 12)))
+    base = 4.0 - crank
+    square = np.abs(base) ** 2
+    along = 0.5 * (square + 3.5**2 - 3.0**2)
+    coupler = base * (along + 1j * np.sqrt(square * 3.5**2 - along**2)) / (square * 3.5)
+    places = crank + (1.0 + 0.7j) * coupler
+    return list(zip(places.real, places.imag, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "tables", "largest"),
+    [
+        (200.0, 260.0, {"mechanism": "slider-crank"}, 1e-3),
+        # the crank may go backwards, and in another turn
+        (230.0, 140.0, {"wanted": {"order": "any"}}, 1e-3),
+        (380.0, 500.0, {"wanted": {"transmission": {"least": 40.0}}}, 1e-3),
+        # pivots leave this mechanism alone, which has two points at the ends of the range
+        (20.0, 140.0, {"given": {"fixed_pivots": [(0, 0), (4, 0)]}}, 1e-12),
+        # of timed inputs differences count
+        (20.0, 140.0, {"inputs": list(np.linspace(223.0, 343.0, 12))}, 1e-12),
+    ],
+)
+def test_a_wanted_range_bounds_the_search(
+    low: float, high: float, tables: dict[str, Any], largest: float
+) -> None:
+    """Without bounds nearly all designs are refused: their cranks turn elsewhere."""
+    points = _part_of_a_four_bar(low, high)
+    wanted = {**tables.pop("wanted", {}), "input": {"from": low, "to": high}}
+    given = {"mechanism": "four-bar", "improve": {"starts": 24}, **tables}
+    found = lw.Task.path(points, wanted=wanted, **given).solve()
+    assert found.delivered
+    assert len(found.delivered) > 0.8 * len(found.designs)
+    best = min(found.delivered, key=lambda design: design.error)
+    assert best.error < largest
+    at, ends = np.array(best.inputs), sorted((low, high))
+    at += 360.0 * np.round((0.5 * sum(ends) - 0.5 * (at.min() + at.max())) / 360.0)
+    assert at.min() >= ends[0] - 1e-9
+    assert at.max() <= ends[1] + 1e-9
+    assert best.transmission >= wanted.get("transmission", {}).get("least", 0.0)
+
+
+def test_a_curve_whose_ends_meet_is_a_part_of_one_if_the_crank_swings() -> None:
+    points = _part_of_a_four_bar(0.0, 340.0)
+    for end, closed in ((350.0, False), (360.0, True)):
+        task = lw.Task.path(points, wanted={"input": {"from": 0.0, "to": end}}).described
+        assert curve_goal_of(task, wishes_of(task, Drive.A0)).closed is closed
+
+
+def test_a_range_that_excludes_given_inputs_is_refused() -> None:
+    points, wanted = _part_of_a_four_bar(20.0, 140.0), {"input": {"from": 20.0, "to": 100.0}}
+    inputs = [10.0 * k for k in range(12)]
+    with pytest.raises(MechanismError, match="spans 80, but the given inputs span 110"):
+        lw.Task.path(points, inputs=inputs, wanted=wanted)
+    wanted["input"]["to"] = 140.0
+    bounds = {"starts": 2, "bounds": {"input": [200.0, 210.0]}}
+    with pytest.raises(MechanismError, match="leave no angle for the inputs"):
+        lw.Task.path(points, inputs=inputs, wanted=wanted, improve=bounds).solve()
+
+
+@pytest.mark.parametrize("kind", [FourBarCurves, SliderCrankCurves])
+def test_the_least_transmission_angle_in_a_range_is_that_of_many_angles(
+    kind: type[CouplerCurves],
+) -> None:
+    rng = np.random.default_rng(3)
+    start, stop = np.sort(rng.uniform(0.0, 7.0, (2, 40)), axis=0)
+    for k in range(40):
+        goal = CurveGoal(
+            points=np.array([0j, 1.0, 1.0 + 1.0j]), closed=False, range=(start[k], stop[k]),
+            transmission=0.3,
+        )  # fmt: skip
+        x = rng.uniform(0.5, 2.0, (1, len(kind.names)))
+        h, by_x = CurveConstraints(kind, goal, 1)._constraints(x)
+        every = kind(np.ones(1)).cosines(x, np.linspace(start[k], stop[k], 4000)[None])[0]
+        assert h[0].max() == pytest.approx(
+            (np.abs(every).max() - np.cos(0.3)) * goal.size, abs=5e-6
+        )
+        for p in range(x.shape[1]):
+            change = 1e-6 * np.eye(x.shape[1])[p]
+            ahead, behind = (
+                CurveConstraints(kind, goal, 1)._constraints(x + s * change)[0] for s in (1.0, -1.0)
+            )
+            assert by_x[0, :, p] == pytest.approx((ahead - behind)[0] / 2e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize("timing", ["free", "as given"])
+def test_a_repeated_first_point_of_a_closed_curve_counts_once(tmp_path: Path, timing: str) -> None:
+    rows = [f"{x},{y},{20 * k}" for k, (x, y) in enumerate(_EIGHTEEN)]
+    head = 'format = 1\ntask = "path"\nmechanism = "four-bar"\n[improve]\nstarts = 12\n[curve]\n'
+    head += f'file = "foot.csv"\ntiming = "{timing}"\n'
+    task = tmp_path / "task.toml"
+
+    def solved(more: str, closed: str = "") -> lw.Synthesis:
+        (tmp_path / "foot.csv").write_text("\n".join([*rows, more]))
+        task.write_text(head + (f'closed = "{closed}"\n' if closed else ""))
+        return lw.Task.load(task).solve()
+
+    once, twice = solved(""), solved("0.5,1.1,360")
+    assert twice.message.endswith(
+        'line 19 of "foot.csv" repeats the first point, which counts once'
+    )
+    assert "repeats" not in once.message
+    assert [d.points for d in once.designs] == [d.points for d in twice.designs]
+    # of an open curve, or half a turn later, it is another point
+    assert len(solved("0.5,1.1,360", "open").designs[0].inputs) == 19
+    if timing == "as given":
+        assert len(solved("0.5,1.1,350").designs[0].inputs) == 19

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
 from linkwork.design.synthesis.function_fit import (
@@ -15,6 +15,7 @@ from linkwork.design.synthesis.function_fit import (
 )
 from linkwork.design.synthesis.function_synthesis import freudenstein
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import MechanismError
 
 _LOGARITHM = {"x": (1, 2), "input": (45, 105), "output": (0, 90), "mechanism": "four-bar"}
 _PAIRS = [(0, 0), (20, 10), (45, 22), (60, 28), (80, 30)]
@@ -178,6 +179,98 @@ def test_a_rocker_is_found_again_from_its_own_angles(fit: str) -> None:
     lengths = [abs(points["A"]), abs(points["B"] - points["A"]), abs(points["B"] - 1.0)]
     assert lengths == pytest.approx([a, c, b], abs=1e-7)
     assert found.delivered[0].error < 1e-8
+
+
+_STEP = [(90.0 * x, 60.0 * x**2 + 5.0 * np.sin(7.0 * x)) for x in np.linspace(0.0, 1.0, 11)]
+
+
+def _closed_form(z: Array, slides: bool, side: float) -> Array:
+    """Structural errors of a, b or e, c and both starts, by the law of cosines, in file units."""
+    u, v = np.array(_STEP).T
+    crank = z[0] * np.exp(1j * np.radians(u + z[3]))
+    if slides:
+        return np.asarray(
+            crank.real + side * np.sqrt(z[2] ** 2 - (z[1] - crank.imag) ** 2) - v - z[4]
+        )
+    away = crank - 1.0
+    turned = (np.abs(away) ** 2 + z[1] ** 2 - z[2] ** 2) / (2.0 * z[1] * np.abs(away))
+    wrong = np.angle(away) - side * np.arccos(turned) - np.radians(v + z[4])
+    return np.asarray(np.degrees(np.angle(np.exp(1j * wrong))))
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+@pytest.mark.parametrize("slides", [False, True])
+def test_fits_with_free_start_angles_are_those_of_scipy(slides: bool, fit: str) -> None:
+    mechanism = "slider-crank" if slides else "four-bar"
+    found = lw.Task.function(_STEP, fit=fit, mechanism=mechanism).solve()
+    best = min(found.designs, key=lambda design: design.error)
+    z = best.points
+    b0 = z["S"] if slides else z["B0"]
+    a, b, c = z["A"] - z["A0"], z["B"] - b0, z["B"] - z["A"]
+    first = np.degrees(np.angle(a)), b.real if slides else np.degrees(np.angle(b))
+    start = np.array([abs(a), b0.imag if slides else abs(b), abs(c), *first])
+    side = np.sign(c.real if slides else (c.conjugate() * b).imag)
+    errors = _closed_form(start, slides, side)
+    start[4] += 0.5 * (errors.max() + errors.min()) if fit == "minimax" else errors.mean()
+    wrong = _closed_form(start, slides, side)
+    assert np.abs(wrong).max() == pytest.approx(best.error, rel=1e-9)
+    near = start * (1.0 + 1e-5 * np.random.default_rng(2).uniform(-1.0, 1.0, 5))
+    if fit == "least squares":
+        ends = [
+            least_squares(
+                lambda q: _closed_form(q, slides, side), begin, x_scale=np.abs(start), xtol=1e-15,
+                ftol=1e-15, gtol=1e-15,
+            ).x
+            for begin in (near, start)
+        ]  # fmt: skip
+        # SciPy finds nothing lower, also from the fit itself
+        squares = [np.sum(_closed_form(q, slides, side) ** 2) for q in ends]
+        assert np.sum(wrong**2) <= min(squares) * (1.0 + 1e-8)
+        return
+    # the largest error as a bound of all errors, by sequential quadratic programming
+    scale = np.abs(start)
+
+    def scaled(q: Array) -> Array:
+        return _closed_form(q[:5] * scale, slides, side)
+
+    referee = minimize(
+        lambda q: q[5], [*near / scale, 2.0 * np.abs(wrong).max()], method="SLSQP",
+        constraints=[
+            {"type": "ineq", "fun": lambda q, sign=sign: q[5] - sign * scaled(q)}
+            for sign in (1.0, -1.0)
+        ],
+        options={"ftol": 1e-14, "maxiter": 2000},
+    )  # fmt: skip
+    assert best.error <= referee.x[5] * (1.0 + 1e-7)
+    assert "proved to be local minima" in found.message
+    # six errors are equal
+    assert np.sum(np.abs(wrong) > best.error * (1.0 - 1e-8)) == 6
+
+
+def test_a_wanted_range_bounds_a_free_start_angle() -> None:
+    wanted = {"input": {"from": 100.0, "to": 200.0}}
+    task = {"fit": "minimax", "mechanism": "four-bar"}
+    found = lw.Task.function(_STEP, wanted=wanted, **task).solve()
+    assert min(design.error for design in found.delivered) < 4.0
+    for design in found.delivered:
+        assert min(design.inputs) >= 100.0 - 1e-9
+        assert max(design.inputs) <= 200.0 + 1e-9
+    with pytest.raises(MechanismError, match="spans 80, but the given inputs span 90"):
+        lw.Task.function(_STEP, wanted={"input": {"from": 100.0, "to": 180.0}}, **task)
+
+
+def test_pairs_of_a_real_four_bar_are_fitted_exactly() -> None:
+    a, c, b = 0.4, 1.2, 0.9
+    u = np.radians(np.linspace(40.0, 130.0, 10))
+    base = 1.0 - a * np.exp(1j * u)
+    along = (np.abs(base) ** 2 + b**2 - c**2) / (2.0 * b * np.abs(base))
+    v = np.angle(-base) - np.arccos(along)
+    found = lw.Task.function(np.degrees(np.column_stack([u, v])), fit="minimax",
+                             mechanism="four-bar").solve()  # fmt: skip
+    best = min(found.delivered, key=lambda design: design.error)
+    assert best.error < 1e-9
+    assert abs(best.points["A"]) == pytest.approx(a, abs=1e-6)
+    assert best.inputs[0] == pytest.approx(40.0, abs=1e-4)
 
 
 def test_a_fit_without_alternating_errors_is_not_called_minimal() -> None:

@@ -145,3 +145,24 @@ def test_a_front_is_delivered_in_its_order_and_drawn(tmp_path: Path) -> None:
     page = (tmp_path / "designs" / "index.html").read_text()
     assert 'id="trade-off"' in page
     assert "miss of stroke(d)" in page
+
+
+def test_points_are_passed_within_the_driven_range() -> None:
+    """Without bounds of the inputs the best design passes the last point at 147 degrees."""
+    mechanism, given = lw.example("four-bar"), {"point": "B", "vary": ["O2 A", "O4 B"]}
+    places = [mechanism.solve(at=float(a)).points["B"] for a in np.linspace(100.0, 170.0, 4)]
+    positions = [{"point": [1.02 * x, 1.01 * y]} for x, y in places]
+    for order in ("as given", "any"):
+        wanted = {"input": {"from": 60.0, "to": 130.0}, "order": order}
+        found = lw.Task.improve(
+            "four-bar", positions=positions, starts=1, wanted=wanted, **given
+        ).solve()
+        assert found.delivered[0].error < 1.0
+        for design in found.delivered:
+            assert min(design.inputs) >= 60.0
+            assert max(design.inputs) <= 130.0
+    timed = [{**own, "input": at} for own, at in zip(positions, range(70, 140, 20), strict=True)]
+    wanted = {"input": {"from": 60.0, "to": 125.0}}
+    found = lw.Task.improve("four-bar", positions=timed, starts=1, wanted=wanted, **given).solve()
+    message = found.designs[0].defects[0].message
+    assert message == "position 4 is passed at 130, outside the driven range from 60 to 125"

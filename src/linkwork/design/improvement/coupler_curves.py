@@ -12,6 +12,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["CouplerCurves", "FourBarCurves", "LoopPoints", "SliderCrankCurves"]
@@ -60,6 +61,12 @@ class CouplerCurves(ABC):
     @abstractmethod
     def cosines(self, x: Array, t: Array) -> tuple[Array, Array, Array]:
         """The cosine of the transmission angle (D, N), by x (D, N, P) and by the angle (D, N)."""
+
+    @abstractmethod
+    def extreme(self, x: Array) -> Array:
+        """A crank angle, (D,), at which the cosine of the transmission angle is largest or
+        smallest; it is the other one half a turn away, and monotone between both.
+        """
 
     @abstractmethod
     def limits(self, x: Array) -> tuple[Array, Array]:
@@ -140,6 +147,10 @@ class FourBarCurves(CouplerCurves):
         by_x[..., 4] = _dot(base, u) / (b * c)
         by_x[..., 5], by_x[..., 6] = 1.0 / b - cosine / c, 1.0 / c - cosine / b
         return cosine, by_x, a * _dot(base, 1j * u) / (b * c)
+
+    def extreme(self, x: Array) -> Array:
+        """The direction from A0 to B0."""
+        return np.asarray(np.arctan2(x[:, 3] - x[:, 1], x[:, 2] - x[:, 0]))
 
     def limits(self, x: Array) -> tuple[Array, Array]:
         """g + a - (b + c) and |b - c| - |g - a|, which end the branch, and by x."""
@@ -228,6 +239,10 @@ class SliderCrankCurves(CouplerCurves):
         by_x[..., 2], by_x[..., 3] = -across.imag / c, -cosine / c
         by_x[..., 4], by_x[..., 5] = 1.0 / c, a * across.real / c
         return cosine, by_x, -a * across.real / c
+
+    def extreme(self, x: Array) -> Array:
+        """The normal of the line."""
+        return np.asarray(x[:, 5] + 0.25 * FULL_TURN)
 
     def limits(self, x: Array) -> tuple[Array, Array]:
         """a ± h - c, which end the branch, and by x."""

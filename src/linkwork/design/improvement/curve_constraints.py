@@ -15,6 +15,7 @@ import numpy as np
 
 from linkwork.design.improvement.coupler_curves import CouplerCurves, FourBarCurves
 from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["CurveConstraints"]
@@ -54,9 +55,9 @@ class CurveConstraints:
         self, x: Array, angles: Array, lanes: IndexArray
     ) -> tuple[Array, Array, Array] | None:
         """How far the transmission angle is too small at points, (D, N), by the dimensions and by
-        the angles; ``None`` where the crank turns fully.
+        the angles; ``None`` where the whole driven range is constrained.
         """
-        if self.goal.must_turn:
+        if self.goal.must_turn or self.goal.range is not None:
             return None
         cosine, by_x, by_angle = self._curves.cosines(x, angles)
         weight = self.weight
@@ -124,6 +125,8 @@ class CurveConstraints:
         if goal.must_turn:
             add(*self._curves.limits(own))
             add(*self._transmission(own))
+        if goal.limited_range is not None:
+            add(*self._transmission_in(own, *goal.limited_range))
         lengths, by_x = self._lengths(own)
         if goal.shortest > 0.0:
             add(goal.shortest - lengths, -by_x)
@@ -165,6 +168,17 @@ class CurveConstraints:
             by_x[:, :, -1] = np.nan_to_num(x[:, -1:] / arms)
         by_x[:, 1, coupler] = -by_x[:, 1, -2]
         return arms, by_x
+
+    def _transmission_in(self, x: Array, start: float, stop: float) -> tuple[Array, Array]:
+        """(|cos ψ| - cos μ) times the size, at the two angles of a range where it may be largest:
+        those nearest to the extremes, where the cosine has no slope, or ends of the range.
+        """
+        middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+        extreme = self._curves.extreme(x)[:, None] + np.array([0.0, 0.5 * FULL_TURN]) - middle
+        away = np.mod(extreme + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
+        cosine, by_x, _ = self._curves.cosines(x, middle + np.clip(away, -half, half))
+        most, size = np.cos(max(self.goal.transmission, _DEAD)), self.goal.size
+        return (np.abs(cosine) - most) * size, by_x * (np.sign(cosine) * size)[:, :, None]
 
     def _transmission(self, x: Array) -> tuple[Array, Array]:
         """|b² + c² - (g ± a)²| - 2 b c cos μ, divided by b + c, or a ± h - c cos μ, for a whole

@@ -18,7 +18,13 @@ from linkwork.design.improvement.curve_starts import CurveStarts, best_starts
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.sharing import share_out
-from linkwork.numerics.lane_least_squares import LaneFit, Residuals, Sequenced, minimise, starts_of
+from linkwork.numerics.lane_least_squares import (
+    LaneFit,
+    OwnVariables,
+    Residuals,
+    minimise,
+    starts_of,
+)
 
 __all__ = ["FittedCurves", "fit_curve"]
 
@@ -111,25 +117,45 @@ class _Problem:
         self.curves, self.way = kind(found.side), found.way
         self.box = goal.box(kind)
         self.constraints = CurveConstraints(kind, goal, len(found.side))
-        self.sequenced = None
-        if goal.inputs is None and goal.ordered:
-            self.sequenced = Sequenced(gap=_GAP, span=FULL_TURN - _GAP)
+        #: Crank angles at which own variables are 0: the begin of the driven range.
+        self.origin = 0.0 * self.way
+        width = np.inf
+        if goal.range is not None:
+            self.origin = np.where(self.way > 0.0, *goal.range)
+            width = goal.range[1] - goal.range[0]
+        gap = min(_GAP, 0.5 * width / len(goal.points))
+        self.own_variables = OwnVariables(
+            least=-width if goal.range is None else 0.0,
+            most=width,
+            in_order=goal.ordered and goal.inputs is None,
+            gap=gap if goal.ordered else 0.0,
+            span=FULL_TURN - gap,
+        )
 
     def entries(self, found: CurveStarts) -> Array:
         """Parameters of starts, (D, P)."""
         if self.goal.inputs is None:
             return found.x
-        turned = found.t - self.goal.inputs
-        return np.concatenate([found.x, turned.mean(axis=1, keepdims=True)], axis=1)
+        turned = (found.t - self.goal.inputs).mean(axis=1, keepdims=True)
+        turned += self._turns(found)
+        return np.concatenate([found.x, turned], axis=1)
 
     def own(self, found: CurveStarts) -> Array:
         """Own variables of starts: crank angles, unless they are given."""
-        return found.t if self.goal.inputs is None else np.zeros((len(found.x), 0))
+        if self.goal.inputs is not None:
+            return np.zeros((len(found.x), 0))
+        return np.asarray(found.t + self.way[:, None] * (self._turns(found) - self.origin[:, None]))
+
+    def _turns(self, found: CurveStarts) -> Array:
+        """The whole turns (D, 1) that bring the crank's angles to the driven range [rad]."""
+        angles = self.way[:, None] * found.t
+        turns, _ = self.goal.turned_inside(angles.min(axis=1), angles.max(axis=1))
+        return turns[:, None]
 
     def angles(self, x: Array, t: Array, lanes: IndexArray) -> Array:
         """The crank's angles at the points, (D, N)."""
         if self.goal.inputs is None:
-            return np.asarray(self.way[lanes, None] * t)
+            return np.asarray(self.origin[lanes, None] + self.way[lanes, None] * t)
         return np.asarray(x[:, -1:] + self.goal.inputs)
 
     def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
@@ -186,7 +212,7 @@ class _Problem:
                 return self.evaluate(x, t, own[lanes])
 
             done[k] = minimise(
-                evaluate, fit.take(parts[k]), self.box, steps, sequenced=self.sequenced
+                evaluate, fit.take(parts[k]), self.box, steps, own=self.own_variables
             )
             stopped = stopped or done[k].interrupted
 

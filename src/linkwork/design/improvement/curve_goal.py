@@ -9,7 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.design.improvement.coupler_curves import CouplerCurves
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.numerics.lane_least_squares import Box
 
 __all__ = ["INPUT", "CurveGoal"]
@@ -37,9 +39,12 @@ class CurveGoal:
         Whether the points go around the whole curve.
     turns_fully : bool
         Whether the crank has to turn fully; on closed curves it has to.
+    range : (float, float), optional
+        The driven range of the crank, from the smaller angle to the larger one [rad]: all points
+        are passed in it.
     transmission : float
-        The least transmission angle [rad]: over a whole turn if the crank turns fully, else at the
-        points.
+        The least transmission angle [rad]: over a whole turn if the crank turns fully, else over
+        its range, or without one at the points.
     bounds : Mapping[str, (float, float)]
         Bounds of dimensions by name [length], of ``input`` and ``direction`` [rad].
     shortest, longest, ratio : float
@@ -53,6 +58,7 @@ class CurveGoal:
     ordered: bool = True
     closed: bool = True
     turns_fully: bool = False
+    range: tuple[float, float] | None = None
     transmission: float = 0.0
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     shortest: float = 0.0
@@ -64,6 +70,36 @@ class CurveGoal:
     def must_turn(self) -> bool:
         """Whether the crank has to turn fully."""
         return self.turns_fully or self.closed
+
+    @property
+    def limited_range(self) -> tuple[float, float] | None:
+        """The driven range of a crank that need not turn fully."""
+        return None if self.must_turn else self.range
+
+    def turned_inside(self, least: Array, most: Array) -> tuple[Array, Array]:
+        """The whole turns that bring angles from ``least`` to ``most`` nearest to the driven range
+        [rad], and how far they are outside of it then.
+        """
+        if self.range is None:
+            return np.zeros_like(least), np.zeros_like(least)
+        start, stop = self.range
+        turns = np.round(0.5 * ((start + stop) - (least + most)) / FULL_TURN) * FULL_TURN
+        outside = np.maximum(0.0, start - least - turns) + np.maximum(0.0, most + turns - stop)
+        return turns, outside
+
+    @cached_property
+    def input_bounds(self) -> tuple[float, float]:
+        """Bounds of the angle that is added to given inputs [rad]; none if the first is larger."""
+        low, high = self.bounds.get(INPUT, (-np.inf, np.inf))
+        if self.range is None or self.inputs is None:
+            return low, high
+        first, last = self.range[0] - self.inputs.min(), self.range[1] - self.inputs.max()
+        if np.isfinite(low + high):
+            turns = np.round(0.5 * ((low + high) - (first + last)) / FULL_TURN) * FULL_TURN
+            first, last = first + turns, last + turns
+        # a range that the inputs just fill leaves one angle, to rounding
+        last = max(first, last) if last > first - EQUAL_ROWS else last
+        return max(low, float(first)), min(high, float(last))
 
     @property
     def ways(self) -> tuple[float, ...]:
@@ -103,7 +139,7 @@ class CurveGoal:
             least.append(low)
             most.append(high)
         if self.inputs is not None:
-            low, high = self.bounds.get(INPUT, (-np.inf, np.inf))
+            low, high = self.input_bounds
             least.append(low)
             most.append(high)
         return Box(least=np.array(least), most=np.array(most))

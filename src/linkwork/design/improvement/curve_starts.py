@@ -26,6 +26,7 @@ __all__ = ["CurveStarts", "best_starts", "random_loops"]
 _SAMPLES = 72  # of a curve: five degrees
 _PART = 128  # curves compared at a time
 _SHARES = (0.08, 0.15, 0.25, 0.4, 0.6, 0.8)  # of the arc length, for a part of a curve
+_RANGE_SHARES = (0.3, 0.6, 0.9)  # the same, of the driven range
 _FARTHEST = 8.0  # sizes of the goal: how far A0 is drawn from it, where it is bounded
 
 
@@ -133,6 +134,11 @@ def _compared(
     for index in _correspondences(goal, way):
         wraps, inside = np.divmod(index, _SAMPLES)
         fitted = _fitted(q, inside, goal.points, free)
+        if goal.range is not None:
+            place = turns[:, inside] + way * FULL_TURN * wraps + np.angle(fitted[1])[:, :, None]
+            _, outside = goal.turned_inside(place.min(axis=2), place.max(axis=2))
+            # points that are driven back into the range miss by about as much
+            fitted[0][:] += len(goal.points) * (goal.size * outside) ** 2
         best = fitted[0].argmin(axis=1)
         lanes = np.arange(count)
         better = fitted[0][lanes, best] < missed
@@ -154,12 +160,19 @@ def _correspondences(goal: CurveGoal, way: float) -> Iterator[IndexArray]:
     """Samples for the points of the goal, (K, N): every first sample, one share at a time."""
     first = np.arange(_SAMPLES)[:, None]
     if goal.inputs is not None:
-        low, high = goal.bounds.get(INPUT, (-np.inf, np.inf))
-        if low == high:
-            first = np.zeros((1, 1), dtype=int) + round(low * _SAMPLES / FULL_TURN)
+        low, high = goal.input_bounds if INPUT in goal.bounds else (0.0, FULL_TURN)
+        low, high = low * _SAMPLES / FULL_TURN, high * _SAMPLES / FULL_TURN
+        if high - low < _SAMPLES:
+            # at least the one nearest to the middle
+            inner = np.arange(np.ceil(low), np.floor(high) + 1.0)
+            first = (inner if len(inner) else np.rint([0.5 * (low + high)])).astype(int)[:, None]
         yield first + np.rint(goal.inputs * (way * _SAMPLES / FULL_TURN)).astype(int)
         return
-    for share in (1.0,) if goal.closed else _SHARES:
+    shares: tuple[float, ...] = (1.0,) if goal.closed else _SHARES
+    if goal.limited_range is not None:
+        width = min(1.0, (goal.limited_range[1] - goal.limited_range[0]) / FULL_TURN)
+        shares = (*shares, *(part * width for part in _RANGE_SHARES))
+    for share in shares:
         yield first + np.rint(goal.arc_shares * (share * _SAMPLES)).astype(int)
 
 

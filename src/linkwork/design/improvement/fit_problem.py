@@ -16,14 +16,15 @@ from linkwork.design.improvement.trade_off import Objectives, TradeOff
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.operand import NotElementwise
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
 from linkwork.numerics.lane_least_squares import (
     Box,
     LaneFit,
+    OwnVariables,
     Residuals,
-    Sequenced,
     minimise,
     starts_of,
 )
@@ -132,6 +133,7 @@ class FitProblem:
         # limits between the rows of the table move with the numbers
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
+        self.own_variables = self._timing(table)
         self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
         self.points = None if path is None else self._rows(path.inputs)
         # goals of the same rows share their positions
@@ -185,6 +187,20 @@ class FitProblem:
         for solved in self._solvers:
             solved.copy_lanes(of, to)
 
+    def _timing(self, table: Array) -> OwnVariables:
+        """Where inputs of points with free timing may be: in the table, unless it is a turn."""
+        if self.path is None or self.path.timed:
+            return OwnVariables()
+        turns = self.model.equations.inputs[0].kind == Kind.ANGLE.value
+        least, most = float(table.min()), float(table.max())
+        if turns and most - least >= FULL_TURN * (1.0 - EQUAL_ROWS):
+            least, most = -np.inf, np.inf
+        if not self.path.ordered:
+            return OwnVariables(least=least, most=most)
+        gap = min(_GAP, 0.5 * (most - least) / len(self.path.places))
+        span = (FULL_TURN if turns else np.inf) - gap
+        return OwnVariables(least=least, most=most, in_order=True, gap=gap, span=span)
+
     def _rows(self, at: Array) -> SolvedLanes:
         """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
         away = inputs_away(at, self.motion, self.model)
@@ -217,10 +233,6 @@ class FitProblem:
 
     def further(self, fit: LaneFit, keep: IndexArray, steps: int) -> LaneFit:
         """Some lanes after more steps."""
-        sequenced = None
-        if self.path is not None and not self.path.timed and self.path.ordered:
-            turns = self.model.equations.inputs[0].kind == Kind.ANGLE.value
-            sequenced = Sequenced(gap=_GAP, span=(FULL_TURN if turns else np.inf) - _GAP)
         for solved in self._solvers:
             # sums of an earlier round are no measure of this one
             solved.total[keep] = np.inf
@@ -245,7 +257,7 @@ class FitProblem:
                     tried[0] += 1
                 return self.evaluate(x, t, own[lanes])
 
-            found[k] = minimise(evaluate, fit.take(own), self.box, steps, sequenced=sequenced)
+            found[k] = minimise(evaluate, fit.take(own), self.box, steps, own=self.own_variables)
             self.stopped = self.stopped or found[k].interrupted
 
         tried = [0]

@@ -19,6 +19,7 @@ from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import MechanismError, Problem
@@ -72,7 +73,8 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         real=count,
         proved=count,
         completeness=Completeness.SAMPLED,
-        message=_message(goal, fitted, settings.seed),
+        message=_message(goal, fitted, settings.seed)
+        + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
         starts=sum(part.starts for part in fitted),
         interrupted=not all(part.finished for part in fitted),
@@ -84,13 +86,17 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
     points = np.array([complex(*position.point) for position in task.positions])
     timed = task.positions[0].input is not None
     inputs = [task.in_radians(p.input or 0.0) for p in task.positions] if timed else None
-    turns = wishes.range is not None and wishes.range.turn
-    return CurveGoal(
+    driven, turns = None, wishes.range is not None and wishes.range.turn
+    if wishes.range is not None and not turns:
+        ends = wishes.range.start, wishes.range.stop
+        driven = min(ends), max(ends)
+    goal = CurveGoal(
         points=points,
         inputs=None if inputs is None else np.array(inputs),
         ordered=wishes.ordered,
-        closed=_is_closed(task, points),
+        closed=_is_closed(task, points, driven),
         turns_fully=turns,
+        range=driven,
         transmission=wishes.transmission,
         bounds=dict(_bounds(task, wishes)),
         shortest=wishes.shortest,
@@ -98,11 +104,19 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         ratio=wishes.ratio,
         reach=wishes.reach if wishes.reach.any() else None,
     )
+    low, high = goal.input_bounds
+    if low > high:
+        told = "leave no angle for the inputs of the positions in the wanted range: widen one"
+        problem = Problem(key=("improve", "bounds", INPUT), message=told)
+        raise MechanismError([problem], f'task "{task.name}"')
+    return goal
 
 
-def _is_closed(task: Task, points: Array) -> bool:
+def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
     if task.curve is not None and task.curve.closed:
         return task.curve.closed == "closed"
+    if driven is not None and driven[1] - driven[0] < FULL_TURN:
+        return False  # less than a turn passes a part of the curve
     steps = np.abs(np.diff(points))
     return bool(abs(points[-1] - points[0]) <= _CLOSES * steps.max())
 

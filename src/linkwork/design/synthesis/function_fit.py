@@ -11,7 +11,15 @@ from linkwork.design.synthesis.loop_limits import dot
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 
-__all__ = ["Errors", "least_squares_fit", "minimax_fit", "rocker_errors", "slider_errors"]
+__all__ = [
+    "Errors",
+    "least_squares_fit",
+    "levelled",
+    "levels_minimise",
+    "minimax_fit",
+    "rocker_errors",
+    "slider_errors",
+]
 
 #: Structural errors (K,) of parameters (n,), and derivatives (K, n); NaN where a loop is open.
 Errors = Callable[[Array], tuple[Array, Array]]
@@ -21,13 +29,18 @@ _MOST_EXCHANGES = 40
 _SMALLEST_STEP = 1e-13  # relative: Newton steps end in rounding
 _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.3, 4.0
 _LARGEST_DAMPING = 1e12
+_REGULAR = 1e-7  # relative: far above the rounding of derivatives
 _LEVEL = 1e-9  # by which the largest error may exceed that of the reference points
 
 
-def rocker_errors(inputs: Array, outputs: Array, side: float) -> Errors:
+def rocker_errors(
+    inputs: Array, outputs: Array, side: float | Array, *, by_input: bool = False
+) -> Errors:
     """The errors of a rocker's angle, for parameters a, b, c of a four-bar with ground 1.
 
-    ``inputs``, ``outputs``: (K,) [rad]; ``side``: the sign of (B - A) × (B - B0).
+    ``inputs``, ``outputs``: (K,) [rad]; ``side``: the sign of (B - A) × (B - B0). With lanes
+    (D, K), sides (D, 1) and parameters (3, D, 1), errors are (D, K). ``by_input`` adds the
+    derivative by the input.
     """
 
     def errors(lengths: Array) -> tuple[Array, Array]:
@@ -44,16 +57,21 @@ def rocker_errors(inputs: Array, outputs: Array, side: float) -> Errors:
             found = np.angle(rocker)
             wrong = np.mod(found - outputs + np.pi, 2.0 * np.pi) - np.pi
             slope = b * dot(coupler, 1j * rocker)
-            gradient = np.stack([dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong])
-            return wrong, (gradient / slope).T
+            gradient = [dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong]
+            if by_input:
+                gradient.append(dot(coupler, 1j * a * crank))
+            return wrong, np.stack([part / slope for part in gradient], axis=-1)
 
     return errors
 
 
-def slider_errors(inputs: Array, outputs: Array, side: float) -> Errors:
+def slider_errors(
+    inputs: Array, outputs: Array, side: float | Array, *, by_input: bool = False
+) -> Errors:
     """The errors of a slider's displacement, for parameters a, e, c: crank, offset and rod.
 
     ``inputs`` (K,) [rad], ``outputs`` (K,) [length]; ``side``: the sign of (B - A) along the line.
+    Lanes and ``by_input`` as of :func:`rocker_errors`.
     """
 
     def errors(lengths: Array) -> tuple[Array, Array]:
@@ -64,7 +82,9 @@ def slider_errors(inputs: Array, outputs: Array, side: float) -> Errors:
             reach = side * np.sqrt(c**2 - height**2)
             wrong = a * crank.real + reach - outputs
             gradient = [crank.real + height * crank.imag / reach, -height / reach, c / reach]
-            return wrong, np.stack(gradient, axis=1)
+            if by_input:
+                gradient.append(a * (height * crank.real / reach - crank.imag))
+            return wrong, np.stack(gradient, axis=-1)
 
     return errors
 
@@ -107,10 +127,10 @@ def minimax_fit(errors: Errors, start: Array) -> tuple[Array, bool]:
         points = _alternating(e, len(x) + 1)
         if points is None:
             return start, False
-        levelled = _levelled(errors, x, points)
-        if levelled is None:
+        equal = levelled(errors, x, points)
+        if equal is None:
             return start, False
-        x, level = levelled
+        x, level = equal
         largest = np.abs(errors(x)[0]).max()
         if largest <= level * (1.0 + _LEVEL) + EPSILON:
             return x, True
@@ -129,7 +149,26 @@ def _alternating(e: Array, count: int) -> list[int] | None:
     return places if len(places) == count else None
 
 
-def _levelled(errors: Errors, start: Array, points: list[int]) -> tuple[Array, float] | None:
+def levels_minimise(errors: Errors, x: Array, points: list[int]) -> bool:
+    """Whether n + 1 equal errors, the largest ones, are a strict local minimum of the largest one.
+
+    They are if every step enlarges one of them: a sum of their derivatives with positive weights
+    is zero, and n of the derivatives are independent (Kuhn and Tucker).
+    """
+    e, jacobian = errors(x)
+    if np.abs(e).max() > np.abs(e[points]).min() * (1.0 + _LEVEL) + EPSILON:
+        return False
+    rows = np.sign(e[points])[:, None] * jacobian[points]
+    scale = np.linalg.norm(rows, axis=0)
+    if not scale.all():  # errors of zero, too: there is nothing to make smaller
+        return False
+    rows = rows / scale
+    _, values, turned = np.linalg.svd(rows.T)
+    weights = turned[-1] * np.sign(turned[-1].sum())
+    return bool(values[-1] > _REGULAR * values[0] and weights.min() > _REGULAR)
+
+
+def levelled(errors: Errors, start: Array, points: list[int]) -> tuple[Array, float] | None:
     """The parameters for which errors at the points are ±E, and E."""
     x = start.copy()
     e, jacobian = errors(x)

@@ -139,8 +139,6 @@ class FunctionGoal:
 
     def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.pairs)
-        if self.fit and not self.starts_fixed:
-            yield ("function", "input"), "is missing: a fit needs the start angles of both links"
         exact = self.exact
         if count < exact.least:
             yield ("function", "pairs"), f"{count} given: give {exact.least} or more"

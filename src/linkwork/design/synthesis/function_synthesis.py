@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from linkwork.design.synthesis.closed_forms import solve_with_bound
 from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
 from linkwork.design.synthesis.dyads import solve_five_poses
 from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.free_start_fit import fit_free_starts
 from linkwork.design.synthesis.function_fit import (
     least_squares_fit,
     minimax_fit,
@@ -33,14 +34,15 @@ _SMALL = 0.05  # relative errors up to which a quotient's error is at most 1.1 t
 _STARTS = 24  # start angles in each direction, where two are free
 _TRIVIAL = 1e-6  # relative: both moving pivots at the fixed ones move in every function
 _FIVE, _FOUR = 5, 4
+_SHARES = (0.067, 0.15, 0.25, 0.0)  # of the range, before the first point of a start
 
 
-def solve_function(task: Task) -> Found:
+def solve_function(task: Task, progress: Callable[[float], None] | None = None) -> Found:
     """All designs, or a sample of the family, for a function task."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
     slides = task.mechanisms[0] == "slider-crank"
-    if goal.fit:
+    if goal.fit and goal.starts_fixed:
         return _fitted(task, goal, slides)
     inputs, outputs = goal.precision_points()
     u = np.array([inputs * task.angle.radians])
@@ -50,18 +52,25 @@ def solve_function(task: Task) -> Found:
         zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
         return _found(task, made, complete=1 if determined.all() else -1, zero=zero)
     u, v = u - u[:, :1], v - v[:, :1]
+    if goal.fit:
+        return _fitted_freely(task, u[0], v[0], slides, progress)
     if u.shape[1] == _FIVE:
         return _through_five(task, u, v, slides)
     if u.shape[1] == _FOUR:
         return _through_four(task, u, v, slides)
+    made, _ = _through_three(*_freely_begun(u, v, slides), slides)
+    return _found(task, made, complete=0)
+
+
+def _freely_begun(u: Array, v: Array, slides: bool) -> tuple[Array, Array]:
+    """Inputs and outputs (1, K) from a grid of starts, (B, K) each."""
     # half a turn more is a negative length
     grid = np.linspace(0.0, np.pi, _STARTS, endpoint=False)
     first, second = (x.ravel() for x in np.meshgrid(grid, grid))
     if slides:
         # displacements may begin anywhere within twice their range
         second = (second * (2.0 / np.pi) - 1.0) * 2.0 * np.ptp(v)
-    made, _ = _through_three(u + first[:, None], v + second[:, None], slides)
-    return _found(task, made, complete=0)
+    return u + first[:, None], v + second[:, None]
 
 
 def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
@@ -227,9 +236,52 @@ def _fitted(task: Task, goal: FunctionGoal, slides: bool) -> Found:
     return replace(found, message=message)
 
 
+def _fitted_freely(
+    task: Task,
+    u: Array,
+    v: Array,
+    slides: bool,
+    progress: Callable[[float], None] | None,
+) -> Found:
+    """Different fits of pairs by their differences, from loops through three of them."""
+    goal, first = task.function, (-np.inf, np.inf)
+    assert goal is not None, "a task of functions has one"
+    if task.wanted.range is not None:
+        ends = sorted(map(task.in_radians, task.wanted.range))
+        first = ends[0] - float(u.min()), ends[1] - float(u.max())
+        first = first[0], max(first)  # equal to rounding, if the pairs fill the range
+    x, sides = [], []
+    for share in _SHARES:
+        index = (np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)).round().astype(int)
+        begun = _freely_begun(u[None, index], v[None, index], slides)
+        for loops in _through_three(*begun, slides)[0]:
+            a = loops.moving_a[:, 0]
+            coupler = loops.moving_b[:, 0] - a
+            rocker = loops.moving_b[:, 0] - loops.fixed_b
+            second = loops.fixed_b.imag if slides else np.abs(rocker)
+            out = rocker.real if slides else np.angle(rocker)
+            begin = np.angle(a) - u[index[0]], out - v[index[0]]
+            x.append(np.stack([np.abs(a), second, np.abs(coupler), *begin], axis=1))
+            sides.append(np.sign(coupler.real if slides else cross(coupler, rocker)))
+    none = np.zeros((0, 5)), np.zeros(0)
+    starts = np.concatenate([none[0], *x]), np.concatenate([none[1], *sides])
+    fits = fit_free_starts(
+        u, v, starts, slides=slides, minimax=goal.fit == "minimax", first=first, progress=progress
+    )
+    made: list[Candidates] = []
+    for own, wrong in zip(fits.x, fits.wrong, strict=True):
+        miss = float(np.abs(wrong).max())
+        made += _fit_design(u + own[3], v + own[4] + wrong, own[:3], slides, miss)
+    found = _found(task, made, complete=0)
+    message = f"a sample: {len(made)} different {goal.fit} fits from {len(starts[0])} starts"
+    if fits.minimal.any():
+        message += f", {int(fits.minimal.sum())} of them proved to be local minima"
+    return replace(found, message=message, starts=len(starts[0]))
+
+
 def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
     """Lengths and sides of the loops through three points of the range."""
-    for share in (0.067, 0.15, 0.25, 0.0):
+    for share in _SHARES:
         places = np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)
         index = places.round().astype(int)
         for made in _through_three(u[None, index], v[None, index], slides)[0]:

@@ -21,6 +21,7 @@ from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
@@ -208,6 +209,7 @@ class ImprovedMechanism(SweptDesign):
         elif not motion.certified.all():
             unproved = int(np.count_nonzero(~motion.certified))
             yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"
+        yield from self._out_of_range(motion)
         misses = np.array(self.improved.misses)
         for k in np.flatnonzero(~np.isfinite(misses))[:1]:
             yield DefectKind.BRANCH, f"position {k + 1} is not on the branch of the table"
@@ -223,6 +225,18 @@ class ImprovedMechanism(SweptDesign):
             told = f"transmission angle down to {self.transmission:.6g}{sign}, wanted {wanted:g}"
             yield DefectKind.TRANSMISSION, f"{told}{sign}"
         yield from self._geometric_defects()
+
+    def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
+        """The first position outside the driven range, to the accuracy of rows."""
+        table = np.asarray(motion.inputs[self.driven])[motion.asked]
+        low, high = float(table.min()), float(table.max())
+        slack, at = EQUAL_ROWS * (high - low), np.array(self.improved.inputs)
+        if motion.derivative_unit == "rad":
+            turn = self.task.angle.turn
+            at = at + np.round((0.5 * (low + high) - at) / turn) * turn
+        for k in np.flatnonzero((at < low - slack) | (at > high + slack))[:1]:
+            told = f"is passed at {at[k]:.6g}, outside the driven range from {low:g} to {high:g}"
+            yield DefectKind.RANGE, f"position {k + 1} {told}"
 
     def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
         if self.task.kind != "improve":  # improvements vary what their tasks name

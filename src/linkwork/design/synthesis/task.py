@@ -34,6 +34,7 @@ from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
 __all__ = ["MECHANISMS", "Task"]
@@ -242,6 +243,8 @@ class Task:
                 "P" not in name and not length >= wanted.shortest
             ):
                 yield key, f"{length:g} is out of the bounds that are wanted for lengths"
+        if not self.is_approximate and self.given.coupler_trouble:
+            yield ("given", "lengths"), self.given.coupler_trouble
         if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
             yield ("given", "lengths", "A0 B0"), "is fixed by the given pivots: leave it out"
 
@@ -266,6 +269,17 @@ class Task:
             )
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
+        timed = [p.input for p in self.positions if p.input is not None]
+        if self.function is not None and not self.is_six_bar and not self.function.starts_fixed:
+            timed = [one for one, _ in self.function.pairs]
+        count = len(self.positions) or len(timed)
+        if wanted.range is not None and len(timed) == count > 0:
+            span, asked = max(timed) - min(timed), abs(wanted.range[1] - wanted.range[0])
+            if span > asked * (1.0 + EQUAL_ROWS):
+                yield (
+                    ("wanted", "input"),
+                    f"spans {asked:g}, but the given inputs span {span:g}: widen it",
+                )
         if not 0 <= wanted.shortest <= wanted.longest or wanted.longest <= 0:
             yield (
                 ("wanted", "lengths"),

@@ -1,0 +1,169 @@
+"""Functions of which only differences count: fits of the dimensions with both start angles.
+
+Each lane has the dimensions of a four-bar (crank a, rocker b, coupler c, ground 1) or slider-crank
+(crank a, offset e, rod c), then the angle that is added to the inputs, and the angle or
+displacement that is added to the outputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwork.design.improvement.largest_miss import POWERS, largest_misses, powered
+from linkwork.design.synthesis.function_fit import (
+    levelled,
+    levels_minimise,
+    rocker_errors,
+    slider_errors,
+)
+from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.numerics.lane_least_squares import Box, Residuals, minimise, starts_of
+
+__all__ = ["FreeStartFits", "fit_free_starts"]
+
+_STEPS, _POWER_STEPS = 150, 40
+_LANES = 120  # of the starts, those with the smallest sums of squares
+_KEPT = 24  # lanes that minimise the largest miss
+_FAR = 1e3  # ratios of lengths
+_LEVEL = 1e-9  # relative: by which equal errors may exceed those before, to rounding
+_ALIKE = 1e-4  # relative: lanes that end at one fit
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeStartFits:
+    """D different fits, best first.
+
+    Parameters
+    ----------
+    x : (D, 5)
+    side : (D,)
+        Signs of the loops.
+    wrong : (D, N)
+        Structural errors at the pairs [rad or length].
+    minimal : (D,)
+        Whether a fit is proved to be a local minimum of the largest error, to first order.
+    """
+
+    x: Array
+    side: Array
+    wrong: Array
+    minimal: BoolArray
+
+
+class _Lanes:
+    """Structural errors of lanes."""
+
+    def __init__(self, u: Array, v: Array, slides: bool, side: Array) -> None:
+        self.u, self.v, self.side = u, v, side
+        self.make = slider_errors if slides else rocker_errors
+
+    def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
+        """Errors (D, N) and their derivatives (D, N, 5)."""
+        u, v = self.u + x[:, 3:4], self.v + x[:, 4:5]
+        made = self.make(u, v, self.side[lanes, None], by_input=True)
+        wrong, by_x = made(x[:, :3].T[:, :, None])
+        return wrong, np.concatenate([by_x, np.full((*wrong.shape, 1), -1.0)], axis=2)
+
+    def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
+        """Errors as rows of one number."""
+        wrong, by_x = self.errors(x, lanes)
+        none = np.zeros((len(x), 0))
+        return Residuals(
+            wrong[:, :, None], by_x[:, :, None], None, none, np.zeros((*none.shape, 5))
+        )
+
+
+def fit_free_starts(
+    u: Array,
+    v: Array,
+    starts: tuple[Array, Array],
+    *,
+    slides: bool,
+    minimax: bool,
+    first: tuple[float, float],
+    progress: Callable[[float], None] | None = None,
+) -> FreeStartFits:
+    """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
+
+    ``first``: bounds of the angle that is added to the inputs [rad].
+    """
+    x, side = starts
+    size = float(np.ptp(v)) if slides else 1.0
+    box = Box(
+        least=np.array([size / _FAR, -_FAR * size if slides else size / _FAR, size / _FAR,
+                        first[0], -np.inf]),
+        most=np.array([_FAR * size] * 3 + [first[1], np.inf]),
+    )  # fmt: skip
+    if np.isfinite(sum(first)):
+        # whole turns that bring starts nearest to their bounds
+        x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
+    lanes = _Lanes(u, v, slides, side)
+    x = box.inside(x)
+    total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
+    some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
+    lanes, side = _Lanes(u, v, slides, side[some]), side[some]
+    fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
+    order = _different(fit.x, fit.total)[:_KEPT]
+    lanes, fit, side = _Lanes(u, v, slides, side[order]), fit.take(order), side[order]
+    if minimax:
+        none = np.zeros(0, dtype=bool)
+        for k, power in enumerate(POWERS):
+            if progress is not None:
+                progress(k / len(POWERS))
+            largest = largest_misses(lanes.residuals(fit.x, fit.t, np.arange(len(fit))), none)
+
+            def raised(
+                x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
+            ) -> Residuals:
+                found = lanes.residuals(x, t, which)
+                return powered(found, power, np.maximum(scale[which], 1e-300), none)
+
+            fit = minimise(raised, fit, box, _POWER_STEPS)
+    x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
+    for k in range(len(fit)) if minimax else ():
+        x[k], minimal[k] = _sharpened(lanes, x[k], k, box)
+    wrong = lanes.errors(x, np.arange(len(x)))[0]
+    measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
+    index = _different(x, measure)
+    return FreeStartFits(x=x[index], side=side[index], wrong=wrong[index], minimal=minimal[index])
+
+
+def _different(x: Array, measure: Array) -> IndexArray:
+    """Lanes with different lengths by rising measure, without those that have none."""
+    chosen: list[int] = []
+    for k in np.argsort(measure, kind="stable"):
+        alike = np.abs(x[chosen, :3] - x[k, :3]).max(axis=1) <= _ALIKE * np.abs(x[k, :3]).max()
+        if np.isfinite(measure[k]) and not alike.any():
+            chosen.append(int(k))
+    return np.array(chosen, dtype=np.intp)
+
+
+def _sharpened(lanes: _Lanes, x: Array, k: int, box: Box) -> tuple[Array, bool]:
+    """A fit whose largest errors are made equal, if that lowers them, and whether it is minimal;
+    numbers at their bounds stay there.
+    """
+    free = (x > box.least) & (x < box.most)
+
+    def errors(own: Array) -> tuple[Array, Array]:
+        every = x.copy()
+        every[free] = own
+        wrong, by_x = lanes.errors(every[None], np.array([k]))
+        return wrong[0], by_x[0][:, free]
+
+    before = np.abs(errors(x[free])[0])
+    count = int(free.sum()) + 1
+    if not np.isfinite(before).all() or len(before) < count:
+        return x, False
+    points = [int(n) for n in np.sort(np.argsort(-before, kind="stable")[:count])]
+    found = levelled(errors, x[free], points)
+    if found is None or not np.abs(errors(found[0])[0]).max() <= before.max() * (1.0 + _LEVEL):
+        return x, False
+    sharp = x.copy()
+    sharp[free] = found[0]
+    if (box.inside(sharp) != sharp).any():
+        return x, False
+    return sharp, bool(free.all()) and levels_minimise(errors, found[0], points)
