@@ -28,6 +28,7 @@ from tests.campaigns.imports import import_campaign
 from tests.campaigns.improvement import PARTS as IMPROVEMENTS, improvement_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
+from tests.campaigns.library_defects import MECHANISMS, library_defect_campaign
 from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
@@ -47,6 +48,7 @@ _PART = 50
 _OWN_PART = {
     "gradients": 1,
     "improve": 1,
+    "library-defects": 1,
     "nine-points": 1,
     "parallel-trains": 1,
     "poses": 1000,
@@ -161,6 +163,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
+    "library-defects": (library_defect_campaign, len(MECHANISMS)),
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
     "whole-motions": (whole_motion_campaign, MOTIONS),

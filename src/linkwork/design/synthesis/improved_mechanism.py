@@ -170,6 +170,11 @@ class ImprovedMechanism(SweptDesign):
         return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
 
     @property
+    def shortest(self) -> float:
+        """The shortest link, or distance of fixed pivots [length]."""
+        return float(self._lengths.min(initial=np.inf)) if len(self._lengths) else float("nan")
+
+    @property
     def error(self) -> float:
         """The largest distance from a point, or without points the largest weighted miss."""
         if self.improved.misses:

@@ -128,7 +128,16 @@ class WattDesign(SweptDesign):
     @cached_property
     def size(self) -> float:
         """The longest side of a link, or distance of fixed pivots [length]."""
-        return max(abs(self.points[q] - self.points[p]) for p, q in SIDES)
+        return max(self._sides)
+
+    @property
+    def shortest(self) -> float:
+        """The shortest side of a link, or distance of fixed pivots [length]."""
+        return min(self._sides)
+
+    @property
+    def _sides(self) -> list[float]:
+        return [abs(self.points[q] - self.points[p]) for p, q in SIDES]
 
     @cached_property
     def error(self) -> float:
