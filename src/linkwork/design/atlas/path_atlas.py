@@ -13,7 +13,7 @@ import numpy as np
 from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError
-from linkwork.textfile.writer import save_bytes
+from linkwork.foundation.written_file import save_bytes
 
 __all__ = ["SHIPPED", "AtlasFamily", "Nearest", "PathAtlas", "read_atlas"]
 
