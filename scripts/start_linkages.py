@@ -78,18 +78,18 @@ def build(names: list[str]) -> None:
             arrays.update(kept)
             if path.exists():
                 before = stored_member(problem, path)
-                same = _common(problem, before, again)
-                _say(f"  of {len(before.x)} solutions of the file, {same} are among these")
+                _say(f"  the file had {len(before.x)} solutions{_compared(problem, before, again)}")
         np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
         _say(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes")
 
 
-def _common(problem: NamedFamily, one: Member, other: Member) -> int | str:
-    """How many solutions two members have in common; nothing can be said of other parameters."""
+def _compared(problem: NamedFamily, one: Member, other: Member) -> str:
+    """How many solutions two members have in common, if their parameters are the same."""
     if not np.array_equal(one.parameters, other.parameters):
-        return "none that can be compared"
+        return " of a member with other parameters"
     both = np.concatenate([one.x, other.x])
-    return len(both) - len(first_of_each(problem.fingerprint(both, one.parameters)))
+    same = len(both) - len(first_of_each(problem.fingerprint(both, one.parameters)))
+    return f", {same} of them among these"
 
 
 def check(names: list[str]) -> None:
