@@ -136,3 +136,29 @@ def test_an_exact_design_comes_before_tolerated_misses_unless_weighed_otherwise(
     assert own["error"] == 0.0
     assert even["error"] > 2.0
     assert even["transmission"] > own["transmission"]
+
+
+def test_of_several_goals_the_miss_of_each_is_printed(tmp_path: Path) -> None:
+    text = """
+format = 1
+task = "improve"
+mechanism = "slider-crank"
+[improve]
+starts = 1
+vary = ["O2 A"]
+[[improve.goals]]
+of = "stroke(d)"
+target = 70
+[[improve.goals]]
+of = "max(d)"
+target = 90
+"""
+    shown = _printed(text, tmp_path, "-o", str(tmp_path / "out"))
+    assert "Design 1 misses its goals by" in shown
+    misses = {name: float(v) for name, v in re.findall(r"^  (\w+\(d\)) +([\d.]+)$", shown, re.M)}
+    d = lw.load(next((tmp_path / "out").glob("*-01.toml"))).sweep()["d"]
+    # five digits are printed
+    assert misses["stroke(d)"] == pytest.approx(abs(np.ptp(d) - 70.0), rel=1e-4)
+    assert misses["max(d)"] == pytest.approx(abs(d.max() - 90.0), rel=1e-4)
+    alone = "[[improve.goals]]".join(text.split("[[improve.goals]]")[:2])
+    assert "misses its goals" not in _printed(alone, tmp_path)
