@@ -162,3 +162,24 @@ target = 90
     assert misses["max(d)"] == pytest.approx(abs(d.max() - 90.0), rel=1e-4)
     alone = "[[improve.goals]]".join(text.split("[[improve.goals]]")[:2])
     assert "misses its goals" not in _printed(alone, tmp_path)
+
+
+def test_goals_without_values_are_named_instead_of_kinds(tmp_path: Path) -> None:
+    text = 'format = 1\ntask = "improve"\nmechanism = "whitworth"\n[improve]\nstarts = 1\n'
+    text += '[[improve.goals]]\nof = "time_ratio(ram)"\ntarget = 1.6\n'
+    shown = " ".join(_printed(text, tmp_path, code=1).split())
+    assert "No start leads to a design." in shown
+    assert 'linkwork sweep whitworth --columns shows the values of "time_ratio(ram)".' in shown
+
+
+def test_a_transmission_angle_is_refused_where_there_is_none(tmp_path: Path) -> None:
+    """The six-bar driven at the far crank is one group of four links without dyads."""
+    text = 'format = 1\ntask = "improve"\nmechanism = "stephenson-far-crank"\n[improve]\n'
+    text += 'starts = 1\n[[improve.goals]]\nof = "stroke(rod)"\ntarget = 50\n'
+    path = tmp_path / "task.toml"
+    path.write_text(text + "[wanted]\ntransmission = { least = 25 }\n")
+    done = CliRunner().invoke(linkwork, ["synthesize", str(path)])
+    assert done.exit_code == 2
+    told = " ".join(done.output.split())
+    assert "line 10 wanted.transmission" in told
+    assert "has no dyad of pins and no transmission angle: leave it out" in told

@@ -131,7 +131,10 @@ def _verdict(found: Synthesis) -> list[str]:
     told = advice_of(found)
     advice = wrapped(told) if told else []
     if not found.designs:
-        return [*sentence(bad, "No mechanism of the wanted kinds solves the task."), *advice]
+        head = "No mechanism of the wanted kinds solves the task."
+        if found.task.kind == "improve":
+            head = "No start leads to a design."
+        return [*sentence(bad, head), *advice]
     lines = sentence(bad, "No design is free of defects.")
     cost = found.costliest
     if cost is not None:
