@@ -91,8 +91,8 @@ def improve_description(
     settings = replace(settings, bounds=bounds)
     angles = list(_transmission_goals(model, task))
     if task.wanted.transmission and not angles:
-        told = f'"{description.name}" has no dyad of pins and no transmission angle: leave it out'
-        _refuse(task, [Problem(key=("wanted", TRANSMISSION_ANGLE.word), message=told)])
+        lacks = f'"{description.name}" has no dyad of pins and no transmission angle: leave it out'
+        _refuse(task, [Problem(key=("wanted", TRANSMISSION_ANGLE.word), message=lacks)])
     goals: list[Goal | Points] = [*settings.goals, *angles]
     if task.positions:
         points = _points(task, settings)
