@@ -20,9 +20,10 @@ from linkwork.drawing.position_marks import PositionMark
 from linkwork.drawing.scene import Scene
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path, unwritten
+from linkwork.foundation.written_file import save_bytes, save_text
 from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.csv_text import csv_text
-from linkwork.textfile.writer import save_bytes, save_text, write_text
+from linkwork.textfile.writer import write_text
 from linkwork.viewer.designs_page import designs_page
 
 __all__ = ["FolderOptions", "write_designs"]

@@ -11,11 +11,7 @@ import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.improved_mechanism import (
-    ImprovedMechanism,
-    SweptDesign,
-    tested_in_rows,
-)
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, SweptDesign
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
@@ -124,8 +120,8 @@ class WattDesign(SweptDesign):
 
     @property
     def transmission(self) -> float:
-        """The least transmission angle of both loops in the rows of the driven range, NaN for a
-        design that changes branch or circuit [file's angle unit].
+        """A lower bound of the least transmission angle of both loops in the driven range, NaN for
+        a design that changes branch or circuit [file's angle unit].
         """
         return float("nan") if self.swept is None else self.swept.transmission
 
@@ -194,4 +190,9 @@ class WattDesign(SweptDesign):
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
 
     def _details(self) -> Mapping[str, Any]:
-        return {"inputs": list(self.inputs), "tested_in_rows": list(tested_in_rows(self.task))}
+        swept = self.swept
+        return {
+            "inputs": list(self.inputs),
+            "proved_in_motion": [] if swept is None else list(swept.proved_in_motion),
+            "tested_in_rows": [] if swept is None else list(swept.tested_in_rows),
+        }
