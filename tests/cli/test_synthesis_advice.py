@@ -183,3 +183,21 @@ def test_a_transmission_angle_is_refused_where_there_is_none(tmp_path: Path) -> 
     told = " ".join(done.output.split())
     assert "line 10 wanted.transmission" in told
     assert "has no dyad of pins and no transmission angle: leave it out" in told
+
+
+def test_a_dead_point_before_the_first_pose_is_outside_the_table_of_the_design(
+    tmp_path: Path,
+) -> None:
+    _printed(_TASK + _GIVEN, tmp_path, "-o", str(tmp_path / "out"))
+    design = str(next((tmp_path / "out").glob("*-01.toml")))
+    shown = CliRunner().invoke(linkwork, ["sweep", design]).stdout
+    # the table begins at 183.3°, and a turn less than 200.1° is -159.9°
+    assert "dead point       crank = -159.869953123 deg, where" in shown
+    assert "in line), outside the table" in " ".join(shown.split())
+    changing = (
+        CliRunner()
+        .invoke(linkwork, ["sweep", "parallelogram", "--to", "180", "--from", "0"])
+        .stdout
+    )
+    assert changing.count("  change point") == 2
+    assert "outside the table" not in changing
