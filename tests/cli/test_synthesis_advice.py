@@ -136,3 +136,68 @@ def test_an_exact_design_comes_before_tolerated_misses_unless_weighed_otherwise(
     assert own["error"] == 0.0
     assert even["error"] > 2.0
     assert even["transmission"] > own["transmission"]
+
+
+def test_of_several_goals_the_miss_of_each_is_printed(tmp_path: Path) -> None:
+    text = """
+format = 1
+task = "improve"
+mechanism = "slider-crank"
+[improve]
+starts = 1
+vary = ["O2 A"]
+[[improve.goals]]
+of = "stroke(d)"
+target = 70
+[[improve.goals]]
+of = "max(d)"
+target = 90
+"""
+    shown = _printed(text, tmp_path, "-o", str(tmp_path / "out"))
+    assert "Design 1 misses its goals by" in shown
+    misses = {name: float(v) for name, v in re.findall(r"^  (\w+\(d\)) +([\d.]+)$", shown, re.M)}
+    d = lw.load(next((tmp_path / "out").glob("*-01.toml"))).sweep()["d"]
+    # five digits are printed
+    assert misses["stroke(d)"] == pytest.approx(abs(np.ptp(d) - 70.0), rel=1e-4)
+    assert misses["max(d)"] == pytest.approx(abs(d.max() - 90.0), rel=1e-4)
+    alone = "[[improve.goals]]".join(text.split("[[improve.goals]]")[:2])
+    assert "misses its goals" not in _printed(alone, tmp_path)
+
+
+def test_goals_without_values_are_named_instead_of_kinds(tmp_path: Path) -> None:
+    text = 'format = 1\ntask = "improve"\nmechanism = "whitworth"\n[improve]\nstarts = 1\n'
+    text += '[[improve.goals]]\nof = "time_ratio(ram)"\ntarget = 1.6\n'
+    shown = " ".join(_printed(text, tmp_path, code=1).split())
+    assert "No start leads to a design." in shown
+    assert 'linkwork sweep whitworth --columns shows the values of "time_ratio(ram)".' in shown
+
+
+def test_a_transmission_angle_is_refused_where_there_is_none(tmp_path: Path) -> None:
+    """The six-bar driven at the far crank is one group of four links without dyads."""
+    text = 'format = 1\ntask = "improve"\nmechanism = "stephenson-far-crank"\n[improve]\n'
+    text += 'starts = 1\n[[improve.goals]]\nof = "stroke(rod)"\ntarget = 50\n'
+    path = tmp_path / "task.toml"
+    path.write_text(text + "[wanted]\ntransmission = { least = 25 }\n")
+    done = CliRunner().invoke(linkwork, ["synthesize", str(path)])
+    assert done.exit_code == 2
+    told = " ".join(done.output.split())
+    assert "line 10 wanted.transmission" in told
+    assert "has no dyad of pins and no transmission angle: leave it out" in told
+
+
+def test_a_dead_point_before_the_first_pose_is_outside_the_table_of_the_design(
+    tmp_path: Path,
+) -> None:
+    _printed(_TASK + _GIVEN, tmp_path, "-o", str(tmp_path / "out"))
+    design = str(next((tmp_path / "out").glob("*-01.toml")))
+    shown = CliRunner().invoke(linkwork, ["sweep", design]).stdout
+    # the table begins at 183.3°, and a turn less than 200.1° is -159.9°
+    assert "dead point       crank = -159.869953123 deg, where" in shown
+    assert "in line), outside the table" in " ".join(shown.split())
+    changing = (
+        CliRunner()
+        .invoke(linkwork, ["sweep", "parallelogram", "--to", "180", "--from", "0"])
+        .stdout
+    )
+    assert changing.count("  change point") == 2
+    assert "outside the table" not in changing

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
 from linkwork.design.synthesis.advice import advice_of, remarks_on
-from linkwork.design.synthesis.designs_table import front_of
+from linkwork.design.synthesis.designs_table import front_of, goal_misses
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.verdicts import DefectKind
@@ -106,7 +106,16 @@ def _design_lines(found: Synthesis) -> list[str]:
     if any(design.error for design in designs):
         columns.append(column(_error(found), [d.error for d in designs]))
     columns.append(column("score", [design.score for design in designs]))
-    return table_lines(columns)
+    return [*table_lines(columns), *_miss_lines(found)]
+
+
+def _miss_lines(found: Synthesis) -> list[str]:
+    """How far the best design misses each goal, if there are several."""
+    misses = goal_misses(found.delivered[:1])
+    if len(misses) < 2:
+        return []
+    rows = [(name, significant(values[0], _DIGITS)) for name, values in misses.items()]
+    return ["", *wrapped("Design 1 misses its goals by"), *fields(rows)]
 
 
 def _error(found: Synthesis) -> str:
@@ -122,7 +131,10 @@ def _verdict(found: Synthesis) -> list[str]:
     told = advice_of(found)
     advice = wrapped(told) if told else []
     if not found.designs:
-        return [*sentence(bad, "No mechanism of the wanted kinds solves the task."), *advice]
+        head = "No mechanism of the wanted kinds solves the task."
+        if found.task.kind == "improve":
+            head = "No start leads to a design."
+        return [*sentence(bad, head), *advice]
     lines = sentence(bad, "No design is free of defects.")
     cost = found.costliest
     if cost is not None:

@@ -87,6 +87,12 @@ def test_five_points_on_a_line_with_both_pivots_given() -> None:
     found = four_bars_through(positions(LINE, None, 0.0, 1.0), track_in_batches)
     roots = found.roots
     assert (roots.paths, len(roots.x), roots.at_infinity, roots.lost) == (36, 33, 3, 0)
+    assert (roots.lost_paths, replace(roots, lost=2, at_infinity=1).lost_paths) == (
+        "0 lost",
+        "2 lost",
+    )
+    again = replace(roots, lost=2).lost_paths
+    assert again == "2 lost but ends found as mirror images or by detours"
     assert (found.real, len(found), int(found.proved.sum())) == (15, 15, 15)
     assert passes(found, LINE) < 1e-12
     assert found.lengths[:, 0] == pytest.approx(np.ones(15))

@@ -50,14 +50,29 @@ def advice_of(found: Synthesis) -> str:
     """What could be changed in a task without a sound design that no relaxed wish would help; ""
     if there is a sound design, or a wish to relax.
     """
-    if found.sound or found.task.kind == "improve" or found.costliest is not None:
+    if found.sound or found.costliest is not None:
         return ""
+    if found.task.kind == "improve":
+        return "" if found.designs else _of_goals(found)
     if found.designs and not found.defects.keys() & {*_MOVING}:
         return ""
     first, *others = _changes(found)
     steps = first + "".join(f", or {other}" for other in others)
     blame = "No wish is to blame. " if found.designs else ""
     return f"{blame}Try to {steps}."
+
+
+def _of_goals(found: Synthesis) -> str:
+    """How to see why no start of an improvement has all its goals."""
+    settings = found.task.improvement
+    names = [goal.of for goal in settings.goals] if settings is not None else []
+    if not names:
+        return "Start nearer to the positions."
+    shown = ", ".join(f'"{name}"' for name in names)
+    return (
+        "No start has a value of every goal; the time ratio of a constant angle has none. "
+        f"linkwork sweep {found.task.mechanisms[0]} --columns shows the values of {shown}."
+    )
 
 
 def _changes(found: Synthesis) -> Iterator[str]:

@@ -132,10 +132,16 @@ class FunctionGoal:
             yield (
                 ("function", "positions"),
                 f"{count} precision points leave no {exact.mechanism} with given start angles: "
-                f"keep {exact.told(exact.fixed)}",
+                f"keep {exact.told(exact.fixed)}" + self._free_starts(count),
             )
         elif count < exact.least:
             yield ("function", "positions"), f"{count} given: give {exact.least} or more"
+
+    def _free_starts(self, count: int) -> str:
+        """How so many points could be met."""
+        if not self.exact.fixed < count <= self.exact.free:
+            return ""
+        return f"; free start angles meet {count}: give pairs, without input and output"
 
     def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.pairs)

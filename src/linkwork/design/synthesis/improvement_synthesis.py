@@ -89,7 +89,11 @@ def improve_description(
     bounds, problems = _bounds(description, wishes, numbers, settings)
     _refuse(task, problems)
     settings = replace(settings, bounds=bounds)
-    goals: list[Goal | Points] = [*settings.goals, *_transmission_goals(model, task)]
+    angles = list(_transmission_goals(model, task))
+    if task.wanted.transmission and not angles:
+        lacks = f'"{description.name}" has no dyad of pins and no transmission angle: leave it out'
+        _refuse(task, [Problem(key=("wanted", TRANSMISSION_ANGLE.word), message=lacks)])
+    goals: list[Goal | Points] = [*settings.goals, *angles]
     if task.positions:
         points = _points(task, settings)
         box = box_of(model, numbers, settings)

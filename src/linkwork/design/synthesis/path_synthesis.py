@@ -216,7 +216,7 @@ def _completeness(
     roots, grade = solved[0].roots, solved[0].completeness
     closed = "" if roots.closed is None else "closed" if roots.closed else "not closed"
     message = (
-        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost} lost"
+        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost_paths}"
         f"{closed and f'; {closed} under conjugation'})"
     )
     return grade, message

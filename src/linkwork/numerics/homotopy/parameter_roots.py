@@ -78,6 +78,14 @@ class ParameterRoots:
         ends = len(self.x) + len(self.singular) + self.at_infinity
         return ends == self.paths and self.closed is not False
 
+    @property
+    def lost_paths(self) -> str:
+        """The number of lost paths in words, and whether their ends were found otherwise."""
+        found = (
+            " but ends found as mirror images or by detours" if self.lost and self.complete else ""
+        )
+        return f"{self.lost} lost{found}"
+
     def graded(self, proved: BoolArray) -> Completeness:
         """Whether a list of real solutions, each ``proved`` or not (R,), has all of them."""
         if not self.complete or not proved.all():
