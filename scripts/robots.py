@@ -1,8 +1,9 @@
-"""Files for robots, loaded by MuJoCo and yourdfpy and compared with the sweep."""
+"""Files for robots, loaded by MuJoCo, Drake and yourdfpy and compared with the sweep."""
 
 from __future__ import annotations
 
 import io
+import logging
 from importlib import import_module
 from typing import Any
 from xml.etree import ElementTree as Tree
@@ -12,6 +13,7 @@ import numpy as np
 import linkwork as lw
 from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
+from linkwork.export.robot.sdf import sdf_of
 from linkwork.export.robot.urdf import urdf_of
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
@@ -21,7 +23,7 @@ from linkwork.results.motion import Motion
 __all__ = ["LOADERS", "compared_robot"]
 
 #: Packages that load the formats.
-LOADERS = {".mjcf": "mujoco", ".urdf": "yourdfpy"}
+LOADERS = {".mjcf": "mujoco", ".sdf": "pydrake", ".urdf": "yourdfpy"}
 _STEP = 13  # every so many rows of a sweep
 
 
@@ -32,6 +34,8 @@ def compared_robot(name: str, suffix: str) -> str:
         robot = Robot(mechanism.model, mechanism.solve())
         if suffix == ".mjcf":
             return _moved(robot, mechanism.sweep())
+        if suffix == ".sdf":
+            return _posed(robot, mechanism.sweep())
         return _coupled(robot, mechanism)
     except InputError as error:
         return f"refused: {error}"
@@ -72,6 +76,74 @@ def _moved(robot: Robot, motion: Motion) -> str:
 def _angle(body: Any) -> float:
     """The angle of a body in the plane [rad]."""
     return 2.0 * float(np.arctan2(body.xquat[3], body.xquat[0]))
+
+
+def _posed(robot: Robot, motion: Motion) -> str:
+    """Joint values imposed in Drake: points, gaps between the two frames of each closing joint.
+
+    Drake reads closing joints but cannot finish a plant with them: the tree alone moves.
+    """
+    told, log = _Warnings(), logging.getLogger("drake")
+    log.propagate = False
+    log.addHandler(told)
+    root = Tree.fromstring(sdf_of(robot))
+    every = _plant(root)
+    model = root.find("model")
+    assert model is not None
+    closing = [j for j in model.findall("joint") if j.attrib["name"].startswith("loop:")]
+    for own in closing:
+        model.remove(own)
+    plant = _plant(root)
+    log.removeHandler(told)
+    plant.Finalize()
+    context, size = plant.CreateDefaultContext(), robot.start.length * robot.metre
+    values, away, gap = robot.values(motion), 0.0, 0.0
+    for row in np.flatnonzero(motion.found)[::_STEP]:
+        position = np.zeros(plant.num_positions())
+        for name, (value, _) in values.items():
+            position[plant.GetJointByName(name).position_start()] = value[row]
+        plant.SetPositions(context, position)
+        for joint in robot.tree.joints:
+            for point in robot.tree.graph.bodies[joint.child]:
+                frame = plant.GetFrameByName(f"{joint.child}/{point}")
+                x, y, _ = frame.CalcPoseInWorld(context).translation()
+                place = motion.place(point).v[row] * robot.metre
+                away = max(away, abs(complex(x, y) - place) / size)
+        for own in closing:
+            joint = every.GetJointByName(own.attrib["name"])
+            first, second = (
+                plant.GetBodyByName(frame.body().name()).EvalPoseInWorld(context)
+                @ frame.GetFixedPoseInBodyFrame()
+                for frame in (joint.frame_on_parent(), joint.frame_on_child())
+            )
+            gap = max(gap, np.abs(first.translation() - second.translation()).max() / size)
+            if own.attrib["type"] == "fixed":
+                turned = first.rotation().matrix() - second.rotation().matrix()
+                gap = max(gap, np.abs(turned).max())
+    same = every.num_joints() == len(robot.tree.joints) + len(closing)
+    wrong = "" if away <= 1e-9 and gap <= 1e-12 and same and not told.texts else " WRONG"
+    return f"points {away:.1e}, gaps {gap:.1e}{wrong}" + "".join(f"; {x}" for x in told.texts)
+
+
+def _plant(root: Tree.Element) -> Any:
+    """What Drake reads of an SDF file."""
+    drake = import_module("pydrake.all")
+    plant = drake.MultibodyPlant(0.0)
+    drake.Parser(plant).AddModelsFromString(Tree.tostring(root, encoding="unicode"), "sdf")
+    return plant
+
+
+class _Warnings(logging.Handler):
+    """What Drake warns about; it knows no bodies without gravity."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.texts: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        text = record.getMessage()
+        if not text.endswith("Unsupported value for SDFormat element gravity: false"):
+            self.texts.add(text)
 
 
 def _coupled(robot: Robot, mechanism: lw.Mechanism) -> str:

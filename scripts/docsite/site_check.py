@@ -1,12 +1,14 @@
-"""Checks of the built site in Chromium: ``python -m scripts.docsite.site_check SITE [AXE]``.
+"""Checks of the built site in Chromium: ``python -m scripts.docsite.site_check SITE``.
 
 Every page at the widths of a desktop and of a phone, opened once and then made narrower: images
 that are not drawn, requests that fail or go elsewhere, errors of scripts, pages wider than the
-window; at the first width also what axe-core calls serious or critical.
+window; at the first width also what axe-core calls serious or critical. Of the offline pages of
+mechanisms every twentieth is opened, for their own tests cover them; with ``--all`` every one.
 """
 
 from __future__ import annotations
 
+import argparse
 import functools
 import shutil
 import sys
@@ -21,7 +23,7 @@ from typing import Any
 
 from playwright.sync_api import ViewportSize, sync_playwright
 
-__all__ = ["Site", "check_site"]
+__all__ = ["BEYOND", "WIDTHS", "Site", "check_site", "chromium", "html_files", "served", "watched"]
 
 WIDTHS = (1280, 390)
 _AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
@@ -30,7 +32,7 @@ _AT_ONCE = 2  # browsers: two cores in CI
 _BROKEN = """() => [...document.images].filter((i) => i.complete && i.naturalWidth === 0)
   .map((i) => i.getAttribute("src"))"""
 #: Elements that end beyond the window; parts of boxes that scroll are allowed there.
-_WIDE = """() => document.documentElement.scrollWidth - document.documentElement.clientWidth"""
+BEYOND = """() => document.documentElement.scrollWidth - document.documentElement.clientWidth"""
 _RUN_AXE = """() => axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) =>
   violations.filter(({ impact }) => impact === "serious" || impact === "critical").flatMap(
     ({ id, nodes }) => nodes.map(({ html, any }) =>
@@ -39,21 +41,21 @@ _RUN_AXE = """() => axe.run(document, { resultTypes: ["violations"] }).then(({ v
 
 @dataclass(frozen=True, kw_only=True)
 class Site:
-    """A built site: its folder, and the text of axe-core, "" without it."""
+    """A built site: its folder, the text of axe-core, and whether no page is left out."""
 
     folder: Path
     axe: str = ""
+    every: bool = False
 
     def pages(self) -> list[str]:
-        """All pages; of the offline pages of mechanisms every twentieth, for their own tests
-        cover them.
-        """
-        found = sorted(path.relative_to(self.folder).as_posix() for path in _html(self.folder))
+        """The pages to open."""
+        found = sorted(path.relative_to(self.folder).as_posix() for path in html_files(self.folder))
         live = [page for page in found if page.startswith("_live/")]
-        return [page for page in found if page not in live] + live[::20]
+        return [page for page in found if page not in live] + live[:: 1 if self.every else 20]
 
 
-def _html(folder: Path) -> Iterator[Path]:
+def html_files(folder: Path) -> Iterator[Path]:
+    """The pages of a site, without those of its app."""
     for path in folder.rglob("*.html"):
         # the app has its own tests; templates of the theme are no pages
         if path.relative_to(folder).parts[0] not in ("app", "_static"):
@@ -70,14 +72,10 @@ def check_site(site: Site) -> list[str]:
 
 
 def _check_share(site: Site, pages: list[str]) -> list[str]:
-    program = next(filter(None, map(shutil.which, _BROWSERS)), None)
-    if program is None:
-        raise FileNotFoundError(f"none of {', '.join(_BROWSERS)} is on the PATH")
     faults: list[str] = []
-    with _served(site.folder) as own, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+    with served(site.folder) as own, sync_playwright() as playwright:
+        browser = chromium(playwright)
         context = browser.new_context(reduced_motion="reduce")
-        context.route(lambda address: not _is_own(address, own), lambda route: route.abort())
         for page in pages:
             faults += [
                 f"{page}{fault}" for fault in _faults(context.new_page(), own, page, site.axe)
@@ -87,8 +85,16 @@ def _check_share(site: Site, pages: list[str]) -> list[str]:
     return faults
 
 
+def chromium(playwright: Any) -> Any:
+    """The system's Chromium, without a window."""
+    program = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if program is None:
+        raise FileNotFoundError(f"none of {', '.join(_BROWSERS)} is on the PATH")
+    return playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+
+
 @contextmanager
-def _served(folder: Path) -> Iterator[str]:
+def served(folder: Path) -> Iterator[str]:
     """The address of the site on this machine: axe-core reads styles, which files refuse."""
     handler = functools.partial(_Quiet, directory=str(folder))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
@@ -102,15 +108,22 @@ class _Quiet(SimpleHTTPRequestHandler):
         """Without a line for every file."""
 
 
-def _faults(tab: Any, own: str, page: str, axe: str) -> list[str]:
-    """The faults of one page at all widths."""
+def watched(tab: Any, own: str) -> list[str]:
+    """The list to which the tab adds requests that fail or go elsewhere, and errors of scripts."""
     faults: list[str] = []
+    tab.route(lambda address: not _is_own(address, own), lambda route: route.abort())
     tab.on("requestfailed", lambda request: faults.append(f": failed: {request.url}"))
     tab.on(
         "request", lambda r: None if _is_own(r.url, own) else faults.append(f": foreign: {r.url}")
     )
     tab.on("response", lambda r: None if r.ok else faults.append(f": {r.status}: {r.url}"))
     tab.on("pageerror", lambda error: faults.append(f": error: {error}"))
+    return faults
+
+
+def _faults(tab: Any, own: str, page: str, axe: str) -> list[str]:
+    """The faults of one page at all widths."""
+    faults = watched(tab, own)
     for width in WIDTHS:
         window: ViewportSize = {"width": width, "height": 900}
         tab.set_viewport_size(window)
@@ -120,7 +133,7 @@ def _faults(tab: Any, own: str, page: str, axe: str) -> list[str]:
             tab.evaluate("() => { for (const i of document.images) i.loading = 'eager'; }")
         tab.wait_for_function("() => [...document.images].every((i) => i.complete)")
         found = [f"broken image: {source}" for source in tab.evaluate(_BROKEN)]
-        beyond = tab.evaluate(_WIDE)
+        beyond = tab.evaluate(BEYOND)
         if beyond > 0:
             found.append(f"{beyond} px wider than the window")
         if axe and width == WIDTHS[0]:
@@ -137,11 +150,16 @@ def _is_own(address: str, own: str) -> bool:
 
 def main() -> int:
     """Check the site; returns the exit status."""
-    folder, axe = Path(sys.argv[1]).resolve(), Path(sys.argv[2]) if sys.argv[2:] else _AXE
-    if not axe.is_file():
-        sys.stderr.write(f"axe-core is not at {axe}: scripts/frontend check installs it\n")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("site", type=Path)
+    parser.add_argument("axe", nargs="?", type=Path, default=_AXE)
+    parser.add_argument("--all", action="store_true", help="every offline page, too")
+    asked = parser.parse_args()
+    if not asked.axe.is_file():
+        sys.stderr.write(f"axe-core is not at {asked.axe}: scripts/frontend check installs it\n")
         return 2
-    site = Site(folder=folder, axe=axe.read_text(encoding="utf-8"))
+    axe = asked.axe.read_text(encoding="utf-8")
+    site = Site(folder=asked.site.resolve(), axe=axe, every=asked.all)
     faults = check_site(site)
     sys.stdout.writelines(f"{fault}\n" for fault in faults)
     sys.stdout.write(f"{len(site.pages())} pages at {len(WIDTHS)} widths: {len(faults)} faults\n")

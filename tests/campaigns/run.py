@@ -38,6 +38,7 @@ from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
+from tests.campaigns.whole_motions import EVERY as MOTIONS, whole_motion_campaign
 from tests.campaigns.workbooks import workbook_campaign
 
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
@@ -52,6 +53,7 @@ _OWN_PART = {
     "parallel-trains": 1,
     "poses": 1000,
     "precision-points": 4,
+    "whole-motions": 1,
 }
 #: Mechanisms in random order, so that a smaller campaign is a sample of all of them.
 _GRADIENTS = np.random.default_rng(20).permutation(EVERY)
@@ -164,6 +166,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "library-defects": (library_defect_campaign, len(MECHANISMS)),
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
+    "whole-motions": (whole_motion_campaign, MOTIONS),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

@@ -44,7 +44,10 @@ def test_animate_goes_on_through_dead_points_where_the_range_is_not_reached(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("x.avi",), 'cannot animate "x.avi": its suffix must be one of .html, .gif, .mp4'),
+        (
+            ("x.avi",),
+            'cannot write "x.avi": the suffix of an animation is one of .html, .gif',
+        ),
         (
             ("x.gif", "--all"),
             "--all needs a page: use the suffix .html",
@@ -59,7 +62,7 @@ def test_animate_goes_on_through_dead_points_where_the_range_is_not_reached(
             "--all shows every circuit: leave out --configuration",
         ),
         (("nowhere/x.html",), 'cannot write "nowhere/x.html": there is no folder "nowhere"'),
-        (("four-bar.toml",), 'cannot animate "four-bar.toml": its suffix must be one of'),
+        (("four-bar.toml",), 'cannot write "four-bar.toml": the suffix of an animation is one of'),
     ],
 )
 def test_animate_refuses_before_anything_is_computed(

@@ -120,11 +120,13 @@ def test_mathematics_that_says_no_ends_with_1(run: Run, words: tuple[str, ...], 
         ),
         (
             ("draw", "four-bar.toml", "-o", "x.bmp"),
-            'Error: cannot draw "x.bmp": its suffix must be one of .png, .svg, .pdf, .tikz\n',
+            'Error: cannot write "x.bmp": the suffix of a picture is one of .png, .svg, .pdf,\n'
+            "  .tikz\n",
         ),
         (
             ("draw", "wrong.toml", "-o", "x.bmp"),  # told before anything is read
-            'Error: cannot draw "x.bmp": its suffix must be one of .png, .svg, .pdf, .tikz\n',
+            'Error: cannot write "x.bmp": the suffix of a picture is one of .png, .svg, .pdf,\n'
+            "  .tikz\n",
         ),
         (
             ("sweep", "four-bar.toml", "--csv", "four-bar.toml"),

@@ -295,6 +295,34 @@ def test_a_link_is_followed_and_a_device_is_not_replaced(folder: Path) -> None:
     assert pipe.is_fifo()
 
 
+@pytest.mark.parametrize(
+    ("command", "suffix", "first"),
+    [
+        ("draw", "tikz", b"% "),
+        ("code", "c", b"/*"),
+        ("robot", "sdf", b"<!--"),
+        ("report", "md", b"# "),
+    ],
+)
+def test_no_command_replaces_a_device(
+    command: str, suffix: str, first: bytes, run: Run, folder: Path
+) -> None:
+    pipe = folder / f"pipe.{suffix}"
+    os.mkfifo(pipe)
+    (folder / f"link.{suffix}").symlink_to(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    (folder / "short.toml").write_text('sections = ["summary"]\n', encoding="utf-8")
+    more = ["--template", "short.toml"] if command == "report" else []
+    try:
+        done = run(command, "four-bar.toml", "-o", f"link.{suffix}", *more)
+        assert done.exit_code == 0, done.stderr
+        assert os.read(reader, 10).startswith(first)
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+    assert (folder / f"link.{suffix}").is_symlink()
+
+
 def test_every_command_prints_json(run: Run, folder: Path) -> None:
     written = {"draw": "a.svg", "plot": "b.svg", "animate": "c.html"}
     for command, path in written.items():

@@ -161,7 +161,8 @@ def test_an_unknown_suffix_is_refused_with_those_that_exist(scene: Scene, tmp_pa
     with pytest.raises(InputError) as raised:
         write(scene, tmp_path / "picture.bmp")
     assert str(raised.value) == (
-        'cannot draw "picture.bmp": its suffix must be one of .png, .svg, .pdf, .tikz'
+        f'cannot write "{tmp_path / "picture.bmp"}": the suffix of a picture is one of .png, .svg, '
+        ".pdf, .tikz"
     )
     with pytest.raises(InputError):
         write(scene, tmp_path / "picture")
@@ -184,7 +185,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     def refuse(*_: object) -> NoReturn:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("pathlib.Path.replace", refuse)
+    monkeypatch.setattr("os.replace", refuse)
     with pytest.raises(InputError):
         write(scene, target)
     assert [path.name for path in tmp_path.iterdir()] == ["picture.svg"]

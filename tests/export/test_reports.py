@@ -485,6 +485,15 @@ def test_places_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
         with pytest.raises(lw.InputError, match=rf'cannot write ".*/{shown}"'):
             report.save(tmp_path / name)
         assert not (tmp_path / name).exists()
+    assert not (tmp_path / "no").exists()
+
+
+def test_pictures_are_not_written_without_their_file(tmp_path: Path) -> None:
+    (tmp_path / "bar.md").mkdir()
+    report = WrittenReport(content=b"#", pictures={"bar-pictures/figure-1.png": b"png"})
+    with pytest.raises(lw.InputError, match=r'cannot write ".*/bar\.md": Is a directory'):
+        report.save(tmp_path / "bar.md")
+    assert [path.name for path in tmp_path.iterdir()] == ["bar.md"]
 
 
 def test_the_command_writes_a_report(tmp_path: Path) -> None:

@@ -11,7 +11,9 @@ import pytest
 import linkwork as lw
 from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
+from linkwork.export.robot.sdf import sdf_of
 from linkwork.export.robot.urdf import urdf_of
+from linkwork.foundation.names import GROUND
 from linkwork.mechanism.part.pairs import Pair, PairKind
 from linkwork.results.motion import Motion
 from tests.export.coarse import coarse
@@ -201,6 +203,42 @@ def test_a_link_with_the_name_of_the_ground_of_simulators_is_refused(
     mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "world ="))
     with pytest.raises(lw.InputError, match='link "world" has the name of the ground'):
         mechanism.to_robot(tmp_path / f"x.{suffix}")
+
+
+@pytest.mark.parametrize("name", ["", "world", "__model__", "Crank::rocker"])
+def test_titles_that_sdf_does_not_allow_are_replaced_and_noted(name: str, tmp_path: Path) -> None:
+    mechanism = lw.loads(_DEAD_ROWS.replace("Dead rows", name))
+    mechanism.to_robot(tmp_path / "x.sdf")
+    text = (tmp_path / "x.sdf").read_text()
+    assert f'The model is named "mechanism": SDF does not allow "{name}".' in text
+    model = Tree.fromstring(text).find("model")
+    assert model is not None
+    assert model.attrib["name"] == "mechanism"
+
+
+def test_a_link_with_a_name_that_sdf_reserves_is_refused(tmp_path: Path) -> None:
+    mechanism = lw.loads(_DEAD_ROWS.replace("coupler =", "__coupler__ ="))
+    with pytest.raises(lw.InputError, match='link "__coupler__" has a name that SDF reserves'):
+        mechanism.to_robot(tmp_path / "x.sdf")
+    mechanism.to_robot(tmp_path / "x.mjcf")
+
+
+def test_points_are_frames_of_an_sdf_model() -> None:
+    robot, _ = _robot("crank-shaper")
+    root = Tree.fromstring(sdf_of(robot))
+    poses = {own.attrib["name"]: own.findtext("pose") or "" for own in root.iter("link")}
+    frames = root.findall("model/frame")
+    named = [(body, p) for body, own in robot.tree.graph.bodies.items() for p in own]
+    moving = {f"{body}/{point}" for body, point in named if body != GROUND}
+    assert {own.attrib["name"] for own in frames} == moving
+    for own in frames:
+        body, _, point = own.attrib["name"].partition("/")
+        assert own.attrib["attached_to"] == body
+        x, y, *_, angle = map(float, poses[body].split())
+        a, b, *_ = map(float, (own.findtext("pose") or "").split())
+        place = complex(x, y) + np.exp(1j * angle) * complex(a, b)
+        size = robot.start.length * robot.metre
+        assert abs(place - robot.place(point)) <= _ROUNDING * size, own.attrib
 
 
 def test_a_weld_to_the_ground_names_the_world() -> None:

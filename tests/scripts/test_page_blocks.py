@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from scripts.docsite.app_check import app_links, check_app
 from scripts.docsite.page_blocks import check_page
 from scripts.docsite.site_check import Site, check_site
 
@@ -38,3 +39,26 @@ def test_faults_of_a_page_are_found(tmp_path: Path) -> None:
     assert any("broken image: no.png" in fault for fault in faults)
     wide = [fault for fault in faults if "wider than the window" in fault]
     assert wide == ["index.html at 390: 218 px wider than the window"]
+
+
+@pytest.mark.extended
+def test_links_to_an_app_have_to_move_and_to_be_editable(tmp_path: Path) -> None:
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app/index.html").write_text(
+        '<!doctype html><title>T</title><div class="lw" data-row="0">shown</div><script>'
+        'const [shown] = document.getElementsByClassName("lw");'
+        'if (location.hash !== "#example=still") setInterval(() => shown.dataset.row++, 10);'
+        'if (location.hash === "#example=a&b=1")'
+        ' shown.innerHTML = "<div data-number=l><input></div>";</script>'
+    )
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep/page.html").write_text(
+        '<a href="../app/index.html#example=still">still</a>'
+        '<a href="../app/index.html#example=fixed">no numbers</a>'
+        '<a href="../app/index.html#example=a&amp;b=1">moves</a>'
+    )
+    links = [f"app/index.html#example={name}" for name in ("a&b=1", "fixed", "still")]
+    assert app_links(tmp_path) == links
+    fixed, still = check_app(tmp_path, patience=1500)
+    assert fixed == f"{links[1]}: no number can be changed"
+    assert still == f"{links[2]}: Page.wait_for_function: Timeout 1500ms exceeded."

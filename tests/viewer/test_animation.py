@@ -102,7 +102,7 @@ def test_mechanism_writes_any_of_them_by_the_name_of_the_file(tmp_path: Path) ->
         (
             "x.avi",
             FilmOptions(),
-            r"cannot animate \"x.avi\": its suffix must be one of .html, .gif",
+            r"cannot write \"x.avi\": the suffix of an animation is one of .html, .gif",
         ),
         ("x.gif", FilmOptions(fps=0), r"more than 0 and at most 240 frames per second, got 0$"),
         ("x.gif", FilmOptions(fps=60), r"a GIF plays at most 50 frames per second, not 60"),
@@ -140,5 +140,5 @@ def test_a_motion_writes_itself(tmp_path: Path) -> None:
     page = (tmp_path / "part.html").read_bytes()
     assert page == animation({"motion": motion}, "html")
     assert (tmp_path / "part.gif").read_bytes().startswith(b"GIF89a")
-    with pytest.raises(lw.InputError, match=r"^cannot animate \"part\.bmp\": its suffix must be "):
+    with pytest.raises(lw.InputError, match=r"^cannot write \"part\.bmp\": the suffix of an "):
         motion.animate("part.bmp")

@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwork import exchange, export, textfile
+from linkwork import exchange, export
 from linkwork.api.designed import DesignedMechanism
 from linkwork.exchange.drawn import Exported
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import check_flags, given_or
+from linkwork.foundation.written_file import save_bytes, save_text
 from linkwork.mechanism.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class ExportedMechanism(DesignedMechanism):
             raise InputError(f'cannot write "{path}": a workbook needs the suffix .xlsx')
         cycle = self.sweep() if motion is None else motion
         written = export.workbook_of(self.model, cycle)
-        textfile.save_bytes(written.content, path)
+        save_bytes(written.content, path)
         return written.notices
 
     def to_code(self, path: str | Path, motion: Motion | None = None) -> None:
@@ -82,7 +83,7 @@ class ExportedMechanism(DesignedMechanism):
         """
         cycle = self.sweep() if motion is None else motion
         text = export.code_of(self.model, cycle, as_path(path))
-        textfile.save_text(text, path)
+        save_text(text, path)
 
     def exported(
         self,
@@ -175,7 +176,7 @@ class ExportedMechanism(DesignedMechanism):
         if suffix == ".urdf" and motion is None:
             motion = self.sweep(configuration=configuration)
         text = export.robot_of(self.model, start, motion, as_path(path))
-        textfile.save_text(text, path)
+        save_text(text, path)
 
     def to_plates(
         self,
@@ -228,5 +229,5 @@ class ExportedMechanism(DesignedMechanism):
         export.check_plate_file(file)
         cycle = self.sweep() if motion is None else motion
         stack = export.stack_of(self.model, cycle, chosen, progress)
-        textfile.save_bytes(export.plates_of(stack, file, layout=layout), path)
+        save_bytes(export.plates_of(stack, file, layout=layout), path)
         return stack

@@ -15,6 +15,7 @@ from linkwork.foundation.internal import internal
 from linkwork.foundation.names import as_names
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.value_types import given_or
+from linkwork.foundation.written_file import save_bytes
 from linkwork.results.force import Force
 
 if TYPE_CHECKING:
@@ -221,7 +222,7 @@ class Mechanism(ReportedMechanism):
             solver=solver,
             progress=progress,
         )
-        textfile.save_bytes(content, path)
+        save_bytes(content, path)
 
     def solving_page(self, sliders: Sequence[str], motion: Motion) -> SolvingPage:
         """The solver for a page that shows a sweep with sliders; see :meth:`animate`."""

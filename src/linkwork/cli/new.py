@@ -11,7 +11,7 @@ from linkwork.api import example_text
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json
 from linkwork.foundation.errors import InputError
-from linkwork.textfile.writer import save_text
+from linkwork.foundation.written_file import save_text
 from linkwork.viewer.live.mechanism_file import blank_sheet
 
 __all__ = ["new"]

@@ -10,7 +10,7 @@ import click
 
 from linkwork.export import csv_lines
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import unwritten
+from linkwork.foundation.written_file import save_pieces
 from linkwork.results.table import Table
 
 __all__ = ["check_outputs", "write_bytes", "write_table", "write_text"]
@@ -85,20 +85,7 @@ def write_bytes(name: str, pieces: Iterable[bytes]) -> None:
     InputError
         If the file cannot be written; its former content is kept.
     """
-    target = Path(_real(name))
-    regular = target.is_file() or not target.exists()
-    # in the same folder: renaming across file systems copies
-    part = target.with_name(f".{target.name}.{os.getpid()}.part") if regular else target
-    try:
-        with part.open("wb") as file:
-            file.writelines(pieces)
-        if regular:
-            part.replace(target)
-    except OSError as error:
-        raise unwritten(name, error) from None
-    finally:
-        if regular:
-            part.unlink(missing_ok=True)
+    save_pieces(pieces, name)
 
 
 def _real(name: str) -> str:

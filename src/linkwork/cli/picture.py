@@ -3,36 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from linkwork.api import Mechanism
 from linkwork.cli.terminal import progress
 from linkwork.drawing.charts.plotting import motion_plot
 from linkwork.drawing.mechanism_scene import SceneOptions, scene_of
-from linkwork.drawing.picture_file import FORMATS, write
+from linkwork.drawing.picture_file import check_picture, write
 from linkwork.drawing.pose import no_points
 from linkwork.drawing.scene import Scene
-from linkwork.foundation.errors import InputError
 from linkwork.results.motion import Motion
 from linkwork.results.position import Position
 
 __all__ = ["check_picture", "check_points", "sweep_scene", "write", "write_plot"]
 
 _FURTHER = 4  # further positions drawn in a sweep: every fifth of a crank's turn
-
-
-def check_picture(path: str) -> None:
-    """Reject a picture file of unknown format before any computation.
-
-    Raises
-    ------
-    InputError
-        If the suffix is not of a known format.
-    """
-    suffix = Path(path).suffix
-    if suffix.lower().removeprefix(".") not in FORMATS:
-        known = ", ".join(f".{name}" for name in FORMATS)
-        raise InputError(f'cannot draw "{path}": its suffix must be one of {known}')
 
 
 def check_points(mechanism: Mechanism) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from linkwork.drawing import matplotlib_writer
@@ -14,13 +13,25 @@ from linkwork.drawing.sheet import Sheet
 from linkwork.drawing.theme import LIGHT, Theme
 from linkwork.drawing.tikz_writer import tikz_picture
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path, unwritten
+from linkwork.foundation.paths import as_path, suffix_of
+from linkwork.foundation.written_file import save_bytes
 
-__all__ = ["FORMATS", "render", "write"]
+__all__ = ["FORMATS", "check_picture", "render", "write"]
 
 _TIKZ = "tikz"
 #: File formats by suffix.
 FORMATS = (*matplotlib_writer.FORMATS, _TIKZ)
+
+
+def check_picture(path: str | Path) -> str:
+    """The format of a picture file by its suffix.
+
+    Raises
+    ------
+    InputError
+        If there is no such format.
+    """
+    return suffix_of(as_path(path), "a picture", [f".{name}" for name in FORMATS])[1:]
 
 
 def write(
@@ -42,19 +53,8 @@ def write(
         If Matplotlib is not installed.
     """
     target = as_path(path)
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in FORMATS:
-        known = ", ".join(f".{name}" for name in FORMATS)
-        raise InputError(f'cannot draw "{target.name}": its suffix must be one of {known}')
-    page = render(scene, kind, dpi=dpi, theme=theme)
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(page)
-        part.replace(target)
-    except OSError as error:
-        raise unwritten(target, error) from error
-    finally:
-        part.unlink(missing_ok=True)
+    kind = check_picture(target)
+    save_bytes(render(scene, kind, dpi=dpi, theme=theme), target)
     return target
 
 

@@ -277,7 +277,8 @@ def code_of(drawn: Drawn) -> str:
         ),
         "".join(f"YPB{slide},B{slide},0,0,0,0,c5cae9,{pin},{slide},,." for slide, pin in blocks),
     ]
-    drawn.leave_out("the link", "speed of the input: 10 rpm is written")
+    if driven:
+        drawn.leave_out("the link", "speed of the input: 10 rpm is written")
     code = f"0O.SS.A,0.{unit or '1'}010.{parts[0]}.{parts[1]}{parts[2]}..N"
     return code + _CHECKS[len(code) % len(_CHECKS)]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,7 @@ from linkwork.foundation.deferred import Deferred
 from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
 from linkwork.foundation.internal import internal
+from linkwork.foundation.named_sequence import NamedSequence
 from linkwork.foundation.presenting import presenter
 from linkwork.results.failure import Failure
 from linkwork.results.motion import Limit, Motion
@@ -152,8 +153,10 @@ class Circuit:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Circuits:
-    """All circuits of a mechanism, that of the guess first; indexed by number (from 0) or by name.
+class Circuits(NamedSequence[Circuit]):
+    """All circuits of a mechanism, that of the guess first: a sequence.
+
+    Indexed by number (from 0), by slice or by name.
 
     Parameters
     ----------
@@ -191,20 +194,12 @@ class Circuits:
     seeded: int
     failure: Failure | None = None
 
-    def __len__(self) -> int:
-        return len(self.circuits)
+    @property
+    def _by_name(self) -> tuple[tuple[str, Circuit], ...]:
+        return tuple((circuit.name, circuit) for circuit in self.circuits)
 
-    def __iter__(self) -> Iterator[Circuit]:
-        return iter(self.circuits)
-
-    def __getitem__(self, which: int | str) -> Circuit:
-        if isinstance(which, int):
-            return self.circuits[which]
-        for circuit in self.circuits:
-            if circuit.name == which:
-                return circuit
-        names = [circuit.name for circuit in self.circuits]
-        raise UnknownNameError(f'there is no "{which}" {choices("circuits", names, which)}')
+    def _unknown(self, name: object) -> tuple[str, str]:
+        return f'there is no "{name}"', "circuits"
 
     def branch(self, name: str) -> Branch:
         """A branch by its name, ``circuit 1 branch 2``.

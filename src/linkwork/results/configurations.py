@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from linkwork.foundation.completeness import Completeness
-from linkwork.foundation.errors import UnknownNameError, choices
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.named_sequence import NamedSequence
 from linkwork.foundation.presenting import presenter
 from linkwork.results.position import Position
 from linkwork.results.summary import Summary, driven_text
@@ -73,12 +73,12 @@ class PathCount:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Configurations:
+class Configurations(NamedSequence[Position]):
     """All assembly configurations of a mechanism at one input value.
 
-    Iterates over positions, each with its name in ``position.configuration``; indexed by number
-    (from 0) or by name. The order is by block in solving order; within a block ``open`` before
-    ``crossed``, otherwise by the block's unknowns, angles from 0 to a full turn.
+    A sequence of positions, each with its name in ``position.configuration``; indexed by number
+    (from 0), by slice or by name. The order is by block in solving order; within a block ``open``
+    before ``crossed``, otherwise by the block's unknowns, angles from 0 to a full turn.
 
     Parameters
     ----------
@@ -116,23 +116,13 @@ class Configurations:
     paths: tuple[PathCount, ...] = ()
     seed: int
 
-    def __len__(self) -> int:
-        return len(self.positions)
+    @property
+    def _by_name(self) -> tuple[tuple[str, Position], ...]:
+        return tuple((position.configuration, position) for position in self.positions)
 
-    def __iter__(self) -> Iterator[Position]:
-        return iter(self.positions)
-
-    def __getitem__(self, which: int | str) -> Position:
-        """A configuration by number, from 0, or by name."""
-        if isinstance(which, int):
-            return self.positions[which]
-        for position in self.positions:
-            if position.configuration == which:
-                return position
-        raise UnknownNameError(
-            f'there is no configuration "{which}" of {self.mechanism} at this input '
-            f"{choices('configurations', self.names, which)}"
-        )
+    def _unknown(self, name: object) -> tuple[str, str]:
+        here = f"of {self.mechanism} at this input"
+        return f'there is no configuration "{name}" {here}', "configurations"
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from linkwork.textfile.writer import (
         part_lines as part_lines,
         save as save,
-        save_bytes as save_bytes,
-        save_text as save_text,
         write_text as write_text,
     )
 else:

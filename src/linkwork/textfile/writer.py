@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwork.foundation.paths import as_path, unwritten
+from linkwork.foundation.written_file import save_text
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
@@ -21,7 +19,7 @@ from linkwork.textfile.keys import FORMAT
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
 
-__all__ = ["part_lines", "save", "save_bytes", "save_text", "write_tables", "write_text"]
+__all__ = ["part_lines", "save", "write_tables", "write_text"]
 
 _Tables = dict[str, dict[str, Any] | list[dict[str, Any]]]
 
@@ -102,39 +100,6 @@ def save(description: Description, path: Path | str) -> None:
         If the file cannot be written; an existing file is then unchanged.
     """
     save_text(write_text(description), path)
-
-
-def save_text(text: str, path: Path | str) -> None:
-    """Write a text to a file as UTF-8, completely or not at all; raises like :func:`save`."""
-    save_bytes(text.encode("utf-8"), path)
-
-
-def save_bytes(data: bytes, path: Path | str) -> None:
-    """Write a file, completely or not at all; raises like :func:`save`."""
-    target = as_path(path)
-    try:
-        target = target.resolve()
-        _replace(target, data)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise unwritten(path, error) from None
-
-
-def _replace(target: Path, data: bytes) -> None:
-    """Write a temporary file and rename it: readers see the old file or the new one."""
-    beside = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}")
-    try:
-        with beside.open("xb") as file:
-            file.write(data)
-            file.flush()
-            # the data must be on disk before the file is renamed
-            os.fsync(file.fileno())
-        if target.exists():
-            # keep the permissions of the old file
-            beside.chmod(target.stat().st_mode & 0o777)
-        os.replace(beside, target)
-    except BaseException:  # remove the temporary file, also after Ctrl-C
-        beside.unlink(missing_ok=True)
-        raise
 
 
 def _head(description: Description) -> dict[str, Any]:

@@ -14,11 +14,11 @@ from linkwork.drawing.moving_scene import moving_scene
 from linkwork.drawing.theme import THEMES, theme_named
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path
+from linkwork.foundation.paths import as_path, suffix_of
 from linkwork.foundation.value_types import given_or
+from linkwork.foundation.written_file import save_bytes
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
-from linkwork.textfile.writer import save_bytes
 from linkwork.viewer.film_file import FILM_FORMATS, check_film, film_bytes
 from linkwork.viewer.offline_page import offline_page
 from linkwork.viewer.page_building import Loops, motion_page
@@ -78,10 +78,8 @@ def check_animation(path: str | Path, options: FilmOptions | None = None) -> str
         If the package that writes the format is not installed.
     """
     chosen = given_or(FilmOptions(), "options", options)
-    kind = as_path(path).suffix.lower().removeprefix(".")
-    if kind not in ANIMATION_FORMATS:
-        known = ", ".join(f".{name}" for name in ANIMATION_FORMATS)
-        raise InputError(f'cannot animate "{path}": its suffix must be one of {known}')
+    suffixes = [f".{name}" for name in ANIMATION_FORMATS]
+    kind = suffix_of(as_path(path), "an animation", suffixes)[1:]
     if not 0 < chosen.fps <= 240:
         raise InputError(
             f"a film needs more than 0 and at most 240 frames per second, got {chosen.fps:g}"

@@ -13,7 +13,7 @@ import numpy as np
 from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError
-from linkwork.textfile.writer import save_bytes
+from linkwork.foundation.written_file import save_bytes
 
 __all__ = ["SHIPPED", "AtlasFamily", "Nearest", "PathAtlas", "read_atlas"]
 
@@ -104,9 +104,10 @@ class Nearest:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PathAtlas:
-    """Several families."""
+    """Several families; ``unfinished``: sentences about stores that lack some of their designs."""
 
     families: tuple[AtlasFamily, ...]
+    unfinished: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return sum(map(len, self.families))

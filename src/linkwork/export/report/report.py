@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +22,8 @@ from linkwork.export.report.markdown_writer import markdown_files
 from linkwork.export.report.pdf_writer import pdf_bytes
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.foundation.paths import suffix_of, unwritten
-from linkwork.textfile import save_bytes
+from linkwork.foundation.written_file import save_bytes
+from linkwork.foundation.written_folder import check_place, written_folder
 
 __all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
 
@@ -57,22 +60,26 @@ class WrittenReport:
     pictures: Mapping[str, bytes]
 
     def save(self, path: Path) -> tuple[Path, ...]:
-        """Write the pictures, then the file; returns all their paths, that of the file first.
+        """Write the file with its pictures, or nothing; returns all paths, that of the file first.
 
         Raises
         ------
         InputError
             If one of them cannot be written.
         """
-        for name, picture in self.pictures.items():
-            place = path.parent / name
-            try:
-                place.parent.mkdir(exist_ok=True)
-            except OSError as error:
-                raise unwritten(place.parent, error) from None
-            save_bytes(picture, place)
-        save_bytes(self.content, path)
-        return path, *(path.parent / name for name in self.pictures)
+        places = [path.parent / name for name in self.pictures]
+        if not places:
+            save_bytes(self.content, path)
+            return (path,)
+        folder = places[0].parent  # all pictures are in one
+        if not folder.parent.is_dir():
+            raise unwritten(folder, FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)))
+        check_place(folder)
+        with written_folder(folder) as part:
+            for place, picture in zip(places, self.pictures.values(), strict=True):
+                (part / place.name).write_bytes(picture)
+            save_bytes(self.content, path)
+        return path, *places
 
 
 def check_report_file(path: Path) -> None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from importlib import metadata
 from xml.etree import ElementTree as Tree
 
-__all__ = ["element", "numbers", "written"]
+__all__ = ["WORLD", "element", "numbers", "written"]
+
+#: The ground in MJCF and SDF.
+WORLD = "world"
 
 
 def numbers(*values: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from xml.etree import ElementTree as Tree
 
-from linkwork.export.robot.markup import element, numbers, written
+from linkwork.export.robot.markup import WORLD, element, numbers, written
 from linkwork.export.robot.robot import Robot
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.part.pairs import PairKind
@@ -78,7 +78,7 @@ def _constraints(root: Tree.Element, robot: Robot) -> None:
     for edge in tree.closing:
         # of welds MuJoCo takes the relative pose in the start position
         if edge.kind is PairKind.FIXED:
-            own = ("world" if body == GROUND else body for body in edge.bodies)
+            own = (WORLD if body == GROUND else body for body in edge.bodies)
             element(equality, "weld", **dict(zip(("body1", "body2"), own, strict=True)))
         else:
             a, b = (f"{body}/{edge.point}" for body in edge.bodies)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from linkwork.export.robot.markup import WORLD
 from linkwork.export.robot.mjcf import mjcf_of
 from linkwork.export.robot.robot import Robot
 from linkwork.export.robot.sdf import sdf_of
@@ -17,7 +18,6 @@ from linkwork.results.position import Position
 __all__ = ["check_robot_file", "robot_of"]
 
 _FORMATS = (".mjcf", ".urdf", ".sdf")
-_WORLD = "world"
 
 
 def check_robot_file(file: Path) -> str:
@@ -55,8 +55,8 @@ def robot_of(model: Model, start: Position, motion: Motion | None, file: Path) -
         if motion is None:
             raise InputError("URDF has no loops: its joints need a motion to follow")
         return urdf_of(robot, motion)
-    if _WORLD in robot.tree.graph.bodies:
+    if WORLD in robot.tree.graph.bodies:
         raise InputError(
-            f'link "{_WORLD}" has the name of the ground in MJCF and SDF: rename it, or write URDF'
+            f'link "{WORLD}" has the name of the ground in MJCF and SDF: rename it, or write URDF'
         )
     return mjcf_of(robot) if suffix == ".mjcf" else sdf_of(robot)

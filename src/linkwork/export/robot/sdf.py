@@ -5,7 +5,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as Tree
 
 from linkwork.export.robot.joint_tree import TreeJoint
-from linkwork.export.robot.markup import element, numbers, written
+from linkwork.export.robot.markup import WORLD, element, numbers, written
 from linkwork.export.robot.robot import Robot
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.names import GROUND
@@ -13,6 +13,7 @@ from linkwork.mechanism.part.pairs import Pair, PairKind
 
 __all__ = ["sdf_of"]
 
+_UNTITLED = "mechanism"
 _KINDS = {PairKind.PIN: "revolute", PairKind.SLIDE: "prismatic", PairKind.FIXED: "fixed"}
 
 
@@ -22,20 +23,30 @@ def sdf_of(robot: Robot) -> str:
     Raises
     ------
     InputError
-        If wheels are coupled: SDF has no equivalent for every such coupling.
+        If wheels are coupled: SDF has no equivalent for every such coupling; or if a link has a
+        name that SDF reserves.
     """
     if robot.tree.graph.couplings:
         name = robot.tree.graph.couplings[0].name
         raise InputError(f'"{name}" couples turning wheels: SDF cannot describe it; write MJCF')
+    reserved = [body for body in robot.tree.graph.bodies if _is_reserved(body)]
+    if reserved:
+        raise InputError(f'link "{reserved[0]}" has a name that SDF reserves: rename it')
     root = Tree.Element("sdf", version="1.9")
-    model = element(root, "model", name=robot.name)
     notes = [*robot.notes(), "Joints whose names begin with loop: close loops."]
+    title = robot.name
+    if not title or title == WORLD or _is_reserved(title) or "::" in title:
+        notes.append(f'The model is named "{_UNTITLED}": SDF does not allow "{title}".')
+        title = _UNTITLED
+    model = element(root, "model", name=title)
     if robot.gravity():
         fall = robot.gravity()
         gravity = numbers(fall.real, fall.imag, 0.0)
         notes.append(f"The world's gravity has to be {gravity}: a model cannot give it.")
     for joint in robot.tree.joints:
         _link(model, robot, joint, gravity=bool(robot.gravity()))
+    for joint in robot.tree.joints:
+        _points(model, robot, joint.child)
     for joint in robot.tree.joints:
         kind = joint.edge.kind
         along = robot.axis(joint) if kind is PairKind.SLIDE else None
@@ -60,6 +71,17 @@ def _link(model: Tree.Element, robot: Robot, joint: TreeJoint, *, gravity: bool)
         element(inertia, name, numbers(own.inertia))
 
 
+def _is_reserved(name: str) -> bool:
+    return len(name) >= 4 and name.startswith("__") and name.endswith("__")
+
+
+def _points(model: Tree.Element, robot: Robot, body: str) -> None:
+    """The points of a body as frames: those of ground cannot be frames of a model."""
+    for point, place in robot.points(body).items():
+        frame = element(model, "frame", name=f"{body}/{point}", attached_to=body)
+        element(frame, "pose", numbers(place.real, place.imag, 0, 0, 0, 0))
+
+
 def _joint(
     model: Tree.Element,
     kind: PairKind,
@@ -70,7 +92,7 @@ def _joint(
     place: complex = 0j,
 ) -> None:
     """A joint; its frame is at a place in the child's frame."""
-    parent, child = ("world" if body == GROUND else body for body in bodies)
+    parent, child = (WORLD if body == GROUND else body for body in bodies)
     own = element(model, "joint", name=name, type=_KINDS[kind])
     element(own, "parent", parent)
     element(own, "child", child)

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from linkwork.foundation.errors import InputError, MechanismFileError
 from linkwork.foundation.paths import unwritten
+from linkwork.foundation.written_file import save_text
 from linkwork.textfile.library import example_text
 from linkwork.textfile.toml_text import bytes_of, text_of
-from linkwork.textfile.writer import save_text
 
 __all__ = ["FileConflictError", "MechanismFile", "OnDisk", "blank_sheet", "new_file"]
 
