@@ -19,6 +19,7 @@ from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
 from linkwork.motion.named_quantities import RowValues
 from linkwork.motion.start import first_position
+from linkwork.numerics.continuation.local_parametrization import coincide
 from linkwork.numerics.newton import NewtonOptions
 
 __all__ = ["defects_by_circuits"]
@@ -77,10 +78,17 @@ class _Search:
 
     def defects(self) -> tuple[Defect, ...]:
         """None if one branch passes all positions, else the defect of that which comes farthest."""
-        guess = self._guess()
-        if len(self.values) < 2 or (guess is not None and self._is_straight(guess)):
+        if len(self.values) < 2:
             return ()
-        if any(self._is_straight(v) for v in self._regular_starts()):
+        guess = self._guess()
+        way = None if guess is None else straight_way(self.drive, guess, self.values[:1])
+        mine = [] if way is None else [way[0]]
+        if any(self._is_straight(v) for v in mine):
+            return ()
+        others = [
+            v for v in self._regular_starts() if not any(coincide(self.leads, v, w) for w in mine)
+        ]
+        if any(self._is_straight(v) for v in others):
             return ()
         starts = self._starts(guess)
         found = [] if starts else [self._no_start()]
@@ -116,9 +124,15 @@ class _Search:
             return [_Start(v=guess, circuit=circuit, branches=branches)] if branches else []
         starts: list[_Start] = []
         for v in self._regular_starts():
-            known = (one.circuit for one in starts if one.circuit.branch_of(v) is not None)
-            circuit = next(known, None) or FollowedCircuit(self.drive, v)
-            branch = circuit.branch_of(v)
+            known = [(one.circuit, one.circuit.known) for one in starts]
+            own = FollowedCircuit(self.drive, v)
+            on = (
+                (circuit, branch)
+                for circuit, branches in (*known, (own, own.branches()))
+                for branch in branches
+                if circuit.lies_on(branch, v)
+            )
+            circuit, branch = next(on, (own, None))
             if branch is not None:
                 starts.append(_Start(v=v, circuit=circuit, branches=[branch]))
         return starts
@@ -233,6 +247,8 @@ class _Search:
         listed = self._list(0)
         if listed.completeness is Completeness.NOT_LISTED:
             return _unlisted(0)
+        if self._regular_starts():
+            return _not_proved("the circuit of position 1 cannot be followed")
         return _at_dead_point(0) if len(listed.v) else _unreached(listed, 0)
 
     def _list(self, k: int) -> Assemblies:

@@ -120,10 +120,6 @@ class FollowedCircuit:
         met = {crossing for arc in self.arcs for crossing in arc.crossings}
         return [self._explorer.crossings[number].v for number in met]
 
-    def branch_of(self, v: Array) -> CurveBranch | None:
-        """The branch with a position (N,) at which the input can lead."""
-        return next((branch for branch in self.branches() if self.lies_on(branch, v)), None)
-
     def lies_on(self, branch: CurveBranch, v: Array) -> bool:
         """Whether a position (N,) at which the input can lead is one of a branch."""
         places = self.positions(branch, float(v[self.leads.parameter]))
