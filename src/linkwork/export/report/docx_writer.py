@@ -162,6 +162,9 @@ class _Writer:
             self._column(grid, k, cells[k], width, right=column.align != "left")
         for cell in grid.rows[0].cells:
             cell.paragraphs[0].runs[0].font.bold = True
+        if table.is_short:
+            for cell in grid.columns[0].cells[:-1]:
+                cell.paragraphs[0].paragraph_format.keep_with_next = True
         self._rules(grid)
         self.file.add_paragraph()
 

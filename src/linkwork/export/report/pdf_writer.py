@@ -39,13 +39,13 @@ _PREAMBLE = """\
 #let formula(number, body) = block(inset: (left: 1.2em), width: 100%, breakable: false,
   grid(columns: (1fr, auto), column-gutter: 1em, par(leading: 0.9em, body), number))
 #let cap(body) = block(above: 1.1em, below: 0.5em, sticky: true, text(size: 9pt, body))
-#let listed(caption, columns, align, header, ..cells) = {
+#let listed(caption, short, columns, align, header, ..cells) = block(breakable: not short, {
   cap(caption)
   set text(size: 9pt)
   table(columns: columns, align: align, stroke: none, inset: (x: 5pt, y: 2.6pt),
     table.hline(stroke: 0.8pt), table.header(..header, table.hline(stroke: 0.4pt)),
     ..cells, table.hline(stroke: 0.8pt))
-}
+})
 #let shown(path, width, caption) = block(breakable: false, above: 1.2em, below: 1.2em)[
   #align(center, image(path, width: width))
   #text(size: 9pt, caption)
@@ -135,7 +135,8 @@ def _table(table: Table) -> Iterator[str]:
     align = ", ".join("left" if word else "right" for word in words)
     header = ", ".join(f"strong({_quoted(column.header)})" for column in table.columns)
     caption = _quoted(f"Table {table.number}. {table.caption}")
-    yield f"#listed({caption}, ({columns},), ({align},), ({header},),"
+    short = "true" if table.is_short else "false"
+    yield f"#listed({caption}, {short}, ({columns},), ({align},), ({header},),"
     for cells in zip(*map(printed, table.columns), strict=True):
         yield "  " + ", ".join(map(_quoted, cells)) + ","
     yield ")"
