@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from linkwork.export.report.document import (
     Block,
@@ -23,7 +24,7 @@ from linkwork.export.report.equation_terms import typst_terms
 from linkwork.export.report.figure_files import figure_files
 from linkwork.foundation.errors import MissingPackageError
 
-__all__ = ["pdf_bytes", "typst_text"]
+__all__ = ["pdf_bytes", "typst_package", "typst_text"]
 
 _PREAMBLE = """\
 #set document(title: TITLE, author: AUTHOR, date: none)
@@ -53,6 +54,23 @@ _PREAMBLE = """\
 """
 
 
+def typst_package() -> Any:
+    """Typst.
+
+    Raises
+    ------
+    MissingPackageError
+        If it is not installed.
+    """
+    try:
+        import typst
+    except ImportError:
+        raise MissingPackageError(
+            'PDF reports need Typst: pip install "linkwork[report]"'
+        ) from None
+    return typst
+
+
 def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     """The document as the content of a PDF file.
 
@@ -61,13 +79,7 @@ def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     MissingPackageError
         If Typst is not installed.
     """
-    try:
-        import typst
-    except ImportError:
-        raise MissingPackageError(
-            'PDF reports need Typst: pip install "linkwork[report]"'
-        ) from None
-
+    typst = typst_package()
     # Typst reads pictures from a folder only
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
