@@ -28,40 +28,31 @@ from linkwork.design.precision.start_sets import (  # noqa: E402
 from linkwork.design.six_bars.start_member import SHIPPED as SHIPPED_WATT  # noqa: E402
 from linkwork.design.six_bars.watt_problem import WATT  # noqa: E402
 from linkwork.foundation.arrays import AnyArray  # noqa: E402
-from linkwork.numerics.homotopy.monodromy import Member, solve_by_monodromy  # noqa: E402
-from linkwork.numerics.homotopy.trace_test import trace_defect  # noqa: E402
+from linkwork.numerics.homotopy.confirmed_member import solve_and_confirm  # noqa: E402
+from linkwork.numerics.homotopy.monodromy import Member  # noqa: E402
 
 #: The families of every shipped file.
 _FILES: dict[Path, tuple[NamedFamily, ...]] = {SHIPPED: SHIPPED_PROBLEMS, SHIPPED_WATT: (WATT,)}
 _SEED, _CHECK = 11, 12  # random numbers of the shipped sets, and of others
-_STRAIGHT = 1e-7  # a trace's distance from a straight line that rounding explains
-_SEEN = 100.0  # times less straight is the trace of one solution less
 # of six-bars: of so many paths some pass too near to a degenerate solution on a longer way
 _REACH = 1e-3
-_TRIES = 20  # random directions of the trace test, until no path is lost
 
 
 def solve(problem: NamedFamily, seed: int) -> Member:
     """A solved and confirmed member; ends the script if it cannot be confirmed."""
     begin, grown = time.process_time(), list[int]()
     rng, tracker = np.random.default_rng(seed), CompiledTracker()
-    member = solve_by_monodromy(problem, rng, tracker, grown.append)
     reach = _REACH if problem is WATT else 1.0
-    for _ in range(_TRIES):
-        whole = trace_defect(problem, member, rng, tracker, reach)
-        if not whole.lost:
-            break
-    less = Member(parameters=member.parameters, x=member.x[1:])
-    part = trace_defect(problem, less, rng, tracker, reach)
+    found = solve_and_confirm(problem, rng, tracker, grown.append, reach=reach)
     seconds = time.process_time() - begin
     _say(
-        f"{_title(problem)}: {len(member.x)} solutions ({', '.join(map(str, grown))}); "
-        f"trace {whole.relative:.0e}, "
-        f"one less {part.relative:.0e}; {seconds:.1f} s"
+        f"{_title(problem)}: {len(found.member.x)} solutions ({', '.join(map(str, grown))}); "
+        f"trace {found.trace.relative:.0e}, "
+        f"one less {found.trace.less:.0e}; {seconds:.1f} s"
     )
-    if whole.lost or whole.relative > _STRAIGHT or part.relative < _SEEN * whole.relative:
+    if not found.confirmed:
         raise SystemExit("the trace test did not confirm these solutions")
-    return member
+    return found.member
 
 
 def build() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.improvement import improving
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.varied_number import number_named
@@ -102,3 +103,23 @@ def test_goals_without_a_meaning_are_refused() -> None:
         bar.improve({"of": "rocker", "taget": 1.0})
     with pytest.raises(InputError, match="mixes numbers of the motion"):
         bar.improve({"of": "stroke(rocker) - rocker", "target": 1.0})
+
+
+def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found: list[np.ndarray] = []
+
+    def caught(_given: object, starts: np.ndarray, **_: object) -> None:
+        found.append(starts)
+        raise InterruptedError
+
+    monkeypatch.setattr(improving, "fit_numbers", caught)
+    goal = {"of": "stroke(d)", "target": 90.0}
+    with pytest.raises(InterruptedError):
+        lw.example("slider-crank").improve(goal, vary=["O2 A", "O2.y"], starts=400)
+    start, others = found[0][0], found[0][1:]
+    assert start == pytest.approx([40.0, 0.0])
+    # 5 % of the crank, and of the longest link, 120
+    assert np.abs(others - start).max(axis=0) == pytest.approx([2.0, 6.0], rel=0.02)
+    assert np.abs(others.mean(axis=0) - start).max() < 1.0

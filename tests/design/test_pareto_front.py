@@ -70,6 +70,47 @@ def test_parts_of_a_front_that_no_weighted_sum_reaches_are_found() -> None:
         assert (values**2 @ [1.0, weight]).argmin() in (0, 5)
 
 
+@pytest.mark.parametrize(
+    ("ends", "bound", "largest"),
+    [
+        ((21.604, 23.522), {}, 23.522),
+        # the same end by a bound that is a goal
+        ((21.604, 26.0), {"of": "max(A.y)", "most": 23.522}, 23.522),
+    ],
+)
+def test_a_front_that_lies_on_a_bound_and_is_ended_by_one_is_found_whole(
+    ends: tuple[float, float], bound: dict[str, Any], largest: float
+) -> None:
+    """Rods are at their shortest; the second goal is ten times as large as its span.
+
+    A dense grid of designs has the front; its parts between the ends were lost where the squares
+    of the second goal outweighed the limit of the first one.
+    """
+    crank = lw.loads(CRANK)
+    goals = [{"of": "max(d)", "target": 115.113}, {"of": "min(d)", "target": 51.527}]
+    bounds = {"O2 A": ends, "B A": (95.57, 178.636)}
+    front = crank.improve(
+        [*goals, *([bound] if bound else [])], vary=["O2 A", "B A"], bounds=bounds, front=8,
+        starts=1,
+    )  # fmt: skip
+    values = _values(front)
+    a, rod = (x.ravel() for x in np.meshgrid(np.linspace(ends[0], largest, 200),
+                                             np.linspace(*bounds["B A"], 200)))  # fmt: skip
+    t = np.radians(np.arange(0.0, 361.0, 30.0))[:, None]
+    d = a * np.cos(t) + np.sqrt(rod**2 - (a * np.sin(t) + 20) ** 2)
+    dense = np.abs(np.stack([d.max(axis=0) - 115.113, d.min(axis=0) - 51.527], axis=1))
+    order = np.lexsort(dense.T[::-1])
+    lowest = np.minimum.accumulate(np.append(np.inf, dense[order, 1]))[:-1]
+    dense = dense[order][dense[order, 1] < lowest]
+    spans = np.ptp(dense, axis=0)
+    # eight designs are an eighth of the front apart, some two of these parts by their choice
+    apart = np.linalg.norm((dense[:, None] - values) / spans, axis=2)
+    assert apart.min(axis=1).max() < 1.5 * np.sqrt(2.0) / 7.0
+    assert len(front) == 8
+    assert not any((dense + 1e-3 < own).all(axis=1).any() for own in values)
+    assert front[-1].numbers["O2 A"] == pytest.approx(largest, abs=1e-4)
+
+
 def test_equal_goals_and_goals_met_together_have_one_design() -> None:
     crank = lw.loads(CRANK)
     stroke = {"of": "stroke(d)", "target": 70}

@@ -165,7 +165,8 @@ def test_markdown_names_pictures_that_exist(written: dict[str, Path]) -> None:
 def test_tables_that_fit_stay_on_one_page() -> None:
     document = _document("four-bar", "motion")
     lone, *_ = _tables(document).values()
-    long = replace(lone, columns=tuple(replace(c, cells=(*c.cells, *c.cells)) for c in lone.columns))
+    twice = (replace(c, cells=(*c.cells, *c.cells)) for c in lone.columns)
+    long = replace(lone, columns=tuple(twice))
     assert [lone.is_short, long.is_short] == [True, False]
     section = Section(title="T", blocks=(lone, long))
     document = Document.numbered("T", (), [section])

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
-__all__ = ["CACHE_VARIABLE", "cache_folder", "user_cache"]
+import numpy as np
+
+from linkwork.foundation.arrays import AnyArray
+
+__all__ = ["CACHE_VARIABLE", "cache_folder", "keep_arrays", "user_cache"]
 
 #: The environment variable that names a folder in place of the user's cache.
 CACHE_VARIABLE = "LINKWORK_CACHE"
@@ -23,3 +29,16 @@ def user_cache(program: str, author: str | Literal[False] | None = None) -> Path
     from platformdirs import user_cache_path  # a page in a browser starts without it
 
     return user_cache_path(program, author)
+
+
+def keep_arrays(path: Path, arrays: Mapping[str, AnyArray]) -> None:
+    """Write a file (.npz), whole or not at all; nothing where that is not possible."""
+    part = path.with_name(f"{os.urandom(8).hex()}.part")  # another process may write the same file
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with part.open("xb") as file:
+                np.savez(file, **arrays)  # type: ignore[arg-type]  # arrays alone
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)

@@ -23,7 +23,16 @@ COUNTS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("problem", SHIPPED_PROBLEMS, ids=lambda problem: problem.name)
+_LENGTHS = (("A", "P"), ("A0", "A"), ("A0", "B0"), ("B", "P"))
+_WITH_LENGTHS = (
+    PrecisionProblem(poses=0, points=2, pivots=1, lengths=_LENGTHS),
+    PrecisionProblem(poses=1, points=2, pivots=0, lengths=_LENGTHS),
+)
+
+
+@pytest.mark.parametrize(
+    "problem", [*SHIPPED_PROBLEMS, *_WITH_LENGTHS], ids=lambda problem: problem.name
+)
 def test_derivatives_are_those_of_the_equations(problem: PrecisionProblem) -> None:
     rng = np.random.default_rng(1)
     start, goal = problem.random_parameters(rng), problem.random_parameters(rng)

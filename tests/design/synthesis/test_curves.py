@@ -227,3 +227,27 @@ def test_the_least_transmission_angle_in_a_range_is_that_of_many_angles(
                 CurveConstraints(kind, goal, 1)._constraints(x + s * change)[0] for s in (1.0, -1.0)
             )
             assert by_x[0, :, p] == pytest.approx((ahead - behind)[0] / 2e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize("timing", ["free", "as given"])
+def test_a_repeated_first_point_of_a_closed_curve_counts_once(tmp_path: Path, timing: str) -> None:
+    rows = [f"{x},{y},{20 * k}" for k, (x, y) in enumerate(_EIGHTEEN)]
+    head = 'format = 1\ntask = "path"\nmechanism = "four-bar"\n[improve]\nstarts = 12\n[curve]\n'
+    head += f'file = "foot.csv"\ntiming = "{timing}"\n'
+    task = tmp_path / "task.toml"
+
+    def solved(more: str, closed: str = "") -> lw.Synthesis:
+        (tmp_path / "foot.csv").write_text("\n".join([*rows, more]))
+        task.write_text(head + (f'closed = "{closed}"\n' if closed else ""))
+        return lw.Task.load(task).solve()
+
+    once, twice = solved(""), solved("0.5,1.1,360")
+    assert twice.message.endswith(
+        'line 19 of "foot.csv" repeats the first point, which counts once'
+    )
+    assert "repeats" not in once.message
+    assert [d.points for d in once.designs] == [d.points for d in twice.designs]
+    # of an open curve, or half a turn later, it is another point
+    assert len(solved("0.5,1.1,360", "open").designs[0].inputs) == 19
+    if timing == "as given":
+        assert len(solved("0.5,1.1,350").designs[0].inputs) == 19

@@ -71,21 +71,30 @@ def _length(design: Any, name: str) -> float:
 
 
 @pytest.mark.parametrize(
-    "given",
+    ("given", "grade"),
     [
-        {"fixed_pivots": _PIVOTS, "lengths": {"A P": 60}},
-        {"fixed_pivots": _PIVOTS[:1], "lengths": {"A0 A": 40, "B P": 90}},
+        # eight conditions, and seven
+        (
+            {"fixed_pivots": _PIVOTS, "lengths": {"A P": 60}},
+            Completeness.WITH_PROBABILITY_ONE,
+        ),
+        (
+            {"fixed_pivots": _PIVOTS[:1], "lengths": {"A0 A": 40, "B P": 90}},
+            Completeness.SAMPLED,
+        ),
     ],
 )
-def test_given_lengths_hold_and_designs_with_them_are_proved(given: dict[str, Any]) -> None:
+def test_given_lengths_hold_and_designs_with_them_are_proved(
+    given: dict[str, Any], grade: Completeness
+) -> None:
     found = lw.Task.path(_FOUR, given=given).solve()
-    # one that nearly coincides with another may be left unproved, and is refused
-    assert found.real - 2 <= found.proved <= found.real
+    # some that nearly coincide with others may be left unproved, and are refused
+    assert 0.95 * found.real <= found.proved <= found.real
     assert found.proved > 5
-    assert found.completeness is Completeness.SAMPLED
+    assert found.completeness is grade
     assert found.delivered
     proved = [d for d in found.designs if lw.DefectKind.NOT_PROVED not in d.kinds]
-    assert len(proved) >= len(found.designs) - 4
+    assert len(proved) >= 0.95 * len(found.designs)
     for design in proved:
         for name, length in given["lengths"].items():
             assert _length(design, name) == pytest.approx(length, rel=1e-12)

@@ -104,6 +104,10 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          'given.lengths."A0 A"', "4 is out of the bounds that are wanted"),
         (_points(4) + "[given]\nfixed_pivots = [[0, 9], [5, 9]]\nlengths = { 'A0 B0' = 5 }\n", 13,
          'given.lengths."A0 B0"', "is fixed by the given pivots"),
+        (_points(3) + "[given]\nlengths = { 'A B' = 4, 'A P' = 9, 'B P' = 4.9 }\n", 10,
+         "given.lengths", "A B, A P and B P are no triangle: leave one out"),
+        (_points(3) + "[given]\nlengths = { 'A B' = 4, 'A P' = 9, 'B P' = 5 }\n", 10,
+         "given.lengths", "put P on the line of A and B, where all solutions are double: change"),
         (_MOTION + "[given]\nlengths = { 'A0 A' = 4 }\n", 19, "given.lengths",
          "belongs to points: leave it out"),
         (_FUNCTION + "of = 'x^2'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\n"

@@ -131,7 +131,9 @@ class _Front:
         spans = objective_spans(front)
         weights = [weight for weight in self.weights for _ in parents]
         lanes = self._begin(parents * len(self.weights))
-        self.trade.weights[lanes] = np.array(weights) * self.trade.units / spans
+        # squares of large objectives with small spans would outweigh bounds
+        smaller = float(np.min(spans / np.maximum(spans, front.max(axis=0))))
+        self.trade.weights[lanes] = np.array(weights) * (smaller * self.trade.units / spans)
         self._run(lanes, _ROUNDS if self.problem.has_bounds else (2 * _STEPS,))
 
     def limit(self) -> None:
@@ -175,11 +177,21 @@ class _Front:
         self.problem.trade = None
         self.problem.move(self.fit, lanes[len(found) :], between)
         held_ones = np.tile(held_ones, 2)
-        self.trade.weights[lanes] = self.trade.units / spans
+        self._set_free(lanes, places, spans)
         self.trade.weights[lanes, held_ones] *= _OTHERS[-1]
         self.trade.limits[lanes, held_ones] = np.tile(limits, 2) / self.trade.units[held_ones]
         self._run(lanes, _ROUNDS)
         return True
+
+    def _set_free(self, lanes: IndexArray, places: Array, spans: Array) -> None:
+        """Weights of objectives that are minimised, and stiffness of limits, for lanes.
+
+        Objectives count by their largest values on the front (F, K), limits by its spans: where
+        an objective is large and its span small, squares of what is left would outweigh limits.
+        """
+        largest = places.max(axis=0)
+        self.trade.weights[lanes] = self.trade.units / np.where(largest > 0.0, largest, spans)
+        self.trade.stiffness[lanes] = self.trade.units / spans
 
     def _level(self) -> None:
         """Limits of all objectives but one at levels between the least and the largest values."""
@@ -199,7 +211,8 @@ class _Front:
             kept.append(free)
             limits.append(limit / self.trade.units)
         lanes = self._begin(parents)
-        self.trade.weights[lanes] = _OTHERS[-1] * self.trade.units / spans
+        self._set_free(lanes, places, spans)
+        self.trade.weights[lanes] *= _OTHERS[-1]
         self.trade.weights[lanes, kept] /= _OTHERS[-1]
         self.trade.limits[lanes] = limits
         self.trade.limits[lanes, kept] = np.inf

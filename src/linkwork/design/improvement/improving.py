@@ -104,7 +104,9 @@ def _fits(
     x = np.array([float(q.of(model.description)) for q in numbers])
     rng = np.random.default_rng(settings.seed)
     count = settings.starts or STARTS
-    starts = x * (1.0 + settings.spread * rng.uniform(-1.0, 1.0, (count, len(x))))
+    # a number of 0 spreads by the size of what it measures
+    sizes = np.where(x == 0.0, _sizes(model, numbers, x), x)
+    starts = x + settings.spread * sizes * rng.uniform(-1.0, 1.0, (count, len(x)))
     starts[0] = x
     paths = _paths(model, motion, points) if points else (None,)
     fits: list[tuple[PathGoal | None, FittedNumbers]] = []
@@ -126,6 +128,21 @@ def _fits(
         if found.interrupted:
             break
     return fits
+
+
+def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:
+    """Sizes of what numbers (P,) measure: a radian, or the longest link or distance of points."""
+    description = model.description
+    # of dimensions the kind is not known
+    largest = float(np.abs(x[[q.table != "angles" for q in numbers]]).max(initial=0.0))
+    size = largest or 1.0
+    if isinstance(description, Draft):
+        lengths = [float(description.numbers(length)) for length in description.lengths.values()]
+        places = [[float(description.numbers(c)) for c in p] for p in description.points.values()]
+        spans = np.ptp(places, axis=0) if places else np.zeros(2)
+        size = max(lengths, default=0.0) or float(spans.max()) or size
+    radian = description.angle.from_radians(1.0)
+    return np.array([radian if q.table == "angles" else size for q in numbers])
 
 
 def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:

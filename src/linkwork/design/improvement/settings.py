@@ -148,7 +148,8 @@ class Improvement:
         Bounds of numbers by name [file units].
     starts : int
     spread : float
-        Relative spread of the starts about the mechanism as it is.
+        Relative spread of the starts about the mechanism as it is; of numbers that are 0 relative
+        to its longest link, of angles to a radian.
     front : int
         The largest number of designs of a front between the goals; 0 for a weighted sum.
     seed : int

@@ -22,7 +22,7 @@ from linkwork.numerics.lane_least_squares import Residuals
 
 __all__ = ["Objectives", "TradeOff"]
 
-_STIFF = 10.0  # weight of limits: their shifts converge faster
+_STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
 _MARGIN = 1e-9  # of an objective's scale: by which limits hold in the end
 
 
@@ -83,12 +83,18 @@ class TradeOff:
         Units of the objectives.
     weights, limits : (L, K)
         Of scaled objectives; infinite: no limit.
+
+    Attributes
+    ----------
+    stiffness : (L, K)
+        Further weights of broken limits.
     """
 
     def __init__(self, objectives: Objectives, scale: Array, weights: Array, limits: Array) -> None:
         self.objectives, self.units = objectives, scale
         self.scale = scale * objectives.weights
         self.weights, self.limits = weights, limits
+        self.stiffness = np.ones_like(limits)
         self._shift = np.zeros_like(limits)
         self._new = np.zeros_like(limits)
 
@@ -134,9 +140,9 @@ class TradeOff:
         self._new[lanes, k] = np.nan_to_num(over)
         unit = misses / np.where(value > 0.0, value, 1.0)[:, None]
         rise = np.einsum("dn,dnp->dp", unit, slope)
-        active = (over > 0.0)[:, None]
+        active, stiff = (over > 0.0)[:, None], _STIFF * self.stiffness[lanes, k]
         # no number where there is no position
-        return _STIFF * over, _STIFF * np.where(active, rise, 0.0)
+        return stiff * over, stiff[:, None] * np.where(active, rise, 0.0)
 
     def update(self, lanes: IndexArray) -> None:
         """New shifts for lanes that were evaluated."""

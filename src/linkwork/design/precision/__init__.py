@@ -11,8 +11,11 @@ if TYPE_CHECKING:
     from linkwork.design.precision.given_lengths import (
         four_bars_with_lengths as four_bars_with_lengths,
     )
-    from linkwork.design.precision.position_equations import GivenLength as GivenLength
-    from linkwork.design.precision.positions import PrecisionPositions as PrecisionPositions
+    from linkwork.design.precision.own_start_sets import own_member as own_member
+    from linkwork.design.precision.positions import (
+        GivenLength as GivenLength,
+        PrecisionPositions as PrecisionPositions,
+    )
     from linkwork.design.precision.sampling import positions_with_samples as positions_with_samples
     from linkwork.design.precision.solving import (
         PrecisionFourBars as PrecisionFourBars,

@@ -1,4 +1,4 @@
-"""Four-bars through positions with some of their lengths given.
+"""Four-bars through positions with given lengths that leave freedoms, or many solutions.
 
 Every four-bar through the positions and some drawn ones is moved along its family: the positions
 stay, and the lengths go straight to those that are given. Conditions that are still missing keep
@@ -8,22 +8,23 @@ the numbers of the four-bar as they are. So the result is a sample; each four-ba
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from linkwork.design.precision.cognates import exchange_legs
 from linkwork.design.precision.four_bar_positions import FourBarPositions
 from linkwork.design.precision.linkage_proof import prove_linkages
-from linkwork.design.precision.position_equations import FurtherConditions, GivenLength
+from linkwork.design.precision.position_equations import HeldValue
 from linkwork.design.precision.positions import PrecisionPositions
-from linkwork.design.precision.problem import CONDITIONS
-from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.design.precision.problem import CONDITIONS, PLACES
+from linkwork.foundation.arrays import ComplexArray
+from linkwork.numerics.homotopy.parameter_path import as_batch
 from linkwork.numerics.homotopy.path_tracking import relative_size
 from linkwork.numerics.homotopy.polynomial_system import distinct_solutions, solve_linear
 
 __all__ = ["four_bars_with_lengths"]
 
-_PLACES = {"A": 0, "A0": 2, "B": 4, "B0": 6}  # in x, x̄, a, ā, y, ȳ, b, b̄; P is at 0
 _STEPS = 16  # of the lengths, each with so many corrections,
 _CORRECTIONS = 3
 _POLISH = 12  # and at the end
@@ -36,7 +37,6 @@ _PROVED = 120  # those that are proved
 
 def four_bars_with_lengths(
     given: PrecisionPositions,
-    lengths: Sequence[GivenLength],
     found: Sequence[FourBarPositions],
     progress: Callable[[float], None] | None = None,
 ) -> FourBarPositions:
@@ -45,9 +45,7 @@ def four_bars_with_lengths(
     Parameters
     ----------
     given : PrecisionPositions
-        The positions of the task, without drawn ones.
-    lengths : sequence of GivenLength
-        No more than the conditions that the positions leave.
+        The positions of the task, without drawn ones, and its lengths.
     found : sequence of FourBarPositions
         Four-bars through these positions.
     progress : callable, optional
@@ -61,13 +59,10 @@ def four_bars_with_lengths(
     if len(starts) > _MOST:
         starts = starts[np.linspace(0, len(starts) - 1, _MOST).astype(int)]
     with np.errstate(all="ignore"):
-        moved = _moved(given, lengths, starts)
+        moved = _moved(given, starts)
     proofs = []
     for k, linkage in enumerate(moved):
-        further = FurtherConditions(
-            lengths=tuple(lengths), held=_held(given, lengths, linkage, size)
-        )
-        proof = prove_linkages(given, linkage[None] * size, further)
+        proof = prove_linkages(given, linkage[None] * size, _held(given, linkage))
         proofs.append(FourBarPositions.of(given, proof))
         if progress is not None:
             progress((k + 1) / len(moved))
@@ -85,17 +80,15 @@ def _linkages(given: PrecisionPositions, found: FourBarPositions) -> ComplexArra
     return whole
 
 
-def _moved(
-    given: PrecisionPositions, lengths: Sequence[GivenLength], linkage: ComplexArray
-) -> ComplexArray:
+def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
     """Different linkages with the lengths, (B, 8), from those that pass the positions."""
     free = list(given.problem.free)
-    goal = np.array([entry.length / given.size for entry in lengths])
-    begin = np.abs(_sides(lengths, linkage))
+    goal = np.array([entry.length / given.size for entry in given.lengths])
+    begin = np.abs(_sides(given, linkage))
     for step in range(1, _STEPS + 1):
         wanted = begin + (goal - begin) * (step / _STEPS)
         for _ in range(_CORRECTIONS if step < _STEPS else _POLISH):
-            f, jacobian = _conditions(given, lengths, wanted, linkage)
+            f, jacobian = _conditions(given, list(wanted.T), linkage)
             # the shortest correction; rows of one size, since their squares are solved
             rows = np.linalg.norm(jacobian, axis=2)
             f, jacobian = f / rows, jacobian / rows[:, :, None]
@@ -111,49 +104,34 @@ def _moved(
     return distinct_solutions(kept[good], _DISTINCT)[:_PROVED]
 
 
-def _sides(lengths: Sequence[GivenLength], linkage: ComplexArray) -> ComplexArray:
+def _sides(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
     """The vectors of given lengths, (B, L)."""
-    places = {name: linkage[:, k] for name, k in _PLACES.items()} | {"P": np.zeros(len(linkage))}
+    places = {name: linkage[:, k] for name, k in PLACES.items()} | {"P": np.zeros(len(linkage))}
     sides: ComplexArray = np.stack(
-        [places[entry.one] - places[entry.other] for entry in lengths], axis=1
+        [places[entry.one] - places[entry.other] for entry in given.lengths], axis=1
     ).astype(complex)
     return sides
 
 
 def _conditions(
-    given: PrecisionPositions, lengths: Sequence[GivenLength], wanted: Array, linkage: ComplexArray
+    given: PrecisionPositions, wanted: Sequence[Any], linkage: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """What linkages (B, 8) leave of positions and lengths, (B, M), and its slopes (B, M, n)."""
-    problem, count = given.problem, len(linkage)
+    problem = given.problem
     c = given.parameters(given.size).tolist()
+    c[len(c) - len(wanted) :] = [length**2 for length in wanted]
     columns = list(np.ascontiguousarray(linkage[:, list(problem.free)].T))
-    values, slopes, _ = problem.equations(columns, c, [0.0] * len(c))
-    rows = len(values)
-    f = np.empty((count, rows + len(lengths)), dtype=complex)
-    by_all = np.zeros((count, rows + len(lengths), CONDITIONS), dtype=complex)
-    for k in range(rows):
-        f[:, k] = values[k]
-        for i, place in enumerate(problem.free):
-            by_all[:, k, place] = slopes[k][i]
-    sides = _sides(lengths, linkage)
-    f[:, rows:] = np.abs(sides) ** 2 - wanted**2
-    for k, entry in enumerate(lengths, start=rows):
-        for name, sign in ((entry.one, 1.0), (entry.other, -1.0)):
-            if name in _PLACES:
-                by_all[:, k, _PLACES[name]] = sign * sides[:, k - rows].conj()
-                by_all[:, k, _PLACES[name] + 1] = sign * sides[:, k - rows]
-    return f, by_all[:, :, list(problem.free)]
+    f, jacobian, _ = as_batch(len(linkage), problem.equations(columns, c, [0.0] * len(c)))
+    return f, jacobian
 
 
-def _held(
-    given: PrecisionPositions, lengths: Sequence[GivenLength], linkage: ComplexArray, size: float
-) -> tuple[tuple[int, float], ...]:
+def _held(given: PrecisionPositions, linkage: ComplexArray) -> tuple[HeldValue, ...]:
     """Coordinates that keep their values so that the others are determined: place, value [length].
 
     One for each freedom, along which it changes most.
     """
-    goal = np.array([entry.length / size for entry in lengths])
-    _, jacobian = _conditions(given, lengths, goal, linkage[None])
+    size = given.size
+    _, jacobian = _conditions(given, [x.length / size for x in given.lengths], linkage[None])
     slopes = jacobian[0, :, 0::2]
     real = np.stack([2.0 * slopes.real, -2.0 * slopes.imag], axis=2).reshape(len(slopes), -1)
     _, _, right = np.linalg.svd(real)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from linkwork.design.precision.exact_proof import (
     whole_number,
     whole_unit,
 )
-from linkwork.design.precision.position_equations import FurtherConditions, position_equations
+from linkwork.design.precision.position_equations import HeldValue, position_equations
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 
@@ -41,12 +42,11 @@ class ProvedLinkages:
 
 
 def prove_linkages(
-    given: PrecisionPositions, linkage: ComplexArray, further: FurtherConditions | None = None
+    given: PrecisionPositions, linkage: ComplexArray, held: Sequence[HeldValue] = ()
 ) -> ProvedLinkages:
     """Refine real linkages x, x̄, a, ā, y, ȳ, b, b̄ (B, 8) [length], and prove them."""
-    further = further or FurtherConditions()
-    equations, bits = position_equations(given, further), whole_unit(given.size)
-    data = _given_numbers(given, further, bits)
+    equations, bits = position_equations(given, held), whole_unit(given.size)
+    data = _given_numbers(given, held, bits)
     found = prove_numbers(equations.sums, _start(given, linkage), data, bits, given.size)
     pairs = found.v[:, 0::2] + 1j * found.v[:, 1::2]
     return ProvedLinkages(
@@ -84,7 +84,7 @@ def _turn(
     return np.asarray(e / np.abs(e))
 
 
-def _given_numbers(given: PrecisionPositions, further: FurtherConditions, bits: int) -> list[int]:
+def _given_numbers(given: PrecisionPositions, held: Sequence[HeldValue], bits: int) -> list[int]:
     """Pivots, turns, distances, lengths, held values and 1, as whole numbers."""
     start = complex(given.start)
     whole = [whole_number(start.real, bits), whole_number(start.imag, bits)]
@@ -97,6 +97,6 @@ def _given_numbers(given: PrecisionPositions, further: FurtherConditions, bits: 
         numbers += exact_turn(angle, bits)
     for z in (*given.poses.tolist(), *given.points.tolist()):
         numbers += from_start(z)
-    for value in (*(x.length for x in further.lengths), *(x for _, x in further.held)):
+    for value in (*(x.length for x in given.lengths), *(x for _, x in held)):
         numbers += [whole_number(value, bits), 0]
     return [*numbers, 1 << bits, 0]

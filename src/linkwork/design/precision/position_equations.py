@@ -6,42 +6,23 @@ own. With x, y of the first position and the fixed pivots a, b, all seen from it
     |δ|² + 2 Re((A - a) δ̄) - 2 Re((A - x) ā) = 0,   alike with B, b and y,
     |A|² = |x|²,   B x = A y,      or in a pose  A = e x,   B = e y.
 
-They are real equations of real numbers v: the unknowns, the given numbers and 1.
+Given lengths are alike, and coordinates of pivots may keep a value. They are real equations of real
+numbers v: the unknowns, the given numbers and 1.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.product_sums import ComplexPlace, ProductSums, ProductWriter
 
-__all__ = ["FurtherConditions", "GivenLength", "PositionEquations", "position_equations"]
+__all__ = ["HeldValue", "PositionEquations", "position_equations"]
 
-
-@dataclass(frozen=True)
-class GivenLength:
-    """The distance of two of A0, B0, A, B and the traced point P [length]."""
-
-    one: str
-    other: str
-    length: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class FurtherConditions:
-    """Conditions besides positions.
-
-    Parameters
-    ----------
-    lengths : tuple of GivenLength
-    held : tuple of (int, float)
-        Coordinates of pivots that keep a value: their place among x, [a], y, [b], seen from the
-        first position [length].
-    """
-
-    lengths: tuple[GivenLength, ...] = ()
-    held: tuple[tuple[int, float], ...] = ()
+#: A coordinate that keeps a value: its place among x, [a], y, [b], seen from the first position
+#: [length].
+HeldValue = tuple[int, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,12 +37,11 @@ class PositionEquations:
 
 
 def position_equations(
-    given: PrecisionPositions, further: FurtherConditions | None = None
+    given: PrecisionPositions, held: Sequence[HeldValue] = ()
 ) -> PositionEquations:
     """The equations; v is x, [a], y, [b], all A_j and B_j, then a, b as far as they are given,
     e of all poses, δ of all positions, given lengths and held values, each with 0, then 1 and 0.
     """
-    further = further or FurtherConditions()
     free = iter(range(0, 10_000, 2))
 
     def place() -> ComplexPlace:
@@ -78,8 +58,8 @@ def position_equations(
     b = place() if pivots > 1 else b
     turns = [place() for _ in given.poses]
     deltas = [place() for _ in range(count)]
-    lengths = [place()[0] for _ in further.lengths]
-    values = [place()[0] for _ in further.held]
+    lengths = [place()[0] for _ in given.lengths]
+    values = [place()[0] for _ in held]
     one = place()
     writer = ProductWriter()
     for k, ((left, right), delta) in enumerate(zip(moving, deltas, strict=True)):
@@ -92,10 +72,10 @@ def position_equations(
             writer.equal_lengths(left, x)
             writer.equal_products(right, x, left, y)
     named = {"A": x, "A0": a, "B": y, "B0": b}
-    for entry, length in zip(further.lengths, lengths, strict=True):
+    for entry, length in zip(given.lengths, lengths, strict=True):
         ends = [named[end] for end in (entry.one, entry.other) if end in named]
         _given_length(writer, ends[0], ends[1] if len(ends) > 1 else None, length)
-    for (k, _), value in zip(further.held, values, strict=True):
+    for (k, _), value in zip(held, values, strict=True):
         writer.equation((1, k, one[0]), (-1, value, one[0]))
     return PositionEquations(
         sums=writer.sums(unknowns, one[1] + 1), legs=(x, a, y, b), moving=moving

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,16 @@ import numpy as np
 from linkwork.design.precision.problem import PrecisionProblem
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
-__all__ = ["PrecisionPositions"]
+__all__ = ["GivenLength", "PrecisionPositions"]
+
+
+@dataclass(frozen=True, order=True)
+class GivenLength:
+    """The distance of two of A0, B0, A, B and the traced point P [length]."""
+
+    one: str
+    other: str
+    length: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -28,6 +38,8 @@ class PrecisionPositions:
         The point in the other positions [length].
     pivots : (0, 1 or 2,) complex
         Fixed pivots that are given: A0, or A0 and B0 [length].
+    lengths : tuple of GivenLength
+        In the order of their ends.
     order : (1 + M + N,) int
         The number that every position has in the task: the start, poses, points.
     wanted : int
@@ -39,11 +51,18 @@ class PrecisionPositions:
     turns: Array
     points: ComplexArray
     pivots: ComplexArray
+    lengths: tuple[GivenLength, ...]
     order: IndexArray
     wanted: int
 
     @classmethod
-    def of(cls, points: ComplexArray, angles: Array, pivots: ComplexArray) -> PrecisionPositions:
+    def of(
+        cls,
+        points: ComplexArray,
+        angles: Array,
+        pivots: ComplexArray,
+        lengths: Sequence[GivenLength] = (),
+    ) -> PrecisionPositions:
         """Positions (J,) in any order, with the coupler's angles [rad], NaN where it is free.
 
         The first pose is the start, the first point if there are no poses.
@@ -61,6 +80,7 @@ class PrecisionPositions:
             turns=angles[order[1 : count + 1]] - angles[first],
             points=others[count:],
             pivots=pivots,
+            lengths=tuple(sorted(lengths)),
             order=order,
             wanted=len(order),
         )
@@ -69,7 +89,10 @@ class PrecisionPositions:
     def problem(self) -> PrecisionProblem:
         """The family of equations."""
         return PrecisionProblem(
-            poses=len(self.poses), points=len(self.points), pivots=len(self.pivots)
+            poses=len(self.poses),
+            points=len(self.points),
+            pivots=len(self.pivots),
+            lengths=tuple((entry.one, entry.other) for entry in self.lengths),
         )
 
     @property
@@ -84,10 +107,12 @@ class PrecisionPositions:
             (z - self.start) / size for z in (self.poses, self.points, self.pivots)
         )
         turned = np.exp(1j * self.turns)
+        lengths = np.array([entry.length / size for entry in self.lengths])
         return np.concatenate(
             [
                 np.column_stack([turned, poses, poses.conj()]).ravel(),
                 np.column_stack([points, points.conj()]).ravel(),
                 np.column_stack([pivots, pivots.conj()]).ravel(),
+                lengths**2,
             ]
         )

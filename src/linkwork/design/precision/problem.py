@@ -12,7 +12,8 @@ with D = pv - qu, G = qw - vr and H = ru - pw the equation of e alone is
 
     G H + (G + H) D = 0
 
-(Wampler, Morgan, Sommese 1992, J. Mech. Des. 114, 153, in isotropic form).
+(Wampler, Morgan, Sommese 1992, J. Mech. Des. 114, 153, in isotropic form). A given distance of two
+pivots, or of one and the traced point, is (x - a)(x̄ - ā) = L², with L² as a parameter.
 """
 
 from __future__ import annotations
@@ -28,10 +29,13 @@ from linkwork.foundation.arrays import BoolArray, ComplexArray
 from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.numerics.homotopy.parameter_path import Equations
 
-__all__ = ["CONDITIONS", "PrecisionProblem"]
+__all__ = ["CONDITIONS", "PLACES", "PrecisionProblem"]
 
 #: Conditions that a four-bar can meet, not counting the first position.
 CONDITIONS = 8
+#: Where the pivots are in x, x̄, a, ā, y, ȳ, b, b̄; the traced point is at 0.
+PLACES = {"A": 0, "A0": 2, "B": 4, "B0": 6}
+_SYMMETRIC = {("A", "B"), ("A0", "B0")}  # lengths that stay if the legs exchange their names
 _TURN = 0.7  # rad, of random complex rotations
 _TRIES = 60  # steps of Newton's method towards random positions of a random linkage,
 _CLOSED = 1e-10  # and what they may leave
@@ -41,7 +45,7 @@ _FAR = 10.0  # random positions further away make a bad start
 
 @dataclass(frozen=True)
 class PrecisionProblem:
-    """All four-bars through some poses and points, or with some of their fixed pivots given.
+    """All four-bars through some poses and points, or with some fixed pivots and lengths given.
 
     Parameters
     ----------
@@ -49,16 +53,19 @@ class PrecisionProblem:
         Given after the first position.
     pivots : int
         Fixed pivots that are given: A0, or A0 and B0.
+    lengths : tuple of (str, str)
+        The ends of given lengths: A, A0, B, B0 or the traced point P.
 
     Notes
     -----
     Unknowns are x, x̄, a, ā, y, ȳ, b, b̄ without those that are given; parameters are e, δ, δ̄ of
-    every pose, δ, δ̄ of every point, and a, ā, b, b̄ of pivots.
+    every pose, δ, δ̄ of every point, a, ā, b, b̄ of pivots, and the squares of lengths.
     """
 
     poses: int
     points: int
     pivots: int = 0
+    lengths: tuple[tuple[str, str], ...] = ()
 
     @property
     def unknowns(self) -> int:
@@ -68,12 +75,13 @@ class PrecisionProblem:
     @property
     def freedoms(self) -> int:
         """Conditions that are missing until a finite number of four-bars is left."""
-        return CONDITIONS - 2 * self.poses - self.points - 2 * self.pivots
+        given = 2 * self.poses + self.points + 2 * self.pivots + len(self.lengths)
+        return CONDITIONS - given
 
     @property
     def parameters(self) -> int:
         """P."""
-        return 3 * self.poses + 2 * self.points + 2 * self.pivots
+        return 3 * self.poses + 2 * self.points + 2 * self.pivots + len(self.lengths)
 
     @property
     def given(self) -> tuple[int, ...]:
@@ -94,20 +102,25 @@ class PrecisionProblem:
     @property
     def name(self) -> str:
         """The name of its start set."""
-        return f"{self.poses + 1}-{self.points}-{self.pivots}"
+        lengths = "".join(f"-{one}{other}" for one, other in self.lengths)
+        return f"{self.poses + 1}-{self.points}-{self.pivots}{lengths}"
 
     def equations(self, z: Sequence[Any], c: Sequence[Any], rate: Sequence[Any]) -> Equations:
         """The equations, with operators alone."""
         first = 3 * self.poses + 2 * self.points
-        places, numbers = (*self.free, *self.given), (*z, *c[first:])
+        end = first + 2 * self.pivots
+        places, numbers = (*self.free, *self.given), (*z, *c[first:end])
         linkage = [number for _, number in sorted(zip(places, numbers, strict=True), key=_place)]
         rows = list[_Row]()
         for k in range(0, 3 * self.poses, 3):
             rows += _pose_rows(linkage, c[k : k + 3], rate[k : k + 3])
+        for k, ends in enumerate(self.lengths, start=end):
+            rows.append(_length_row(linkage, ends, c[k], rate[k]))
+        # points are last, as the trace test wants it
         for k in range(3 * self.poses, first, 2):
             rows.append(_point_row(linkage, c[k : k + 2], rate[k : k + 2]))
         changes = [
-            sum((slopes[k] * r for k, r in zip(self.given, rate[first:], strict=True)), change)
+            sum((slopes[k] * r for k, r in zip(self.given, rate[first:end], strict=True)), change)
             for _, slopes, change in rows
         ]
         slopes = [[row[k] for k in self.free] for _, row, _ in rows]
@@ -129,7 +142,8 @@ class PrecisionProblem:
         turns, moved = c[:first].reshape(-1, 3), c[first : first + width].reshape(-1, 2)
         pairs = np.concatenate([turns[:, 1:], moved])
         turned = np.abs(turns[:, 0])
-        return bool((pairs[:, 0] == pairs[:, 1].conj()).all() and np.allclose(turned, 1.0))
+        conjugate = (pairs[:, 0] == pairs[:, 1].conj()).all() and (c[first + width :].imag == 0.0)
+        return bool(conjugate.all() and np.allclose(turned, 1.0))
 
     def mirrored(self, x: ComplexArray) -> ComplexArray:
         """The mirror images (B, n): x̄ in place of x, and so on."""
@@ -140,13 +154,14 @@ class PrecisionProblem:
         """Numbers (B, K) that are equal for solutions of one linkage, or of one triple of cognates.
 
         Both pairs of a moving and a fixed pivot may be named A and A0. Cognates go through the same
-        points, not through the same poses.
+        points, not through the same poses, and have other lengths.
         """
-        if self.pivots == 2 or (self.pivots == 1 and self.poses):
+        no_cognates = self.poses or self.lengths
+        if self.pivots == 2 or (self.pivots and no_cognates) or set(self.lengths) - _SYMMETRIC:
             return x
         linkage = self.linkages(x, c)
         own, a, other, b = (linkage[:, k : k + 2] for k in (0, 2, 4, 6))
-        if self.poses:
+        if no_cognates:
             return np.concatenate([own + other, a + b, own * a + other * b], axis=1)
         third = third_pivot(linkage)
         if self.pivots:
@@ -159,6 +174,7 @@ class PrecisionProblem:
             _random_turns(rng, self.poses),
             normal_numbers(rng, 2, self.poses + self.points),
             normal_numbers(rng, 2 * self.pivots),
+            normal_numbers(rng, len(self.lengths)),
         )
 
     def random_member(self, rng: np.random.Generator) -> tuple[ComplexArray, ComplexArray]:
@@ -170,8 +186,12 @@ class PrecisionProblem:
             moved = _positions_of(linkage, turns, normal_numbers(rng, 2, count))
             if np.abs(moved).max(initial=0.0) < _FAR:  # also false for numbers that are none
                 break
+        ends = linkage.tolist()
+        squares: ComplexArray = np.array(
+            [_length_row(ends, pair, 0.0, 0.0)[0] for pair in self.lengths], dtype=np.complex128
+        )
         return (
-            self._parameters(turns[: self.poses], moved, linkage[list(self.given)]),
+            self._parameters(turns[: self.poses], moved, linkage[list(self.given)], squares),
             linkage[list(self.free)],
         )
 
@@ -179,15 +199,16 @@ class PrecisionProblem:
         """Solutions (B, n) at the parameters c (P,) with their given pivots, (B, 8)."""
         whole = np.empty((len(x), CONDITIONS), dtype=complex)
         whole[:, list(self.free)] = x
-        whole[:, list(self.given)] = c[self.parameters - 2 * self.pivots :]
+        first = 3 * self.poses + 2 * self.points
+        whole[:, list(self.given)] = c[first : first + 2 * self.pivots]
         return whole
 
     def _parameters(
-        self, turns: ComplexArray, moved: ComplexArray, pivots: ComplexArray
+        self, turns: ComplexArray, moved: ComplexArray, pivots: ComplexArray, squares: ComplexArray
     ) -> ComplexArray:
         poses = np.column_stack([turns, *moved[:, : self.poses]])
         points = moved[:, self.poses :].T
-        return np.concatenate([poses.ravel(), points.ravel(), pivots])
+        return np.concatenate([poses.ravel(), points.ravel(), pivots, squares])
 
 
 def _place(pair: tuple[int, Any]) -> int:
@@ -247,6 +268,19 @@ def _point_row(linkage: Sequence[Any], point: Sequence[Any], rate: Sequence[Any]
     by_d = fr * (a_bar - x_bar - d_bar) - fq * x_bar + fw * (b_bar - y_bar - d_bar) - fv * y_bar
     by_d_bar = fr * (a - x - d) - fp * x + fw * (b - y - d) - fu * y
     return g * h + by_det * det, slopes, by_d * rate[0] + by_d_bar * rate[1]  # eq. (112)
+
+
+def _length_row(linkage: Sequence[Any], ends: tuple[str, str], square: Any, rate: Any) -> _Row:
+    """The equation of a length, of which the square is given."""
+    along, along_bar = 0.0, 0.0
+    slopes: list[Any] = [0.0] * CONDITIONS
+    signs = zip(ends, (1.0, -1.0), strict=True)
+    pivots = [(PLACES[end], sign) for end, sign in signs if end in PLACES]
+    for place, sign in pivots:
+        along, along_bar = along + sign * linkage[place], along_bar + sign * linkage[place + 1]
+    for place, sign in pivots:
+        slopes[place], slopes[place + 1] = sign * along_bar, sign * along
+    return along * along_bar - square, slopes, -rate  # eq. (112a)
 
 
 def _random_turns(rng: np.random.Generator, count: int) -> ComplexArray:

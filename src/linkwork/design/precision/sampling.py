@@ -6,12 +6,13 @@ between positions of the task.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from linkwork.design.precision.positions import PrecisionPositions
+from linkwork.design.precision.polygon_points import points_in_polygon
+from linkwork.design.precision.positions import GivenLength, PrecisionPositions
 from linkwork.design.precision.problem import CONDITIONS
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.errors import InputError
@@ -29,8 +30,10 @@ def positions_with_samples(
     samples: int,
     rng: np.random.Generator,
     region: ComplexArray | None = None,
+    lengths: Sequence[GivenLength] = (),
 ) -> Iterator[PrecisionPositions]:
-    """Tasks with eight conditions, one if the given ones are that many, else ``samples``.
+    """Tasks with eight conditions, one if the given ones are that many, else ``samples`` without
+    the lengths.
 
     Parameters
     ----------
@@ -44,6 +47,7 @@ def positions_with_samples(
     rng : numpy.random.Generator
     region : (K,) complex, optional
         Corners of the rectangle's diagonal, or of a polygon, around drawn pivots [length].
+    lengths : sequence of GivenLength, optional
 
     Raises
     ------
@@ -51,8 +55,8 @@ def positions_with_samples(
         For positions that are equal, too many conditions, or poses alone.
     """
     missing = _missing(points, angles, pivots)
-    if not missing:
-        yield PrecisionPositions.of(points, angles, pivots)
+    if missing == len(lengths):
+        yield PrecisionPositions.of(points, angles, pivots, lengths)
         return
     drawn = min(2 - len(pivots), missing // 2)
     extra = missing - 2 * drawn
@@ -61,10 +65,7 @@ def positions_with_samples(
         # the centre of a normal distribution, unless there is a region
         z = points.mean() + _PIVOTS * size * rng.normal(size=(drawn, 2)) @ [1.0, 1.0j]
         if region is not None and len(region):
-            share = rng.uniform(size=(drawn, 2))
-            low, high = region.real.min(), region.real.max()
-            below, above = region.imag.min(), region.imag.max()
-            z = low + (high - low) * share[:, 0] + 1j * (below + (above - below) * share[:, 1])
+            z = points_in_polygon(_polygon(region), rng.uniform(size=(drawn, 2)))
         before = rng.integers(0, max(1, len(points) - 1), extra)
         way = points[(before + 1) % len(points)] - points[before]
         off = _POINTS * size * rng.normal(size=(extra, 2)) @ [1.0, 1.0j]
@@ -75,6 +76,15 @@ def positions_with_samples(
             np.concatenate([pivots, z]),
         )
         yield replace(found, wanted=len(points))
+
+
+def _polygon(region: ComplexArray) -> ComplexArray:
+    """The corners of a region; of a rectangle two opposite ones are given."""
+    if len(region) != 2:
+        return region
+    one, other = region
+    corners = [one, complex(other.real, one.imag), other, complex(one.real, other.imag)]
+    return np.array(corners)
 
 
 def _missing(points: ComplexArray, angles: Array, pivots: ComplexArray) -> int:

@@ -16,6 +16,7 @@ from linkwork.design.precision.start_sets import start_member
 from linkwork.foundation.arrays import IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import ALMOST_REAL
+from linkwork.numerics.homotopy.monodromy import Member
 from linkwork.numerics.homotopy.parameter_path import Tracker
 from linkwork.numerics.homotopy.parameter_roots import ParameterRoots, roots_at
 
@@ -64,6 +65,7 @@ def four_bars_through(
     given: PrecisionPositions,
     tracker: Tracker | None = None,
     *,
+    member: Member | None = None,
     alike: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> PrecisionFourBars:
@@ -72,17 +74,19 @@ def four_bars_through(
     Parameters
     ----------
     given : PrecisionPositions
-        With two conditions for every pose and every fixed pivot, one for every point, not counting
-        the first position: eight in all, at least one of them a point.
+        With two conditions for every pose and every fixed pivot, one for every point and length,
+        not counting the first position: eight in all, at least one of them a point.
     tracker : Tracker, optional
         By default compiled where that saves time.
+    member : Member, optional
+        A solved member to start from, needed with given lengths; by default the shipped one.
     alike : int
         How many tasks of this kind will be solved, this one included.
     progress : callable, optional
         Told the finished fraction of the paths; may raise an error to end the work.
     """
     problem, size = given.problem, given.size
-    member = start_member(problem)
+    member = member or start_member(problem)
     goal, rng = given.parameters(size), np.random.default_rng(_SEED)
     tracker = tracker or SparingTracker(alike * len(member.x), progress)
     roots = roots_at(problem, member, goal, tracker, rng)
@@ -90,7 +94,7 @@ def four_bars_through(
     real = problem.linkages(roots.x[apart.max(axis=1, initial=0.0) < ALMOST_REAL], goal)
     count = len(real)
     triple = np.arange(count)
-    if not (problem.poses or problem.pivots == 2):
+    if not (problem.poses or problem.lengths or problem.pivots == 2):
         # with one pivot given the second cognate, which lacks it, is none
         others = cognates(real)[: 2 - problem.pivots]
         real, triple = np.concatenate([real, *others]), np.tile(triple, 1 + len(others))

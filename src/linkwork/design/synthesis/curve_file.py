@@ -12,6 +12,7 @@ from typing import Any
 
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.textfile.toml_text import bytes_of, text_of
 
 __all__ = ["Curve", "read_curve"]
@@ -35,6 +36,8 @@ class Curve:
         closed, open or partial; "": by the distance of the ends.
     file, text : str
         The file, as the task names it, and its text.
+    note : str
+        What a summary adds: which line repeats the first point of a closed curve, and is left out.
     """
 
     points: tuple[tuple[float, float], ...]
@@ -42,10 +45,14 @@ class Curve:
     closed: str = ""
     file: str = ""
     text: str = ""
+    note: str = ""
 
 
-def read_curve(table: Mapping[str, Any], folder: Path | None) -> Curve:
-    """The curve of a table of a task.
+def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.0) -> Curve:
+    """The curve of a table of a task; a last point that repeats the first one of a closed curve
+    counts once.
+
+    ``turn``: in the unit of the inputs.
 
     Raises
     ------
@@ -60,16 +67,28 @@ def read_curve(table: Mapping[str, Any], folder: Path | None) -> Curve:
     if timed and any(len(row) < len(_COLUMNS) for _, row in rows):
         line = next(line for line, row in rows if len(row) < len(_COLUMNS))
         raise _problem(("curve", "timing"), f"needs a third column, input: line {line} has none")
+    closed, note = table.get("closed", ""), ""
+    if closed in ("", "closed") and _is_repeated([row for _, row in rows], timed, turn):
+        line, _ = rows.pop()
+        note = f'; line {line} of "{name}" repeats the first point, which counts once'
     if not _FEWEST <= len(rows) <= _MOST:
         told = f'"{name}" has {len(rows)} points: a curve needs {_FEWEST} to {_MOST}'
         raise _problem(("curve", "file"), told)
     return Curve(
         points=tuple((row[0], row[1]) for _, row in rows),
         inputs=tuple(row[2] for _, row in rows) if timed else (),
-        closed=table.get("closed", ""),
+        closed=closed,
         file=name,
         text=text,
+        note=note,
     )
+
+
+def _is_repeated(rows: list[list[float]], timed: bool, turn: float) -> bool:
+    """Whether the last row is the first one again, of timed ones a turn later."""
+    if len(rows) < 2 or rows[-1][:2] != rows[0][:2]:
+        return False
+    return not timed or abs(abs(rows[-1][2] - rows[0][2]) - turn) <= EQUAL_ROWS * turn
 
 
 def _rows(text: str, name: str) -> list[tuple[int, list[float]]]:

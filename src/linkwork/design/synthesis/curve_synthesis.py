@@ -73,7 +73,8 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         real=count,
         proved=count,
         completeness=Completeness.SAMPLED,
-        message=_message(goal, fitted, settings.seed),
+        message=_message(goal, fitted, settings.seed)
+        + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
         starts=sum(part.starts for part in fitted),
         interrupted=not all(part.finished for part in fitted),

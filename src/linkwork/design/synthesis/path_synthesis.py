@@ -14,6 +14,7 @@ from linkwork.design.precision import (
     PrecisionPositions,
     four_bars_through,
     four_bars_with_lengths,
+    own_member,
     positions_with_samples,
 )
 from linkwork.design.synthesis.candidates import Candidates, LoopKind
@@ -56,77 +57,119 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
         GivenLength(one, other, length)
         for (one, other), length in ((name.split(), x) for name, x in task.given.lengths.items())
     ]
-    near = list(_near(task, points, wishes))
-    _check_lengths(task, near[0])
+    near = list(_near(task, points, wishes, lengths))
+    _check_lengths(task, lengths, near[0])
+    told = _Told(progress)
+    member, reason = None, ""
+    if near[0].tasks[0].lengths:
+        own = own_member(near[0].tasks[0].problem, told.part(1 + len(near)))
+        member, reason = own.member, own.reason and f"; {own.reason}"
+        if member is None:
+            near = list(_near(task, points, wishes, lengths, drawn=True))
+    fits = bool(lengths) and member is None
     count = sum(len(part.tasks) for part in near)
-    whole, done = count + (len(near) if lengths else 0), 0
-
-    def tell(fraction: float) -> None:
-        if progress is not None:
-            progress((done + fraction) / whole)
-
-    follow = None if progress is None else tell
     for part in near:
         for given in part.tasks:
-            part.solved.append(four_bars_through(given, alike=count - done, progress=follow))
-            done += 1
-            tell(0.0)
+            follow = told.part(count + fits * len(near))
+            part.solved.append(
+                four_bars_through(given, member=member, alike=count, progress=follow)
+            )
+            count -= 1
+    if fits:
+        return _fitted(task, points, near, told, reason)
     solved = [found for part in near for found in part.solved]
-    if not lengths:
-        grade, message = _completeness(solved, near)
-        return Found(
-            candidates=_candidates(points, solved),
-            complex=sum(len(part.roots.x) for part in solved),
-            real=sum(part.real for part in solved),
-            proved=sum(map(_proved, solved)),
-            triples=sum(part.real for part in solved if len(part) > part.real),
-            completeness=grade,
-            message=message + _of_four_bars(task),
-        )
-    fitted = []
-    for part in near:
-        fitted.append(four_bars_with_lengths(part.given, lengths, part.solved, follow))
-        done += 1
-    number = sum(map(len, fitted))
+    grade, message = _completeness(solved, near)
+    return Found(
+        candidates=_candidates(points, solved),
+        complex=sum(len(part.roots.x) for part in solved),
+        real=sum(part.real for part in solved),
+        proved=sum(map(_proved, solved)),
+        triples=sum(part.real for part in solved if len(part) > part.real),
+        completeness=grade,
+        message=message + _of_four_bars(task),
+    )
+
+
+def _fitted(
+    task: Task, points: ComplexArray, near: Sequence[_Near], told: _Told, reason: str
+) -> Found:
+    """A sample of four-bars with given lengths, from those of tasks without them."""
+    fitted = [
+        four_bars_with_lengths(part.given, part.solved, told.part(len(near) - k))
+        for k, part in enumerate(near)
+    ]
+    number, tasks = sum(map(len, fitted)), sum(len(part.tasks) for part in near)
     return Found(
         candidates=_candidates(points, fitted),
         complex=number,
         real=number,
         proved=sum(int(part.proved.sum()) for part in fitted),
         completeness=Completeness.SAMPLED,
-        message=f"a sample: four-bars with the given lengths, from those of {len(solved)} tasks"
+        message=f"a sample: four-bars with the given lengths, from those of {tasks} tasks"
+        + reason
         + _of_four_bars(task),
     )
 
 
-def _near(task: Task, points: ComplexArray, wishes: Wishes) -> Iterator[_Near]:
-    """The wanted positions, and a sample of others within their tolerances."""
+class _Told:
+    """Progress of parts of the work, each of which takes its share of what is left."""
+
+    def __init__(self, progress: Callable[[float], None] | None) -> None:
+        self._progress, self._done = progress, 0.0
+
+    def part(self, left: int) -> Callable[[float], None] | None:
+        """What the first of ``left`` equal parts is to be told; the one before is done."""
+        if self._progress is None:
+            return None
+        begin = self._done
+        share = (1.0 - begin) / left
+        self._done += share
+
+        def tell(fraction: float) -> None:
+            assert self._progress is not None
+            self._progress(begin + share * fraction)
+
+        return tell
+
+
+def _near(
+    task: Task,
+    points: ComplexArray,
+    wishes: Wishes,
+    lengths: Sequence[GivenLength],
+    *,
+    drawn: bool = False,
+) -> Iterator[_Near]:
+    """The wanted positions, and a sample of others within their tolerances.
+
+    ``drawn``: conditions are drawn in place of the lengths, also where these determine the rest.
+    """
     angles = np.array(
         [np.nan if p.angle is None else task.in_radians(p.angle) for p in task.positions]
     )
     pivots = np.array([complex(*pivot) for pivot in task.given.fixed_pivots], dtype=complex)
     region = wishes.region if wishes.region.size else None
-    rng = np.random.default_rng(_SEED)
+    rng, known = np.random.default_rng(_SEED), () if drawn else lengths
     tolerant = is_tolerant(task)
     # without tolerances the only shifts are 0
     shifts, turns = drawn_within(task, _NEAR if tolerant else 1, np.random.default_rng(_SEED))
     samples = 1 if tolerant else _SAMPLES
     for shift, turn in zip(shifts, turns, strict=True):
         own, turned = points + shift, angles + turn
-        tasks = tuple(positions_with_samples(own, turned, pivots, samples, rng, region))
-        yield _Near(given=PrecisionPositions.of(own, turned, pivots), tasks=tasks)
+        tasks = tuple(positions_with_samples(own, turned, pivots, samples, rng, region, known))
+        yield _Near(given=PrecisionPositions.of(own, turned, pivots, lengths), tasks=tasks)
 
 
-def _check_lengths(task: Task, near: _Near) -> None:
+def _check_lengths(task: Task, lengths: Sequence[GivenLength], near: _Near) -> None:
     """Refuse more lengths than the positions leave freedoms.
 
     Raises
     ------
     MechanismError
     """
-    freedoms = near.given.problem.freedoms
-    if len(task.given.lengths) > freedoms:
-        told = f"are {len(task.given.lengths)}, but positions and pivots leave {freedoms} freedoms"
+    freedoms = near.given.problem.freedoms + len(lengths)
+    if len(lengths) > freedoms:
+        told = f"are {len(lengths)}, but positions and pivots leave {freedoms} freedoms"
         problem = Problem(key=("given", "lengths"), message=f"{told}: leave some out")
         raise MechanismError([problem], f'task "{task.name}"')
 

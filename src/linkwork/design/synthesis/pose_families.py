@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwork.design.precision.polygon_points import points_in_polygon
 from linkwork.design.synthesis.closed_forms import circumcentres, solve_with_bound
 from linkwork.design.synthesis.dyad_set import DyadSet
 from linkwork.design.synthesis.wishes import Wishes
@@ -45,7 +46,11 @@ def spread_pivots(points: ComplexArray, wishes: Wishes, count: int) -> ComplexAr
         z = z[wishes.within_region(z, np.zeros(count))]
         found.append(z)
         number, inside = number + count, inside + len(z)
-    return np.concatenate(found)[:count]
+    if inside >= count:
+        return np.concatenate(found)[:count]
+    # of a narrow polygon the box has too few points: all of them are mapped into it
+    k = np.arange(1, count + 1)
+    return points_in_polygon(corners, np.stack([_halton(k, 2), _halton(k, 3)], axis=1))
 
 
 def _halton(k: CountArray, base: int) -> Array:

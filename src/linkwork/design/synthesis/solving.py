@@ -110,6 +110,7 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
     if ranked:
         told += _of_rows(task)
+    told += "" if task.curve is None else task.curve.note
     return Synthesis(
         task=task,
         complex=len(designs),

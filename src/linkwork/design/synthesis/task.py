@@ -243,6 +243,8 @@ class Task:
                 "P" not in name and not length >= wanted.shortest
             ):
                 yield key, f"{length:g} is out of the bounds that are wanted for lengths"
+        if not self.is_approximate and self.given.coupler_trouble:
+            yield ("given", "lengths"), self.given.coupler_trouble
         if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
             yield ("given", "lengths", "A0 B0"), "is fixed by the given pivots: leave it out"
 

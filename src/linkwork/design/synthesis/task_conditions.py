@@ -12,6 +12,7 @@ __all__ = ["LENGTHS", "SAME_GIVEN", "Given", "Point", "PrecisionPosition", "Rank
 
 #: Lengths that a task of points may give.
 LENGTHS = ("A0 A", "A B", "B0 B", "A0 B0", "A P", "B P")
+_COUPLER = ("A B", "A P", "B P")
 #: Lengths, and pivots by the task's size, that differ by less are those given.
 SAME_GIVEN = 1e-6
 
@@ -50,6 +51,20 @@ class Given:
     fixed_pivots: tuple[Point, ...] = ()
     moving_pivots: tuple[Point, ...] = ()
     lengths: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def coupler_trouble(self) -> str:
+        """Why the given sides of the coupler, if all three are, make no triangle; or ""."""
+        one, other, longest = sorted(self.lengths.get(name, 0.0) for name in _COUPLER)
+        slack = one + other - longest
+        if one <= 0.0 or slack > SAME_GIVEN * longest:
+            return ""
+        if slack < -SAME_GIVEN * longest:
+            return "A B, A P and B P are no triangle: leave one out"
+        return (
+            "A B, A P and B P put P on the line of A and B, where all solutions are double: change "
+            "one of them by a thousandth, or leave it out"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -104,13 +104,14 @@ def _plain(given: Any) -> Any:
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
-    curve = read_curve(content["curve"], folder) if "curve" in content else None
+    angle = AngleUnit(content.get("angle", "deg"))
+    curve = read_curve(content["curve"], folder, angle.turn) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
     return Task(
         kind=content["task"],
         name=content.get("name", stem),
         length=content.get("length", Task.length),
-        angle=AngleUnit(content.get("angle", "deg")),
+        angle=angle,
         mechanisms=(mechanism,) if isinstance(mechanism, str) else tuple(mechanism),
         positions=tuple(map(_position, content.get("positions", ()))),
         given=_given(content.get("given", {})),

@@ -25,11 +25,22 @@ from linkwork.numerics.homotopy.parameter_path import (
     polish_ends,
 )
 
-__all__ = ["Family", "Member", "first_of_each", "follow_all", "solve_by_monodromy"]
+__all__ = [
+    "IDLE",
+    "Family",
+    "Member",
+    "first_of_each",
+    "follow_all",
+    "solve_by_few",
+    "solve_by_monodromy",
+    "solve_further",
+]
 
 _REPEATED = 1e-6  # relative: fingerprints of solutions that count as one
-_IDLE = 3  # closed paths without a new solution after which no more are tried
+#: Closed paths without a new solution after which no more are tried.
+IDLE = 3
 _LOOPS = 100  # closed paths at most
+_AROUND, _FEW = 16, 4  # closed paths from a few solutions; each exchanges kinds every other time
 
 
 class Family(ParametrizedSystem, Protocol):
@@ -61,25 +72,63 @@ def solve_by_monodromy(
     rng: np.random.Generator,
     tracker: Tracker,
     report: Callable[[int], object] = lambda found: None,
+    idle: int = IDLE,
 ) -> Member:
     """A random member with the solutions that closed paths lead to; ``report`` their number."""
     c, one = family.random_member(rng)
-    x, idle = one[None], 0
+    return solve_further(family, Member(parameters=c, x=one[None]), rng, tracker, report, idle)
+
+
+def solve_further(
+    family: Family,
+    member: Member,
+    rng: np.random.Generator,
+    tracker: Tracker,
+    report: Callable[[int], object] = lambda found: None,
+    idle: int = IDLE,
+) -> Member:
+    """A member with the solutions that closed paths from known ones lead to.
+
+    ``idle``: closed paths without a new solution after which no more are tried.
+    """
+    left = idle
     for _ in range(_LOOPS):
-        ends, here = x, c
-        for there in (family.random_parameters(rng), family.random_parameters(rng), c):
-            path = ParameterPath(system=family, start=here, goal=there)
-            ends = follow_all(path, ends, tracker)
-            here = there
-        ends = ends[family.proper(ends, c)]
-        both = np.concatenate([x, ends])
-        found = both[first_of_each(family.fingerprint(both, c))]
-        idle = 0 if len(found) > len(x) else idle + 1
-        x = found
-        report(len(x))
-        if idle == _IDLE:
+        found = _around(family, member, member.x, rng, tracker)
+        left = idle if len(found.x) > len(member.x) else left - 1
+        member = found
+        report(len(member.x))
+        if not left:
             break
-    return Member(parameters=c, x=x)
+    return member
+
+
+def solve_by_few(
+    family: Family, member: Member, rng: np.random.Generator, tracker: Tracker
+) -> Member:
+    """A member with what many closed paths from a few of its solutions lead to, if that is new.
+
+    If the solutions are of several kinds that closed paths exchange as a whole, as mirror images of
+    a link are, a few of them show it.
+    """
+    for _ in range(_AROUND):
+        few = member.x[rng.choice(len(member.x), min(_FEW, len(member.x)), replace=False)]
+        found = _around(family, member, few, rng, tracker)
+        if len(found.x) > len(member.x):
+            return found
+    return member
+
+
+def _around(
+    family: Family, member: Member, x: ComplexArray, rng: np.random.Generator, tracker: Tracker
+) -> Member:
+    """A member with the ends of a closed path from some of its solutions x (B, n)."""
+    here = c = member.parameters
+    for there in (family.random_parameters(rng), family.random_parameters(rng), c):
+        path = ParameterPath(system=family, start=here, goal=there)
+        x = follow_all(path, x, tracker)
+        here = there
+    both = np.concatenate([member.x, x[family.proper(x, c)]])
+    return Member(parameters=c, x=both[first_of_each(family.fingerprint(both, c))])
 
 
 def follow_all(path: ParameterPath, x: ComplexArray, tracker: Tracker) -> ComplexArray:

@@ -29,6 +29,7 @@ __all__ = [
     "PolishedEnds",
     "StraightHomotopy",
     "Tracker",
+    "as_batch",
     "polish_ends",
     "track_in_batches",
 ]
@@ -108,21 +109,21 @@ class ParameterPath:
         """H (B, n), ∂H/∂w (B, n, n) and ∂H/∂σ (B, n) at w (B, n), σ (B,)."""
         columns = list(np.ascontiguousarray(w.T))
         homotopy = StraightHomotopy(self.system)
-        return _as_batch(len(w), homotopy.compute(columns, sigma, self.ends.tolist()))
+        return as_batch(len(w), homotopy.compute(columns, sigma, self.ends.tolist()))
 
     def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """F (B, n) and its derivative (B, n, n) of the goal, at x (B, n)."""
         columns, c = list(np.ascontiguousarray(x.T)), self.goal.tolist()
-        f, jacobian, _ = _as_batch(len(x), self.system.equations(columns, c, [0.0] * len(c)))
+        f, jacobian, _ = as_batch(len(x), self.system.equations(columns, c, [0.0] * len(c)))
         return f, jacobian
 
 
-def _as_batch(count: int, found: Equations) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Equations of numbers (B,), some of which may be plain zeros, as arrays."""
-    n = len(found[0])
-    f, change = (np.empty((n, count), dtype=complex) for _ in range(2))
-    jacobian = np.empty((n, n, count), dtype=complex)
-    for k in range(n):
+def as_batch(count: int, found: Equations) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """M equations of numbers (B,) in n unknowns, some of which may be plain zeros, as arrays."""
+    rows, n = len(found[0]), len(found[1][0])
+    f, change = (np.empty((rows, count), dtype=complex) for _ in range(2))
+    jacobian = np.empty((rows, n, count), dtype=complex)
+    for k in range(rows):
         f[k], change[k] = found[0][k], found[2][k]
         for i in range(n):
             jacobian[k, i] = found[1][k][i]

@@ -7,7 +7,6 @@ that are read are polished again, so that no file is trusted with a number.
 from __future__ import annotations
 
 import hashlib
-import os
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
@@ -17,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, ComplexArray
-from linkwork.foundation.cache_folder import cache_folder
+from linkwork.foundation.cache_folder import cache_folder, keep_arrays
 from linkwork.numerics.homotopy.topology import Topology
 
 __all__ = ["SHIPPED", "StartSet", "name_of", "own_sets", "read_sets", "write_set"]
@@ -91,17 +90,9 @@ def own_sets(signature: str = "") -> list[Path]:
 
 def write_set(kept: StartSet) -> None:
     """Keep a set in the user's cache, whole or not at all; nothing where that is not possible."""
-    folder, name = _folder(), name_of(kept.topology)
-    part = folder / f"{os.urandom(8).hex()}.part"  # another process may write the same set
+    name = name_of(kept.topology)
     arrays = {f"{name}.{field}": array for field, array in kept.as_arrays().items()}
-    with suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        try:
-            with part.open("xb") as file:
-                np.savez(file, **arrays)  # type: ignore[arg-type]
-            part.replace(folder / f"{name}.npz")
-        finally:
-            part.unlink(missing_ok=True)
+    keep_arrays(_folder() / f"{name}.npz", arrays)
 
 
 def name_of(topology: Topology) -> str:

@@ -12,6 +12,7 @@ The equation itself with other parameters is such a function ℓ.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -68,9 +69,12 @@ class _Moving:
 
 @dataclass(frozen=True, kw_only=True)
 class TraceDefect:
-    """How far the trace is from a straight line, relative to its way; paths that were lost."""
+    """How far the trace is from a straight line, relative to its way, and how far that of all
+    solutions but the first; paths that were lost.
+    """
 
     relative: float
+    less: float
     lost: int
 
 
@@ -90,7 +94,7 @@ def trace_defect(
     width = system.last.stop - system.last.start
     chart, probe = normal_numbers(rng, 2, width)
     turn = reach * np.exp(2j * np.pi * rng.uniform())
-    traces, lost = list[complex](), 0
+    terms, lost = list[ComplexArray](), 0
     for s in (-turn, 0.0, turn):
         start, goal = (np.concatenate([c, chart, [end]]) for end in (0.0, s))
         path, x = ParameterPath(system=moving, start=start, goal=goal), member.x
@@ -98,9 +102,15 @@ def trace_defect(
             x = follow_all(path, x, tracker)
             lost += len(member.x) - len(x)
         values = [_last_value(system, x, c, own) for own in (probe, chart)]
-        traces.append(complex((values[0] / values[1]).sum()))
-    bend, way = abs(traces[0] - 2.0 * traces[1] + traces[2]), abs(traces[2] - traces[0])
-    return TraceDefect(relative=bend / way, lost=lost)
+        terms.append(values[0] / values[1])
+    return TraceDefect(relative=_bend(terms), less=_bend([x[1:] for x in terms]), lost=lost)
+
+
+def _bend(terms: Sequence[ComplexArray]) -> float:
+    """How far the sums of three sets of terms are from a straight line, relative to their way."""
+    one, middle, other = (complex(x.sum()) for x in terms)
+    # no solutions have no trace
+    return abs(one - 2.0 * middle + other) / abs(other - one) if one != other else math.inf
 
 
 def _last_value(
