@@ -21,6 +21,7 @@ from benchmarks import (
     page_time,
     process_start,
     small_calls,
+    verdict_time,
     web_time,
 )
 from benchmarks.single_thread import run_alone
@@ -38,6 +39,7 @@ MEASUREMENTS = {
     "page": page_time.measure,
     "live": live_time.measure,
     "small": small_calls.measure,
+    "verdicts": verdict_time.measure,
     "web": web_time.measure,
 }
 PROGRAMS = {

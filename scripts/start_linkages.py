@@ -2,6 +2,8 @@
 
 A member grows from one random linkage by closed paths, until three lead to nothing new; the trace
 test then confirms that no solution is missing, and that one less would be noticed.
+
+    scripts/start_linkages [--check] [four-bars | six-bars]
 """
 
 from __future__ import annotations
@@ -29,10 +31,13 @@ from linkwork.design.six_bars.start_member import SHIPPED as SHIPPED_WATT  # noq
 from linkwork.design.six_bars.watt_problem import WATT  # noqa: E402
 from linkwork.foundation.arrays import AnyArray  # noqa: E402
 from linkwork.numerics.homotopy.confirmed_member import solve_and_confirm  # noqa: E402
-from linkwork.numerics.homotopy.monodromy import Member  # noqa: E402
+from linkwork.numerics.homotopy.monodromy import Member, first_of_each  # noqa: E402
 
-#: The families of every shipped file.
-_FILES: dict[Path, tuple[NamedFamily, ...]] = {SHIPPED: SHIPPED_PROBLEMS, SHIPPED_WATT: (WATT,)}
+#: The shipped files and their families.
+_FILES: dict[str, tuple[Path, tuple[NamedFamily, ...]]] = {
+    "four-bars": (SHIPPED, SHIPPED_PROBLEMS),
+    "six-bars": (SHIPPED_WATT, (WATT,)),
+}
 _SEED, _CHECK = 11, 12  # random numbers of the shipped sets, and of others
 # of six-bars: of so many paths some pass too near to a degenerate solution on a longer way
 _REACH = 1e-3
@@ -43,7 +48,15 @@ def solve(problem: NamedFamily, seed: int) -> Member:
     begin, grown = time.process_time(), list[int]()
     rng, tracker = np.random.default_rng(seed), CompiledTracker()
     reach = _REACH if problem is WATT else 1.0
-    found = solve_and_confirm(problem, rng, tracker, grown.append, reach=reach)
+
+    def report(count: int) -> None:
+        grown.append(count)
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r{_title(problem)}: {count} solutions so far ")
+
+    found = solve_and_confirm(problem, rng, tracker, report, reach=reach)
+    if sys.stderr.isatty():
+        sys.stderr.write("\r")
     seconds = time.process_time() - begin
     _say(
         f"{_title(problem)}: {len(found.member.x)} solutions ({', '.join(map(str, grown))}); "
@@ -55,22 +68,34 @@ def solve(problem: NamedFamily, seed: int) -> Member:
     return found.member
 
 
-def build() -> None:
-    """Write the shipped files anew."""
-    for path, problems in _FILES.items():
+def build(names: list[str]) -> None:
+    """Write shipped files anew."""
+    for path, problems in (_FILES[name] for name in names):
         arrays = dict[str, AnyArray]()
         for problem in problems:
             kept = as_arrays(problem, solve(problem, _SEED))
-            member_of_arrays(problem, kept)  # can it be read again?
+            again = member_of_arrays(problem, kept)  # can it be read again?
             arrays.update(kept)
+            if path.exists():
+                before = stored_member(problem, path)
+                same = _common(problem, before, again)
+                _say(f"  of {len(before.x)} solutions of the file, {same} are among these")
         np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
         _say(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes")
 
 
-def check() -> None:
+def _common(problem: NamedFamily, one: Member, other: Member) -> int | str:
+    """How many solutions two members have in common; nothing can be said of other parameters."""
+    if not np.array_equal(one.parameters, other.parameters):
+        return "none that can be compared"
+    both = np.concatenate([one.x, other.x])
+    return len(both) - len(first_of_each(problem.fingerprint(both, one.parameters)))
+
+
+def check(names: list[str]) -> None:
     """Compare the numbers of solutions with those of other members."""
     checked = wrong = 0
-    for path, problems in _FILES.items():
+    for path, problems in (_FILES[name] for name in names):
         for problem in problems:
             shipped, other = len(stored_member(problem, path).x), len(solve(problem, _CHECK).x)
             checked += 1
@@ -93,4 +118,8 @@ def _say(text: str) -> None:
 
 
 if __name__ == "__main__":
-    check() if sys.argv[1:] == ["--check"] else build()
+    given = sys.argv[1:]
+    chosen = [name for name in given if name != "--check"]
+    if not set(chosen) <= set(_FILES):
+        raise SystemExit("scripts/start_linkages [--check] [four-bars | six-bars]")
+    (check if "--check" in given else build)(chosen or list(_FILES))

@@ -7,7 +7,6 @@ from collections import Counter
 import numpy as np
 
 from linkwork.api import Mechanism
-from linkwork.design.synthesis.by_circuits import branches_of_positions
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
 from linkwork.design.synthesis.task import Task
@@ -15,6 +14,7 @@ from linkwork.design.synthesis.task_conditions import PrecisionPosition
 from linkwork.design.synthesis.verdicts import DefectKind, judge
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
+from tests.campaigns.library_defects import branches_at
 
 __all__ = ["defect_campaign", "random_designs", "verdict_by_circuits"]
 
@@ -132,8 +132,10 @@ def verdict_by_circuits(
     places = [
         {"A": given.moving_a[k, j], "B": given.moving_b[k, j]} for j in range(len(design.inputs))
     ]
-    inputs_there = [value / scale for value in design.inputs]
-    branches = branches_of_positions(circuits, inputs_there, places)
+    branches = [
+        min(branches_at(circuits, value / scale, here, 0.0), default="")
+        for value, here in zip(design.inputs, places, strict=True)
+    ]
     if len({name.split(" branch")[0] for name in branches}) > 1:
         return DefectKind.CIRCUIT
     return DefectKind.BRANCH if len(set(branches)) > 1 else None

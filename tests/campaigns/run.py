@@ -28,6 +28,7 @@ from tests.campaigns.imports import import_campaign
 from tests.campaigns.improvement import PARTS as IMPROVEMENTS, improvement_campaign
 from tests.campaigns.kinds import kind_campaign
 from tests.campaigns.lanes import judge_lane_steps, judge_lanes
+from tests.campaigns.library_defects import MECHANISMS, library_defect_campaign
 from tests.campaigns.links import link_campaign
 from tests.campaigns.monkey import monkey_campaign
 from tests.campaigns.motion import sweep_campaign
@@ -37,6 +38,7 @@ from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
+from tests.campaigns.whole_motions import EVERY as MOTIONS, whole_motion_campaign
 from tests.campaigns.workbooks import workbook_campaign
 
 __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
@@ -46,10 +48,12 @@ _PART = 50
 _OWN_PART = {
     "gradients": 1,
     "improve": 1,
+    "library-defects": 1,
     "nine-points": 1,
     "parallel-trains": 1,
     "poses": 1000,
     "precision-points": 4,
+    "whole-motions": 1,
 }
 #: Mechanisms in random order, so that a smaller campaign is a sample of all of them.
 _GRADIENTS = np.random.default_rng(20).permutation(EVERY)
@@ -159,8 +163,10 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "nine-points": (nine_point_campaign, 100),
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
+    "library-defects": (library_defect_campaign, len(MECHANISMS)),
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
+    "whole-motions": (whole_motion_campaign, MOTIONS),
 }
 #: Those that share the cores themselves: what does the whole campaign, and its usual size.
 WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = {

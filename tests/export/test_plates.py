@@ -15,17 +15,18 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.export.plates.body_poses import BodyPoses
 from linkwork.export.plates.construction import Construction
 from linkwork.export.plates.dxf import dxf_of
 from linkwork.export.plates.gears import Wheel, involute_outline, touches
 from linkwork.export.plates.layer_order import Conflict, find_layers, obstacles
-from linkwork.export.plates.motion_boxes import BodyPoses, boxes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.placing import assembled, box, in_rows
 from linkwork.export.plates.plate_file import plates_of
 from linkwork.export.plates.stack import stack_of
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.figures import Disc
+from linkwork.motion.motion_boxes import boxes_of, variables_of
 from tests.export.coarse import coarse
 from tests.export.plate_checks import hole_error, made, overlaps, simple, solid_error
 from tests.library_mechanisms import read_example
@@ -94,12 +95,12 @@ def test_half_the_kerf_goes_outside_outlines_and_inside_holes() -> None:
 def test_boxes_hold_all_positions_between_the_rows() -> None:
     mechanism = read_example("crank-shaper")
     model, motion = mechanism.model, mechanism.sweep(step=4)
-    boxes = boxes_of(model, motion)
+    boxes = boxes_of(model, motion, variables_of(model, motion))
     poses = BodyPoses(model, ["ground", "crank", "lever", "link", "ram"], 1.0)
     assert boxes.holds.all()
     fine = mechanism.sweep(step=0.5)
     wanted, spread, middle = (
-        poses.of(boxes_of(model, fine).v),
+        poses.of(variables_of(model, fine)),
         poses.spread(boxes),
         poses.of(boxes.v),
     )

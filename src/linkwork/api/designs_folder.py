@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,9 +13,11 @@ from linkwork.design.synthesis.designs_table import designs_table, front_of
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.task import Task
-from linkwork.drawing import render
+from linkwork.drawing import SceneOptions, render
 from linkwork.drawing.charts.front_chart import front_chart
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
+from linkwork.drawing.position_marks import PositionMark
+from linkwork.drawing.scene import Scene
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path, unwritten
 from linkwork.foundation.written_file import save_bytes, save_text
@@ -74,8 +77,7 @@ def write_designs(
             path = part / names[k]
             save_text(write_text(design.linkage), path)
             if options.draw:
-                scene = Mechanism(design.linkage).scene(design.first_input)
-                picture = inline_svg(scene, FixedInks(), longest=_LONGEST)
+                picture = inline_svg(_scene(design), FixedInks(), longest=_LONGEST)
                 save_text(picture, path.with_suffix(".svg"))
             if progress is not None:
                 progress((done + 1) / len(chosen))
@@ -103,8 +105,23 @@ def _write_tables(
         save_bytes(front, part / "front.svg")
     if options.html:
         shown = found.delivered[:_PICTURES]
-        scenes = [Mechanism(design.linkage).scene(design.first_input) for design in shown]
+        scenes = [_scene(design) for design in shown]
         save_text(designs_page(found, scenes, files, front), part / "index.html")
+
+
+def _scene(design: JudgedDesign) -> Scene:
+    """A design at its first position, with the positions of its task."""
+    marks = tuple(
+        PositionMark(
+            place=complex(*position.point),
+            direction=None
+            if position.angle is None
+            else cmath.rect(1.0, design.task.in_radians(position.angle)),
+        )
+        for position in design.task.positions
+    )
+    options = SceneOptions(positions=marks)
+    return Mechanism(design.linkage).scene(design.first_input, options=options)
 
 
 def _front_picture(found: Synthesis) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,6 @@ import numpy as np
 from linkwork.api.mechanism import Mechanism
 from linkwork.design.atlas import path_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
-from linkwork.design.atlas.stored_paths import atlas_of_stores
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
@@ -118,15 +117,31 @@ class PathAtlas:
         return cls(path_atlas.read_atlas(as_path(path)))
 
     @classmethod
-    def of_stores(cls, stores: Sequence[str | Path]) -> Self:
+    def of_stores(
+        cls, stores: Sequence[str | Path], progress: Callable[[float], None] | None = None
+    ) -> Self:
         """The atlas of studies that keep the path of a point over a whole turn.
+
+        Parameters
+        ----------
+        stores : sequence of paths
+        progress : callable, optional
+            Told the finished fraction; may raise an error to end the work.
 
         Raises
         ------
         InputError
-            If a store keeps no path, or has no closed path.
+            If a store is damaged, keeps no path, or has no closed path.
         """
-        return cls(atlas_of_stores([as_path(store) for store in stores]))
+        # curves are compared without studies, which load Numba: a second
+        from linkwork.design.atlas.stored_paths import atlas_of_stores
+
+        return cls(atlas_of_stores([as_path(store) for store in stores], progress))
+
+    @property
+    def unfinished(self) -> tuple[str, ...]:
+        """Sentences about stores that lacked some of their designs when it was made."""
+        return self._atlas.unfinished
 
     def save(self, path: str | Path) -> None:
         """Write the atlas to a file (.npz)."""

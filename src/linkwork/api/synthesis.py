@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.api.mechanism import Mechanism
 from linkwork.design.synthesis import result, task, task_file
-from linkwork.design.synthesis.by_circuits import defects_by_circuits, is_passed
+from linkwork.design.synthesis.by_circuits import defects_by_circuits
 from linkwork.design.synthesis.defect_messages import Defect
 from linkwork.design.synthesis.designs_table import designs_table
 from linkwork.design.synthesis.solving import solve_task
@@ -165,14 +165,7 @@ class Task:
         if len(inputs) != len(positions):
             raise InputError(f"{len(positions)} positions need as many inputs, got {len(inputs)}")
         places = [{name: complex(*position.point)} for position in positions]
-        start, stop = min(inputs), max(inputs)
-        if start < stop and len(mechanism.description.inputs) == 1:
-            # most mechanisms pass their positions as they are: one sweep, not all circuits
-            step = (stop - start) / _ROWS
-            motion = mechanism.sweep(start=start, stop=stop, step=step, certify=False)
-            if is_passed(motion, inputs, places):
-                return ()
-        return defects_by_circuits(mechanism.circuits(certify=False), inputs, places)
+        return defects_by_circuits(mechanism.model, inputs, places)
 
     def __repr__(self) -> str:
         return f'<Task "{self.name}": {self.described.kind}>'
@@ -181,7 +174,6 @@ class Task:
 _OF_IMPROVEMENTS = (
     "goal", "goals", "point", "vary", "bounds", "starts", "spread", "front", "seed",
 )  # fmt: skip
-_ROWS = 180  # of a sweep through positions
 _OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
 
 

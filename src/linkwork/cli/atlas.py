@@ -79,13 +79,15 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
         raise InputError(
             "--index needs stores and a file:\n    linkwork atlas --index four-bar.zarr -o mine.npz"
         )
-    with progress("reading paths"):
-        made = PathAtlas.of_stores(stores)
+    with progress("reading paths") as tell:
+        made = PathAtlas.of_stores(stores, tell)
     made.save(output)
     if as_json:
-        print_json({"paths": len(made), "file": output})
-    else:
-        print_lines(wrapped(f"Wrote {len(made)} paths of {len(stores)} stores to {output}."))
+        print_json({"paths": len(made), "file": output, "unfinished": list(made.unfinished)})
+        return
+    print_lines(wrapped(f"Wrote {len(made):,} paths of {len(stores)} stores to {output}."))
+    for told in made.unfinished:
+        print_lines(wrapped(f"{told}. Finish it and repeat this command for the others."))
 
 
 def _write(found: tuple[NearPath, ...], folder: Path) -> list[str]:

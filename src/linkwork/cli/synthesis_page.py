@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
+from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.design.synthesis.designs_table import front_of
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
@@ -115,16 +116,20 @@ def _error(found: Synthesis) -> str:
 def _verdict(found: Synthesis) -> list[str]:
     """Whether there is a sound design; if not, the commonest reasons and the costliest wish."""
     if found.delivered:
-        head = f"{found.sound} of {len(found.designs)} designs have no defect."
-        return sentence(good, head)
+        have = "has" if found.sound == 1 else "have"
+        lines = sentence(good, f"{found.sound} of {len(found.designs)} designs {have} no defect.")
+        return [*lines, *(line for text in remarks_on(found) for line in wrapped(text))]
+    told = advice_of(found)
+    advice = wrapped(told) if told else []
     if not found.designs:
-        return sentence(bad, "No mechanism of the wanted kinds solves the task.")
+        return [*sentence(bad, "No mechanism of the wanted kinds solves the task."), *advice]
     lines = sentence(bad, "No design is free of defects.")
     cost = found.costliest
     if cost is not None:
         wish, count = cost
         told = f"The wish that costs most is {wish}: without it {count} would be sound."
         lines += wrapped(told)
+    lines += advice
     shown = _examples(found)
     for design in shown:
         reason = f"{design.mechanism} driven at {design.driven}: "

@@ -9,6 +9,7 @@ from linkwork.api.synthesis import Task
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
+from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
 
@@ -61,7 +62,8 @@ def synthesize(
         with progress("writing designs") as tell:
             files = write_designs(found, output, options, tell)
     if as_json:
-        print_json(found.to_dict(files))
+        advice = {"remarks": list(remarks_on(found)), "advice": advice_of(found)}
+        print_json({**found.to_dict(files), **advice})
     else:
         lines = synthesis_lines(found)
         if output is not None:

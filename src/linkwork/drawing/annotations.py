@@ -12,6 +12,7 @@ from linkwork.drawing.dimension_symbols import dimension_symbols
 from linkwork.drawing.force_arrows import force_arrows
 from linkwork.drawing.measures import Measures
 from linkwork.drawing.pose import Pose
+from linkwork.drawing.position_marks import position_marks
 from linkwork.drawing.rate_arrows import rate_arrows
 from linkwork.drawing.scene import Primitive
 from linkwork.drawing.scene_options import SceneOptions
@@ -61,10 +62,12 @@ def annotation_of(subject: Subject, chosen: SceneOptions, drawn: Sequence[Primit
 
 
 def _of_motion(subject: Subject, chosen: SceneOptions) -> Iterator[Annotation]:
-    """Vectors, rates, forces, centres and centrodes."""
+    """Positions of a task, vectors, rates, forces, centres and centrodes."""
     position, motion, pose, measures = (
         subject.position, subject.motion, subject.pose, subject.measures
     )  # fmt: skip
+    if chosen.positions:
+        yield position_marks(chosen.positions, measures)
     if chosen.vectors:
         drawn, names = vector_symbols(chosen.vectors, subject.polygons, measures)
         yield Annotation(drawn=drawn, names=names)

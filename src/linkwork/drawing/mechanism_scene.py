@@ -85,7 +85,8 @@ def scene_of(
     if motion is not None and chosen.further and pose.points:
         further = further_positions(pose, motion, chosen.further)
     polygons = tuple(map(tuple, vector_edges(chosen.vectors, pose)))
-    within = chosen.within or _within(pose, names, further, polygons)
+    wanted_places = [mark.place for mark in chosen.positions]
+    within = chosen.within or _within(pose, names, further, polygons, wanted_places)
     measures = Measures.of(within, pose.gaps, chosen.larger)
     found = tracks(pose, measures, tones(pose))
     sense = -1.0 if motion is not None and (motion.speed or 0.0) < 0 else 1.0
@@ -146,13 +147,15 @@ def _within(
     names: tuple[str, ...],
     further: Sequence[Further],
     polygons: Iterable[Iterable[Edge]],
+    places: Iterable[complex],
 ) -> Box:
-    """The box of the picture: the mechanism in all its positions, and vectors."""
-    vectors = [xy(end) for edges in polygons for edge in edges for end in (edge.tail, edge.tip)]
+    """The box of the picture: the mechanism in all its positions, vectors, positions of a task."""
+    others = [xy(end) for edges in polygons for edge in edges for end in (edge.tail, edge.tip)]
+    others += map(xy, places)
     if not pose.points:
-        return Box.around(vectors)
+        return Box.around(others)
     box = drawn_box(pose, names, [other.pose for other in further])
-    return Box.around([*box.corners, *vectors])
+    return Box.around([*box.corners, *others])
 
 
 def _faded(primitive: Primitive) -> Primitive:

@@ -22,7 +22,7 @@ _PENALTY = {
     Role.WELD: 30.0, Role.TRACED: 40.0, Role.LIMIT: 40.0, Role.INPUT: 14.0, Role.SPEED_TRACE: 4.0,
     Role.FIXED_CENTRODE: 4.0, Role.MOVING_CENTRODE: 4.0, Role.EXTENSION: 4.0, Role.DIMENSION: 12.0,
     Role.VECTOR: 14.0, Role.VELOCITY: 14.0, Role.ACCELERATION: 14.0, Role.FORCE: 14.0,
-    Role.CENTRE: 30.0, Role.SPRING: 12.0,
+    Role.CENTRE: 30.0, Role.SPRING: 12.0, Role.POSITION: 30.0,
 }  # fmt: skip
 _INSIDE_PLATE = 1.5
 _TEXT = 100.0  # penalty for covering text

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwork.drawing.box import Box
+from linkwork.drawing.position_marks import PositionMark
 from linkwork.foundation.internal import internal
 from linkwork.results.force import Force
 from linkwork.results.vector_loop import VectorLoop
@@ -12,7 +13,7 @@ from linkwork.results.vector_loop import VectorLoop
 __all__ = ["SceneOptions"]
 
 
-@internal("vectors", "within")
+@internal("vectors", "positions", "within")
 @dataclass(frozen=True, kw_only=True)
 class SceneOptions:
     """Optional contents of a picture.
@@ -45,6 +46,8 @@ class SceneOptions:
         The links whose centrodes are shown, over the motion.
     dimensions : bool
         Lengths of links, radii of wheels and the input as dimension lines.
+    positions : tuple of PositionMark
+        Positions of a task that the mechanism should pass, numbered in order of travel.
     within : Box, optional
         The minimum extent of the picture, and the reference for sizes of symbols: use the same for
         all pictures of an animation, from
@@ -71,4 +74,5 @@ class SceneOptions:
     centres: bool = False
     centrodes: tuple[str, ...] = ()
     dimensions: bool = False
+    positions: tuple[PositionMark, ...] = ()
     within: Box | None = None

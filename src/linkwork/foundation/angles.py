@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 
-__all__ = ["FULL_TURN", "AngleUnit", "within_half_a_turn"]
+__all__ = ["FULL_TURN", "AngleUnit", "least_arc", "within_half_a_turn"]
 
 FULL_TURN = 2.0 * math.pi
 # 2π in three parts; products of the first two with 26-bit numbers are exact
@@ -25,6 +25,18 @@ def within_half_a_turn(gap: Array, turns: BoolArray) -> Array:
     ``turns`` (N,): which of them are angles [rad].
     """
     return np.where(turns, gap - FULL_TURN * np.round(gap / FULL_TURN), gap)
+
+
+def least_arc(angles: Array, turn: float = FULL_TURN) -> tuple[float, float]:
+    """The begin and the extent of the least arc that contains angles (N,), up to whole turns.
+
+    Angles in one turn without a gap of half a turn begin at the smallest one.
+    """
+    every = np.sort(np.mod(angles - angles[0], turn))
+    gaps = np.diff(every, append=every[0] + turn)
+    last = int(gaps.argmax())
+    begin = every[(last + 1) % len(every)] + angles[0]
+    return float(begin), float(turn - gaps[last])
 
 
 class AngleUnit(Enum):

@@ -21,17 +21,15 @@ from linkwork.foundation.short_number import short_number
 from linkwork.foundation.status import Status
 from linkwork.foundation.value_types import check_flags
 from linkwork.motion import failure as why
-from linkwork.motion.circuit.arcs import Arc, Explorer, positions_near
+from linkwork.motion.circuit.arcs import Arc, Explorer, positions_at_value
 from linkwork.motion.circuit.seeding import Seeding
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.circuit.weakest import weakest_place
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
-from linkwork.motion.leading_input import leading_input
 from linkwork.motion.limits import change_point_limit, dead_point_limit
 from linkwork.motion.model import Model
 from linkwork.motion.motion_of_rows import motion_of_rows
-from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.continuation.change_point import Crossing
 from linkwork.numerics.continuation.local_parametrization import same_position
 from linkwork.numerics.rows import SolvedRows
@@ -40,8 +38,6 @@ from linkwork.results.failure import Failure
 from linkwork.results.motion import Motion
 
 __all__ = ["branch_start", "circuits", "is_branch_name"]
-
-_FINE = 8  # positions kept per step of a curve
 
 
 def circuits(
@@ -63,10 +59,7 @@ def circuits(
         If the mechanism has no input, or several that time drives.
     """
     check_flags(progress, certify=certify)
-    if model.untimed is not None and len(model.untimed.equations.inputs) > 1:
-        raise InputError("several inputs with laws have no common circuit: leave out the laws")
-    # circuits are those of the mechanism's own input, whatever drives it
-    work = _Circuits(model.untimed or model, certify)
+    work = _Circuits(Drive.of_circuits(model), certify)
     work.seeding.look(progress)
     return work.result()
 
@@ -80,13 +73,10 @@ class _Group:
 
 
 class _Circuits:
-    def __init__(self, model: Model, certify: bool) -> None:
-        lead, rate = leading_input(model.rows)
-        self.model, self.certify = model, certify
-        self.drive = Drive.through(model, model.start_inputs, rate, lead)
-        self.leads = self.drive.leads
-        self.explorer = Explorer(Walks(self.drive, certify), _FINE)
-        self.seeding = Seeding(self.drive, self.explorer)
+    def __init__(self, drive: Drive, certify: bool) -> None:
+        self.drive, self.leads, self.model, self.certify = drive, drive.leads, drive.model, certify
+        self.explorer = Explorer(Walks(drive, certify))
+        self.seeding = Seeding(drive, self.explorer)
 
     def result(self) -> Circuits:
         """Circuits in the order found: that of the guess first."""
@@ -116,7 +106,8 @@ class _Circuits:
 
     def _groups(self) -> list[_Group]:
         """Arcs joined by the change points they share, in the order found."""
-        arcs, crossings = [a for a in self.explorer.arcs if self._fits(a)], self.explorer.crossings
+        explorer = self.explorer
+        arcs, crossings = [a for a in explorer.arcs if explorer.fits(a)], explorer.crossings
         joined = DisjointSets(len(arcs))
         first: dict[int, int] = {}
         for k, arc in enumerate(arcs):
@@ -134,14 +125,6 @@ class _Circuits:
             )
             for members in groups.values()
         ]
-
-    def _fits(self, arc: Arc) -> bool:
-        """Whether redundant links fit all along an arc."""
-        equations = self.model.equations
-        if not equations.redundant:
-            return True
-        branches = self.explorer.solved_branches(arc)
-        return all((misfit(equations, branch.v) <= FITS).all() for branch in branches)
 
     def _circuit(self, name: str, group: _Group) -> Circuit:
         scale = self.drive.unit
@@ -199,22 +182,11 @@ class _Circuits:
     def _configuration_on(self, branch: CurveBranch) -> str:
         """The first of the configurations at the guess's input that lies on a branch."""
         value = float(self.model.start_inputs[self.drive.lead])
-        for here in self._solve_branch(branch, value):
+        for here in positions_at_value(self.leads, branch, value):
             for v, name in self.seeding.names:
                 if same_position(self.leads, here, v):
                     return name
         return ""
-
-    def _solve_branch(self, branch: CurveBranch, value: float) -> list[Array]:
-        """The positions of a branch at a value of the parameter, modulo whole turns."""
-        own = self.leads.with_parameter(self.leads.parameter)
-        found = []
-        for guess in positions_near(self.leads, branch, value):
-            if own is not None:
-                done = own.solver.solve(guess[own.order][None, :])
-                if done.status[0] == Status.CONVERGED.code:
-                    found.append(own.whole(done.v[0]))
-        return found
 
     def _around(self, group: _Group) -> Array:
         legs = group.arcs[0].up.curve.legs
@@ -289,7 +261,7 @@ def branch_start(model: Model, name: str) -> Model:
     UnknownNameError
         With the names that exist.
     """
-    work = _Circuits(model, False)
+    work = _Circuits(Drive.along_table(model), False)
     work.seeding.look(None)
     known: dict[str, CurveBranch] = {}
     for number, group in enumerate(work._groups(), start=1):
@@ -303,7 +275,7 @@ def branch_start(model: Model, name: str) -> Model:
             f'there is no "{name}" of {model.description.name} {choices("branches", names, name)}'
         )
     branch = known[name]
-    here = work._solve_branch(branch, float(model.start_inputs[work.drive.lead]))
+    here = positions_at_value(work.leads, branch, float(model.start_inputs[work.drive.lead]))
     if not here and branch.ratio == 0.0:
         raise InputError(f'the input is at rest on "{name}", so no motion can start there')
     start = here[0] if here else branch.anchor

@@ -69,12 +69,21 @@ def trace_with_proof(
 
 
 def trace_boldly(
-    leads: Parametrizations, start: Array, heading: float | Array, certify: bool
+    leads: Parametrizations,
+    start: Array,
+    heading: float | Array,
+    certify: bool,
+    *,
+    prove_turns: bool = True,
 ) -> TracedCurve:
-    """A curve whose proof is still to be made; with careful steps if there will be none."""
+    """A curve whose proof is still to be made; with careful steps if there will be none.
+
+    ``prove_turns``: whether to prove where its dead points are.
+    """
     bold = certify and _provable(leads)
     curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL)
-    return TracedCurve(curve=curve, proof=None, turns=tuple(turning_points(leads, curve)))
+    turns = turning_points(leads, curve, prove=prove_turns)
+    return TracedCurve(curve=curve, proof=None, turns=tuple(turns))
 
 
 def confirmed(

@@ -7,6 +7,8 @@ from functools import cached_property
 
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
+from linkwork.foundation.errors import InputError
+from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
 from linkwork.motion.tracking import leading_scale, turns_freely
 from linkwork.numerics.block_solver import BlockSolver
@@ -30,6 +32,25 @@ class Drive:
             origin=inputs - rate * inputs[lead], rate=rate, size=leading_scale(model, lead)
         )
         return cls(model=model, path=path, lead=lead)
+
+    @classmethod
+    def along_table(cls, model: Model) -> Drive:
+        """From the guess in the direction of the table's inputs."""
+        lead, rate = leading_input(model.rows)
+        return cls.through(model, model.start_inputs, rate, lead)
+
+    @classmethod
+    def of_circuits(cls, model: Model) -> Drive:
+        """That of the mechanism's own input, whatever law of time drives it.
+
+        Raises
+        ------
+        InputError
+            If the mechanism has no input, or several that time drives.
+        """
+        if model.untimed is not None and len(model.untimed.equations.inputs) > 1:
+            raise InputError("several inputs with laws have no common circuit: leave out the laws")
+        return cls.along_table(model.untimed or model)
 
     @property
     def solver(self) -> BlockSolver:

@@ -6,6 +6,7 @@ import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 
+from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.design.synthesis.designs_table import goal_misses
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
@@ -100,6 +101,9 @@ def _counts(found: Synthesis) -> Iterator[str]:
         ("delivered", f"{len(found.delivered)} of {found.sound} without defects"),
         ("completeness", found.message),
     ]
+    pairs += [("remark", text) for text in remarks_on(found)]
+    if advice := advice_of(found):
+        pairs.append(("advice", advice))
     if len(found.designs) > _MOST_ROWS:
         pairs.append(("table", f"the first {_MOST_ROWS} designs; designs.csv holds all"))
     for name, text in pairs:

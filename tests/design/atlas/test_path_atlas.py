@@ -147,6 +147,32 @@ def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
         atlas_of_stores([half])
 
 
+def test_stores_that_are_unfinished_damaged_or_gone_are_named(tmp_path: Path) -> None:
+    plan = (_PLANS / "slider-crank.toml").read_text()
+    few = plan.replace("1_000_000", "60").replace("seed      = 1", "seed = 1\nchunk = 20")
+    store, file = tmp_path / "few.zarr", tmp_path / "few.npz"
+    run_study(read_plan_text(few, folder=_PLANS), store, workers=1)
+    whole = len(atlas_of_stores([store]).families[0])
+    (store / "ledger" / "00000001.json").unlink()
+    told: list[float] = []
+    made = atlas_of_stores([store], told.append)
+    assert told == [0.5, 1.0]
+    assert 20 < len(made.families[0]) < whole
+    assert made.unfinished == (f'"{store}" has 40 of 60 designs: its study is unfinished',)
+    done = CliRunner().invoke(linkwork, ["atlas", "--index", str(store), "-o", str(file)])
+    assert "unfinished. Finish it and repeat this command" in " ".join(done.stdout.split())
+    # the study is resumed, and the atlas is whole
+    run_study(read_plan_text(few, folder=_PLANS), store, workers=1)
+    again = atlas_of_stores([store])
+    assert (len(again.families[0]), again.unfinished) == (whole, ())
+    changed = next((store / "P.x").rglob("c/0/*"))
+    changed.write_bytes(changed.read_bytes()[:-1])
+    with pytest.raises(lw.InputError, match=r"1 chunks of .* are damaged: repeat the command of"):
+        atlas_of_stores([store])
+    with pytest.raises(lw.InputError, match=r'there is no ".*gone.zarr"'):
+        atlas_of_stores([tmp_path / "gone.zarr"])
+
+
 def test_the_command_writes_mechanisms_placed_on_the_curve(tmp_path: Path) -> None:
     curve, folder = tmp_path / "curve.csv", tmp_path / "near"
     z = 50.0 * np.cos(_ANGLES) + 1j * (20.0 * np.sin(_ANGLES) + 8.0 * np.cos(2.0 * _ANGLES))

@@ -60,10 +60,8 @@ def test_wishes_hold_over_the_whole_driven_range() -> None:
         return [kind.name for kind in design.kinds]
 
     found = logarithm(wanted={"transmission": {"least": 6}}).solve()
-    assert found.message.endswith(
-        "; transmission tested in the rows of the table, all else on the whole motion"
-    )
-    assert found.to_dict()["designs"][0]["tested_in_rows"] == ["transmission"]
+    assert found.message.endswith("; transmission proved on the whole motion")
+    assert found.to_dict()["designs"][0]["proved_in_motion"] == ["transmission"]
     assert kinds() == []
     assert kinds(transmission={"least": 6}) == []
     assert kinds(transmission={"least": 7}) == ["TRANSMISSION"]

@@ -163,8 +163,8 @@ def _part_of_a_four_bar(low: float, high: float) -> list[tuple[float, float]]:
         (380.0, 500.0, {"wanted": {"transmission": {"least": 40.0}}}, 1e-3),
         # pivots leave this mechanism alone, which has two points at the ends of the range
         (20.0, 140.0, {"given": {"fixed_pivots": [(0, 0), (4, 0)]}}, 1e-12),
-        # of timed inputs differences count
-        (20.0, 140.0, {"inputs": list(np.linspace(223.0, 343.0, 12))}, 1e-12),
+        # of timed inputs differences count, up to whole turns
+        (20.0, 140.0, {"inputs": list(np.linspace(300.0, 420.0, 12) % 360.0)}, 1e-12),
     ],
 )
 def test_a_wanted_range_bounds_the_search(

@@ -214,6 +214,30 @@ def test_moving_pivots_of_four_poses_are_circle_points() -> None:
         lw.Task.motion(parallel, given={"fixed_pivots": [(0, 0)]}).solve()
 
 
+@pytest.mark.parametrize("key", ["fixed_pivots", "moving_pivots"])
+def test_designs_with_given_pivots_are_proved_through_all_four_poses(key: str) -> None:
+    """A pivot of five decimals is off its curve: the design has the proved one on the curve."""
+    poses = [(5, 0, 20), *_POSES[1:]]
+    own = lw.Task.motion(poses).solve().dyads[10]
+    exact = complex(*own.fixed)
+    if key == "moving_pivots":
+        exact = 5 + complex(*own.moving) * np.exp(1j * np.radians(20))
+    pivot = round(exact.real, 5), round(exact.imag, 5)
+    found = lw.Task.motion(poses, mechanism="four-bar", given={key: [pivot]}).solve()
+    assert "given pivots are moved by up to" in found.message
+    assert found.dyads[0].proved
+    assert found.dyads[0].error < 1e-9
+    assert found.linkages > 5
+    for design in found.of_loops:
+        given, k = design.group.given, design.index
+        crank = np.abs(given.moving_a[k] - given.fixed_a[k])
+        # both pivots and their distance are known to the error, and with them all four poses
+        assert np.ptp(crank) <= 4.0 * given.error[k] + 1e-12
+        there = given.fixed_a[k] if key == "fixed_pivots" else given.moving_a[k, 0]
+        assert abs(there - complex(*pivot)) < 1e-4
+        assert abs(there - exact) < 1e-4
+
+
 def test_a_pivot_off_the_curve_of_four_poses_is_refused_with_the_nearest_point() -> None:
     with pytest.raises(lw.MechanismError, match="is not on the centre-point curve"):
         lw.Task.motion(_POSES, given={"fixed_pivots": [(0, 0)]}).solve()

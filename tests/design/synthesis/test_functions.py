@@ -259,6 +259,14 @@ def test_a_wanted_range_bounds_a_free_start_angle() -> None:
         lw.Task.function(_STEP, wanted={"input": {"from": 100.0, "to": 180.0}}, **task)
 
 
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
+def test_outputs_that_do_not_move_have_no_fit(mechanism: str) -> None:
+    pairs = [(10.0 * k, 0.0) for k in range(8)]
+    found = lw.Task.function(pairs, fit="minimax", mechanism=mechanism).solve()
+    assert not found.designs
+    assert found.message.startswith("nothing found: no loop")
+
+
 def test_pairs_of_a_real_four_bar_are_fitted_exactly() -> None:
     a, c, b = 0.4, 1.2, 0.9
     u = np.radians(np.linspace(40.0, 130.0, 10))

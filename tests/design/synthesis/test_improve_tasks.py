@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
+from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.foundation.errors import MechanismFileError
 from linkwork.mechanism.linkage import Linkage
 
@@ -48,10 +50,65 @@ def test_a_wished_transmission_angle_holds_and_costs_exactness() -> None:
     assert free.delivered[0].transmission < 29.9
     assert wished.delivered[0].transmission >= 30.0
     assert wished.delivered[0].error > free.delivered[0].error
-    assert "transmission tested in the rows of the table" in wished.message
-    assert "rows" not in free.message
-    data = [found.to_dict()["designs"][0]["tested_in_rows"] for found in (free, wished)]
-    assert data == [[], ["transmission"]]
+    assert wished.message.endswith("; transmission proved on the whole motion")
+    assert "proved" not in free.message
+    data = [found.to_dict()["designs"][0] for found in (free, wished)]
+    assert [own["proved_in_motion"] for own in data] == [[], ["transmission"]]
+    assert [own["tested_in_rows"] for own in data] == [[], []]
+
+
+def _moved_crank(tmp_path: Path, step: int, **wanted: object) -> JudgedDesign:
+    """A slider-crank in coarse rows of which only the place is improved."""
+    text = lw.example_text("slider-crank").replace("step = 1\n", f"step = {step}\n")
+    (tmp_path / "crank.toml").write_text(text)
+    goal = {"of": "A.x", "at": [0], "values": [lw.example("slider-crank").solve(at=0)["A.x"]]}
+    task = lw.Task.improve(
+        tmp_path / "crank.toml", goals=[goal], vary=["O2.x"], starts=1, wanted=wanted
+    )
+    (design,) = task.solve().designs
+    return design
+
+
+def test_what_breaks_a_wish_between_two_rows_is_found(tmp_path: Path) -> None:
+    """The transmission angle is 60° at 90°, and 60.4° at least in rows 40° apart."""
+    design = _moved_crank(tmp_path, 40, transmission={"least": 60.2})
+    assert isinstance(design, ImprovedMechanism)
+    motion = design.improved.motion
+    assert motion is not None
+    rows = motion["B.transmission"]
+    assert np.minimum(rows, 180.0 - rows).min() > 60.2
+    (defect,) = design.defects
+    assert defect.kind.name == "TRANSMISSION"
+    assert re.fullmatch(
+        r"transmission angle down to 60\S*° at crank = .*°, wanted 60.2°", defect.message
+    )
+    assert not _moved_crank(tmp_path, 40, transmission={"least": 59.9}).defects
+    # a thin obstacle on the way of the crank's end, and one that it passes
+    end = complex(*lw.example("slider-crank").solve(at=60).points["A"])
+    (defect,) = _moved_crank(tmp_path, 40, clear_of=[[end.real, end.imag, 0.1]]).defects
+    assert defect.kind.name == "OBSTACLE"
+    assert re.fullmatch('"(crank|rod)" meets an obstacle at crank = .*°', defect.message)
+    top = lw.example("slider-crank").solve(at=90).points["A"][1]
+    clear = _moved_crank(tmp_path, 40, clear_of=[[0, top + 0.11, 0.1]])
+    assert not clear.defects
+    assert clear.to_dict()["proved_in_motion"] == ["clear_of"]
+
+
+def test_wishes_of_a_mechanism_driven_in_time_are_tested_in_rows(tmp_path: Path) -> None:
+    """Inputs between the rows of a law are not known."""
+    text = lw.example_text("slider-crank").replace("to   = 360\nstep = 1\n", "to = 2\nstep = 0.1\n")
+    (tmp_path / "crank.toml").write_text(
+        text.replace('link = "crank"\n', 'link = "crank"\nlaw = "9 * t"\n')
+    )
+    found = lw.Task.improve(
+        tmp_path / "crank.toml", goals=[{"of": "max(d)", "most": 170}], vary=["O2 A"], starts=1,
+        wanted={"transmission": {"least": 5}, "clear_of": [[0, 500, 3]]},
+    ).solve()  # fmt: skip
+    words = (
+        "transmission and clear_of tested in the rows of the table, all else on the whole motion"
+    )
+    assert found.message.endswith(f"; {words}")
+    assert found.designs[0].to_dict()["tested_in_rows"] == ["transmission", "clear_of"]
 
 
 def test_designs_that_break_wishes_are_refused_and_the_costliest_is_named() -> None:

@@ -9,6 +9,7 @@ import jsonschema
 import pytest
 
 import linkwork as lw
+from linkwork.design.synthesis import by_circuits
 from linkwork.design.synthesis.task_file import read_task_text
 from linkwork.design.synthesis.task_keys import TASK
 from linkwork.textfile.schema import schema_of
@@ -200,5 +201,5 @@ def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
     point = legs.description.trace[0]
     inputs = (10.4, 41.2, 222.2)
     places = [legs.solve(at=angle).points[point] for angle in inputs]
-    monkeypatch.setattr(lw.Mechanism, "circuits", lambda *_, **__: pytest.fail("not needed"))
+    monkeypatch.setattr(by_circuits, "FollowedCircuit", lambda *_: pytest.fail("not needed"))
     assert lw.Task.path(places).defects_of(legs, inputs, point=point) == ()

@@ -104,9 +104,10 @@ class Nearest:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PathAtlas:
-    """Several families."""
+    """Several families; ``unfinished``: sentences about stores that lack some of their designs."""
 
     families: tuple[AtlasFamily, ...]
+    unfinished: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return sum(map(len, self.families))

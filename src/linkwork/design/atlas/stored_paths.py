@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from linkwork.batch.study.chunk_manifest import read_entries
+from linkwork.batch.study.chunk_manifest import Entry, read_entries
 from linkwork.batch.study.store import attributes_of
 from linkwork.batch.study.zarr_files import check_packages, open_arrays
 from linkwork.design.atlas.path_atlas import AtlasFamily, PathAtlas
@@ -20,50 +21,99 @@ __all__ = ["atlas_of_stores"]
 _CLOSED = 1e-6  # of the path's size: the first and last row are one position
 
 
-def atlas_of_stores(stores: Sequence[Path]) -> PathAtlas:
+def atlas_of_stores(
+    stores: Sequence[Path], progress: Callable[[float], None] | None = None
+) -> PathAtlas:
     """The atlas of studies that keep the path of a point over a whole turn.
+
+    ``progress``: told the finished fraction; may raise an error to end the work.
 
     Raises
     ------
     InputError
-        If a store keeps no path, or has no closed path.
+        If a store is damaged, keeps no path, or has no closed path.
     """
     check_packages()
-    return PathAtlas(families=tuple(map(_family_of_store, stores)))
+    # wrong stores are refused before the first one is read
+    known = [_checked(path) for path in stores]
+    entries = [_entries(path) for path in stores]
+    whole, done = sum(map(len, entries)), 0
+
+    def tell() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done / whole)
+
+    unfinished = []
+    families = []
+    for path, attributes, own in zip(stores, known, entries, strict=True):
+        families.append(_family_of_store(path, attributes, own, tell))
+        stored = sum(entry.stop - entry.start for entry in own)
+        count = open_arrays(path)["passed"].shape[0]
+        if stored < count:
+            unfinished.append(f'"{path}" has {stored} of {count} designs: its study is unfinished')
+    return PathAtlas(families=tuple(families), unfinished=tuple(unfinished))
 
 
-def _family_of_store(path: Path) -> AtlasFamily:
+def _checked(path: Path) -> Mapping[str, Any]:
+    """The attributes of a store with the path of one point."""
     attributes = attributes_of(path)
-    known = attributes["linkwork_identity"]
-    arrays = open_arrays(path)
-    kept = known["keep"]
-    points = [name[:-2] for name in kept if name.endswith(".x") and f"{name[:-2]}.y" in kept]
-    if len(points) != 1:
+    kept = attributes["linkwork_identity"]["keep"]
+    count = len(_points(kept))
+    if count != 1:
         raise InputError(
-            f'"{path}" keeps the paths of {len(points)} points: an atlas needs one, e.g. '
+            f'"{path}" keeps the paths of {count} points: an atlas needs one, e.g. '
             'keep = ["P.x", "P.y"] in the plan'
         )
+    return attributes
+
+
+def _points(kept: Sequence[str]) -> list[str]:
+    return [name[:-2] for name in kept if name.endswith(".x") and f"{name[:-2]}.y" in kept]
+
+
+def _entries(path: Path) -> list[Entry]:
+    """The finished chunks of a store, in order."""
+    sound, damaged = read_entries(path)
+    if damaged:
+        raise InputError(
+            f'{len(damaged)} chunks of "{path}" are damaged: repeat the command of its study, '
+            "which computes them again"
+        )
+    return [entry for _, entry in sorted(sound.items())]
+
+
+def _family_of_store(
+    path: Path, attributes: Mapping[str, Any], entries: Sequence[Entry], tell: Callable[[], None]
+) -> AtlasFamily:
+    known = attributes["linkwork_identity"]
+    arrays = open_arrays(path)
+    (point,) = _points(known["keep"])
     names = tuple(name for name, _ in known["dimensions"] if arrays[name].ndim == 1)
-    numbers, shapes = [np.zeros((0, len(names)))], [np.zeros((0, 32))]
-    for _, entry in sorted(read_entries(path)[0].items()):
+    numbers = [np.zeros((0, len(names)), dtype=np.float32)]
+    shapes = [np.zeros((0, 32), dtype=np.float16)]
+    for entry in entries:
         part = slice(entry.start, entry.stop)
-        z = arrays[f"{points[0]}.x"][part] + 1j * arrays[f"{points[0]}.y"][part]
+        z = arrays[f"{point}.x"][part] + 1j * arrays[f"{point}.y"][part]
         good = arrays["passed"][part] & _are_closed(z)
         own = coefficients(z[good][:, :-1])[0]
         values = np.stack([arrays[name][part][good] for name in names], axis=1)
         there = np.isfinite(own).all(axis=1)
-        numbers.append(values[there])
-        shapes.append(np.ascontiguousarray(own[there]).view(float))
-    found = np.concatenate(numbers).astype(np.float32)
+        # chunk by chunk in the precision that is kept: a million designs fit in little memory
+        numbers.append(values[there].astype(np.float32))
+        shapes.append(np.ascontiguousarray(own[there]).view(float).astype(np.float16))
+        tell()
+    found = np.concatenate(numbers)
     if not len(found):
         raise InputError(f'"{path}" has no closed path: keep it over a whole turn of the crank')
     return AtlasFamily(
         title=attributes["mechanism_name"],
         mechanism=known["mechanism"],
-        point=points[0],
+        point=point,
         names=names,
         numbers=found,
-        shapes=np.concatenate(shapes).astype(np.float16),
+        shapes=np.concatenate(shapes),
     )
 
 

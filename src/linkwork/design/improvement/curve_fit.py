@@ -137,7 +137,10 @@ class _Problem:
         if self.goal.inputs is None:
             return found.x
         turned = (found.t - self.goal.inputs).mean(axis=1, keepdims=True)
-        turned += self._turns(found)
+        low, high = self.goal.input_bounds
+        if self.goal.range is not None:
+            # whole turns that bring starts nearest to their bounds
+            turned += FULL_TURN * np.round((0.5 * (low + high) - turned) / FULL_TURN)
         return np.concatenate([found.x, turned], axis=1)
 
     def own(self, found: CurveStarts) -> Array:

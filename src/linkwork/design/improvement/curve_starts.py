@@ -18,7 +18,7 @@ from linkwork.design.improvement.coupler_curves import (
     FourBarCurves,
 )
 from linkwork.design.improvement.curve_goal import INPUT, CurveGoal
-from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.angles import FULL_TURN, least_arc
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["CurveStarts", "best_starts", "random_loops"]
@@ -136,7 +136,13 @@ def _compared(
         fitted = _fitted(q, inside, goal.points, free)
         if goal.range is not None:
             place = turns[:, inside] + way * FULL_TURN * wraps + np.angle(fitted[1])[:, :, None]
-            _, outside = goal.turned_inside(place.min(axis=2), place.max(axis=2))
+            ends = place.min(axis=2), place.max(axis=2)
+            if goal.inputs is not None:
+                # a common angle of the inputs, and their least arc
+                begin, extent = least_arc(goal.inputs)
+                first = place[:, :, 0] + begin - goal.inputs[0]
+                ends = first, first + extent
+            _, outside = goal.turned_inside(*ends)
             # points that are driven back into the range miss by about as much
             fitted[0][:] += len(goal.points) * (goal.size * outside) ** 2
         best = fitted[0].argmin(axis=1)

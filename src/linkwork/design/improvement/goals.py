@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import LanePositions
 from linkwork.design.sensitivity import LIMITS
@@ -27,6 +28,7 @@ from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.motion.model import Model
 from linkwork.results.quantities.asked import Asked, AskedOfMotion, Group
 from linkwork.results.quantities.index import MOTION_QUANTITIES
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.quantity import Kind
 
 __all__ = ["Misses", "PathGoal", "goal_of"]
@@ -167,6 +169,8 @@ def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: flo
         )
     if not calls:
         at = np.array(goal.at) * scale if goal.at else table[there]
+        if goal.is_bound and not goal.at and _is_transmission(model, goal.of):
+            return _TransmissionMisses(model, goal, at)
         return _RowMisses(model, goal, at)
     if goal.at:
         raise InputError(f'"{goal.of}" is a number of the whole motion: leave out at and values')
@@ -203,6 +207,24 @@ class _RowMisses(Misses):
                 total = evaluate(self.node, jets, self.angle).v
         value, by_x = found.totals(rows, total)
         return value, by_x
+
+
+class _TransmissionMisses(_RowMisses):
+    """Transmission angles where they are least or greatest half-way to the rows next to each."""
+
+    def __init__(self, model: Model, goal: Goal, at: Array) -> None:
+        super().__init__(model, goal, at)
+        self.between = BetweenRows(at)
+
+    def values(self, found: LanePositions) -> tuple[Array, Array]:
+        """See :meth:`Misses.values`."""
+        value, by_x = super().values(found)
+        if not self.between.is_regular:
+            return value, by_x
+        # of two bounds that one which is nearer
+        least = -np.inf if self.goal.least is None else self.goal.least
+        most = np.inf if self.goal.most is None else self.goal.most
+        return self.between.extremes(value, by_x, value - least > most - value)
 
 
 class _NumberMisses(Misses):
@@ -277,6 +299,13 @@ class _NumberMisses(Misses):
         # rows of no weight may have no derivative
         used = np.any([weight != 0.0 for weight in weights], axis=0)
         return numbers, np.where(used[:, :, None], by_x, 0.0).sum(axis=1)
+
+
+def _is_transmission(model: Model, text: str) -> bool:
+    if not _is_name(model, text):
+        return False
+    found = model.quantities.find(text)
+    return found.row is TRANSMISSION_ANGLE and found.rate is None
 
 
 def _is_name(model: Model, text: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from linkwork.design.improvement.motion_bounds import MotionBounds
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.description import Description
 from linkwork.results.motion import Motion
@@ -12,7 +13,7 @@ from linkwork.results.motion import Motion
 __all__ = ["ImprovedDesign"]
 
 
-@internal("description", "motion")
+@internal("description", "motion", "whole_motion")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ImprovedDesign:
     """A mechanism with improved numbers.
@@ -42,6 +43,8 @@ class ImprovedDesign:
         without its weight [file units].
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
+    whole_motion : MotionBounds, optional
+        The motion between the rows too; ``None`` if that is not proved.
 
     Examples
     --------
@@ -63,6 +66,7 @@ class ImprovedDesign:
     misses: tuple[float, ...] = ()
     goals: Mapping[str, float] = field(default_factory=dict)
     motion: Motion | None = None
+    whole_motion: MotionBounds | None = None
 
     def __repr__(self) -> str:
         return f"<ImprovedDesign: total {self.total:.4g}, {self.message}>"

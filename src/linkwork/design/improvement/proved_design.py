@@ -11,6 +11,7 @@ from linkwork.design.improvement.fit_problem import FittedNumbers
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import path_misses
+from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.frozen import FrozenDict
@@ -53,9 +54,11 @@ def proved_design(
 
     ``numbers``: those that were found; ``told``: what the message begins with.
     """
-    motion = None
+    motion = whole = None
     try:
-        motion = sweep(model_of(description))
+        model = model_of(description)
+        motion = sweep(model)
+        whole = WholeMotion.of(model, motion)
         lost = int(np.count_nonzero(~motion.certified))
         told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
     except LinkworkError as error:
@@ -69,6 +72,7 @@ def proved_design(
         sound=not lost,
         message=told,
         motion=motion,
+        whole_motion=whole,
     )
 
 

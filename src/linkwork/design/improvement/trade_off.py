@@ -65,7 +65,8 @@ class Objectives:
             np.linalg.norm(self.misses(found, k)[0], axis=1) / np.sqrt(self.count(found, k))
             for k in range(len(self.names))
         ]
-        return np.stack(values, axis=1) / self.weights
+        # there may be bounds only
+        return np.array(values).reshape(len(values), len(found.shared)).T / self.weights
 
     def broken(self, found: Residuals) -> Array:
         """The largest residual of a bound, (D,)."""

@@ -33,7 +33,7 @@ _SEED = 11
 _SMALL = 100  # paths that are expected; more of them are compiled as soon as that saves time
 _MOST = 250_000  # paths, about 20 s of two cores compiled,
 _MOST_IN_NUMPY = 10_000  # and as long without a compiler
-_ROUNDS = 8  # trace tests
+_ROUNDS, _DIRECTIONS = 8, 2  # trace tests, and directions of each
 _SINGULAR = 1e12  # condition number of a random member
 _UNKNOWN = "not all solutions of a random task of this kind are known: "
 
@@ -96,7 +96,9 @@ def _solved(problem: PrecisionProblem, progress: Callable[[float], None] | None)
         return OwnMember(member=None, reason=told)
     try:
         with np.errstate(all="ignore"):
-            found = solve_and_confirm(problem, rng, tracker, grown.append, idle=1, rounds=_ROUNDS)
+            found = solve_and_confirm(
+                problem, rng, tracker, grown.append, idle=1, directions=_DIRECTIONS, rounds=_ROUNDS
+            )
     except _SpentError:
         told = f"after {most} paths, which found {grown[-1]}"
         return OwnMember(member=None, reason=_UNKNOWN + told)

@@ -22,13 +22,21 @@ import numpy as np
 
 from linkwork.design.synthesis.dyad_equations import NormalPoses
 from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
-from linkwork.design.synthesis.dyads import solve_on_lines
+from linkwork.design.synthesis.dyads import Refusal, solve_on_lines
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.rounding import RANK_TOLERANCE, UNIT_ROUNDOFF
 
-__all__ = ["Arc", "CentrePoints", "centre_points", "sampled_dyads", "sliding_dyad"]
+__all__ = [
+    "Arc",
+    "CentrePoints",
+    "centre_points",
+    "dyads_with_pivots",
+    "sampled_dyads",
+    "sliding_dyad",
+]
 
 _SAMPLES = 48  # directions over all arcs
+_THROUGH = np.exp(0.25j * np.pi * np.arange(4))  # directions of lines through a given pivot
 _OWN_POLE = 1e-7  # of the size of the task: the pencil's own pole
 #: Turns from pose to pose below this leave no finite pole.
 _SMALLEST_TURN = 1e-6
@@ -208,6 +216,29 @@ def sampled_dyads(points: ComplexArray, angles: Array, samples: int = _SAMPLES) 
     # every line finds the same RP dyad
     sliding = np.flatnonzero(found.kind == 2)[:1]
     return DyadSet.joined([pinned, found.take(sliding)]).of_one_task()
+
+
+def dyads_with_pivots(
+    pivots: ComplexArray, points: ComplexArray, angles: Array, reach: float
+) -> DyadSet:
+    """The RR dyads through four poses (4,), (4,) whose fixed pivots are nearest to given ones (K,).
+
+    On a line through a given pivot the four poses determine the dyad: the square system is that of
+    :func:`solve_on_lines`, with its proof. Of several lines the nearest proved pivot counts, which
+    differs from the given one by as much as that is off the curve. A pivot without a dyad within
+    ``reach`` has none here.
+    """
+    found = []
+    for pivot in pivots:
+        lines = np.stack([np.full(len(_THROUGH), pivot), _THROUGH], axis=1)
+        d, theta = np.tile(points, (len(lines), 1)), np.tile(angles, (len(lines), 1))
+        solved = solve_on_lines(d, theta, lines)
+        dyads = DyadSet.of_solutions(solved, PoseSet(points=d, turns=np.exp(1j * theta)))
+        away = np.abs(dyads.fixed - pivot)
+        near = np.flatnonzero((dyads.kind == 0) & (away < reach))
+        order = np.lexsort([away[near], dyads.refusal[near] != Refusal.NONE.code])
+        found.append(dyads.take(near[order[:1]]))
+    return DyadSet.joined(found).of_one_task()
 
 
 def sliding_dyad(points: ComplexArray, angles: Array) -> DyadSet:

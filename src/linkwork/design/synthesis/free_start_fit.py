@@ -103,6 +103,11 @@ def fit_free_starts(
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
     lanes = _Lanes(u, v, slides, side)
     x = box.inside(x)
+    wrong = lanes.errors(x, np.arange(len(x)))[0]
+    if not np.isfinite(wrong).all(axis=1).any():
+        return FreeStartFits(
+            x=x[:0], side=side[:0], wrong=wrong[:0], minimal=np.zeros(0, dtype=bool)
+        )
     total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
     lanes, side = _Lanes(u, v, slides, side[some]), side[some]

@@ -274,6 +274,8 @@ def _fitted_freely(
         made += _fit_design(u + own[3], v + own[4] + wrong, own[:3], slides, miss)
     found = _found(task, made, complete=0)
     message = f"a sample: {len(made)} different {goal.fit} fits from {len(starts[0])} starts"
+    if not made:
+        message = "nothing found: no loop through three of the pairs follows all of them"
     if fits.minimal.any():
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     return replace(found, message=message, starts=len(starts[0]))

@@ -18,6 +18,7 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.slider import Slider
+from linkwork.results.listing.number_text import significant
 
 __all__ = ["Design", "linkage_of"]
 
@@ -26,6 +27,8 @@ _STEPS = 100  # of a displacement
 _ON_LINE = 1e-9  # of a coupler's length: a pivot on its line
 _SAME_TURN = 1e-12  # relative: the rounding of a few angles
 _GUIDE = "slide"
+_MOST_LISTED = 9  # positions whose inputs are listed
+_DIGITS = 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,7 +170,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         formula = task.function.formula("crank", _GUIDE if sliders else output, task.angle)
     return Linkage(
         name=name,
-        purpose=task.purpose,
+        purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
         points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
@@ -199,7 +202,7 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
     bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
     return Linkage(
         name=name,
-        purpose=task.purpose,
+        purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
         points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
@@ -213,6 +216,18 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
         inputs=(_input(design, task.angle),),
         trace=(guided,),
     )
+
+
+def _purpose(design: Design, task: Task) -> str:
+    """What it is for; with the inputs at its positions, if they are few."""
+    if task.function is not None or len(design.inputs) > _MOST_LISTED:
+        return task.purpose
+    turns = design.drive.turns
+    driven = _input(design, task.angle)
+    values = [task.angle.from_radians(v) if turns else v for v in design.inputs]
+    listed = ", ".join(significant(value, _DIGITS) for value in values)
+    unit = task.angle.value if turns else task.length
+    return task.purpose.replace(";", f" at {driven.link or driven.slider} = {listed} {unit};", 1)
 
 
 def _bar(design: Design, side: Drive) -> tuple[str, str]:

@@ -27,7 +27,7 @@ from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["ImprovedMechanism", "SweptDesign", "tested_in_rows"]
+__all__ = ["ImprovedMechanism", "SweptDesign", "wishes_in_motion"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,10 +136,13 @@ class ImprovedMechanism(SweptDesign):
 
     @cached_property
     def transmission(self) -> float:
-        """The least transmission angle of all dyads in the rows of the table, NaN without dyads
-        [file's angle unit].
+        """A lower bound of the least transmission angle of all dyads in the whole motion, or the
+        least one in its rows where that is not proved; NaN without dyads [file's angle unit].
         """
-        motion = self._motion
+        whole, motion = self.improved.whole_motion, self._motion
+        if whole is not None:
+            least = whole.least_transmission(self.wishes.transmission)
+            return self.task.angle.from_radians(least.low)
         if motion is None or not motion.found.any():
             return float("nan")
         names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
@@ -165,6 +168,11 @@ class ImprovedMechanism(SweptDesign):
     def size(self) -> float:
         """The longest link, or the largest distance of fixed pivots [length]."""
         return float(self._lengths.max(initial=np.nan if not len(self._lengths) else 0.0))
+
+    @property
+    def shortest(self) -> float:
+        """The shortest link, or distance of fixed pivots [length]."""
+        return float(self._lengths.min(initial=np.inf)) if len(self._lengths) else float("nan")
 
     @property
     def error(self) -> float:
@@ -215,11 +223,32 @@ class ImprovedMechanism(SweptDesign):
             order = np.argsort(self.improved.inputs, kind="stable") + 1
             told = f"the input passes the positions in the order {', '.join(map(str, order))}"
             yield DefectKind.ORDER, told
-        sign, wanted = task.angle.sign, task.wanted.transmission
-        if wanted and not self.transmission >= wanted:
-            told = f"transmission angle down to {self.transmission:.6g}{sign}, wanted {wanted:g}"
-            yield DefectKind.TRANSMISSION, f"{told}{sign}"
+        yield from self._transmission_defects()
         yield from self._geometric_defects()
+
+    def _transmission_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        angle, wanted = self.task.angle, self.task.wanted.transmission
+        whole, least = self.improved.whole_motion, self.wishes.transmission
+        if not wanted or self.transmission >= wanted:
+            return
+        kind, told, place = DefectKind.TRANSMISSION, "transmission angle down to", ""
+        down = self.transmission
+        if whole is not None and whole.dyads:
+            found = whole.least_transmission(least)
+            down, place = angle.from_radians(found.high), f" at {self._input_text(found.at)}"
+            if found.high >= least:
+                kind = DefectKind.NOT_PROVED
+                told = "not proved: the transmission angle comes down to"
+        # as many digits as tell it from the wanted one
+        digits = next((k for k in range(6, 16) if f"{down:.{k}g}" != f"{wanted:.{k}g}"), 6)
+        yield kind, f"{told} {down:.{digits}g}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
+
+    def _input_text(self, value: float) -> str:
+        """A value of the leading input with its name."""
+        assert self._motion is not None
+        lead = self._motion.quantities.names.lead
+        unit, angle = self._motion.input_units[lead], self.task.angle
+        return f"{lead} = {value:.6g}{angle.sign if unit == angle.value else f' {unit}'}"
 
     def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
         """The first position outside the driven range, to the accuracy of rows."""
@@ -249,9 +278,35 @@ class ImprovedMechanism(SweptDesign):
             if not self.wishes.allows(shortest, longest):
                 told = f"lengths from {shortest:.4g} to {longest:.4g} are out of bounds"
                 yield DefectKind.LENGTHS, told
-        if self._meets_obstacle():
-            told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
+        yield from self._obstacle_defects()
+
+    def _obstacle_defects(self) -> Iterator[tuple[DefectKind, str]]:
+        whole, links = self.improved.whole_motion, self._sides
+        if not len(self.wishes.obstacles) or not links:
+            return
+        if whole is None:
+            if self._meets_obstacle():
+                told = "a link meets an obstacle in a row, or passes it too closely to exclude that"
+                yield DefectKind.OBSTACLE, told
+            return
+        found = whole.contact([ends for _, ends in links], self.wishes.obstacles)
+        if found.met is not None:
+            side, place = found.met
+            told = f'"{links[side][0]}" meets an obstacle at {self._input_text(place)}'
             yield DefectKind.OBSTACLE, told
+        elif found.open is not None:
+            first, last = map(self._input_text, found.open)
+            told = "not proved: the links may meet an obstacle between"
+            yield DefectKind.NOT_PROVED, f"{told} {first} and {last}"
+
+    @cached_property
+    def _sides(self) -> list[tuple[str, tuple[str, str]]]:
+        """The lines between two points of every moving link."""
+        description = self.improved.description
+        if not isinstance(description, Draft):
+            return []
+        links = {name: own for name, own in description.links.items() if name != GROUND}
+        return [(name, ends) for name, own in links.items() for ends in combinations(own, 2)]
 
     def _missed_givens(self) -> Iterator[tuple[DefectKind, str]]:
         """Pivots and lengths that the task gives and the design does not have."""
@@ -280,28 +335,30 @@ class ImprovedMechanism(SweptDesign):
 
     def _meets_obstacle(self) -> bool:
         """Whether a side of a link comes nearer to a circle than its ends move between rows."""
-        description = self.improved.description
-        if not len(self.wishes.obstacles) or not isinstance(description, Draft):
-            return False
-        for name, own in description.links.items():
-            for p, q in combinations(own, 2) if name != GROUND else ():
-                one, other = self._places[p], self._places[q]
-                moved = max(_largest_step(one), _largest_step(other))
-                for x, y, radius in self.wishes.obstacles:
-                    away = distances_to_segments(np.array(complex(x, y)), one, other)
-                    if away.min() <= radius + 0.5 * moved:
-                        return True
+        for _, ends in self._sides:
+            one, other = (self._places[point] for point in ends)
+            moved = max(_largest_step(one), _largest_step(other))
+            for x, y, radius in self.wishes.obstacles:
+                away = distances_to_segments(np.array(complex(x, y)), one, other)
+                if away.min() <= radius + 0.5 * moved:
+                    return True
         return False
+
+    @property
+    def proved_in_motion(self) -> tuple[str, ...]:
+        """Wishes that are judged in the whole motion."""
+        return () if self.improved.whole_motion is None else wishes_in_motion(self.task)
 
     @property
     def tested_in_rows(self) -> tuple[str, ...]:
         """Wishes that are tested in the rows of the table only."""
-        return tested_in_rows(self.task)
+        return () if self.improved.whole_motion is not None else wishes_in_motion(self.task)
 
     def _details(self) -> Mapping[str, Any]:
         return {
             "numbers": self.numbers,
             "inputs": list(self.inputs),
+            "proved_in_motion": list(self.proved_in_motion),
             "tested_in_rows": list(self.tested_in_rows),
             "goals": self.goals,
             "misses": list(self.improved.misses),
@@ -310,12 +367,8 @@ class ImprovedMechanism(SweptDesign):
         }
 
 
-def tested_in_rows(task: Task) -> tuple[str, ...]:
-    """Wishes of a task that are tested in the rows of a table only.
-
-    The motion between the rows is proved, and with it branch, order and range; lengths and fixed
-    pivots do not change.
-    """
+def wishes_in_motion(task: Task) -> tuple[str, ...]:
+    """Wishes of a task that depend on all positions: others than lengths and fixed pivots."""
     asked = (
         (TRANSMISSION_ANGLE.word, task.wanted.transmission),
         ("clear_of", task.wanted.obstacles),

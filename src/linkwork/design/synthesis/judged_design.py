@@ -102,6 +102,11 @@ class JudgedDesign(ABC):
 
     @property
     @abstractmethod
+    def shortest(self) -> float:
+        """The shortest link, or distance of fixed pivots [length]."""
+
+    @property
+    @abstractmethod
     def error(self) -> float:
         """How far positions are missed, the largest distance; or the structural error."""
 
@@ -136,9 +141,11 @@ class JudgedDesign(ABC):
             "mechanism": self.mechanism,
             "points": {name: [z.real, z.imag] for name, z in self.points.items()},
             "drive": self.driven,
+            "inputs": list(self.inputs),
             "delivered": self.delivered,
             TRANSMISSION_ANGLE.word: self.transmission,
             "size": self.size,
+            "shortest": self.shortest,
             "error": self.error,
             "score": self.score,
             **self._details(),

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linkwork.design.synthesis.burmester import (
     CentrePoints,
     centre_points,
+    dyads_with_pivots,
     sampled_dyads,
     sliding_dyad,
 )
@@ -36,6 +38,7 @@ __all__ = ["poses_of", "solve_motion"]
 
 _PIVOTS = {2: 12, 3: 60}  # of a family through so many poses; two leave further freedom
 _ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centre-point curve
+_EXACT = 1e-12  # the same: pivots on it to rounding
 _CURVE_SAMPLES = 400
 _MOST_PARALLEL = 4  # three parallel poses still have parallelograms
 _PARALLEL = 1e-12  # angles that differ by less are equal to rounding
@@ -216,12 +219,13 @@ def _through_four(
     given = []
     if fixed.size:
         _check_on_curve(task, "fixed_pivots", fixed, curve, points, (0j, 1.0 + 0j))
-        given.append(through_fixed(fixed, points[:3], turns[:3]))
+        given.append(_determined(task, "fixed_pivots", fixed, points, angles))
     # the body sees the fixed pivots move: its circle points are centre points of that motion
     body = centre_points(inverted(points, turns)[0], -angles)
     if moving.size:
         _check_on_curve(task, "moving_pivots", moving, body, points, (points[0], turns[0]))
-        given.append(through_moving(moving, points[:3], turns[:3]))
+        own = _determined(task, "moving_pivots", moving, inverted(points, turns)[0], -angles)
+        given.append(replace(own, moving=own.fixed, fixed=own.moving))
     free = [sampled_dyads(points, angles), sliding_dyad(points, angles)]
     number = len(fixed) + len(moving)
     arcs = () if curve is None else curve.arcs
@@ -230,8 +234,38 @@ def _through_four(
         dyads=DyadSet.joined(given if number > 1 else [*given, *free]),
         leading=sum(map(len, given)) if number == 1 else 0,
         message=f"a sample of dyads along the centre-point curve: {len(arcs)} {proved} "
-        f"arc{'' if len(arcs) == 1 else 's'}",
+        f"arc{'' if len(arcs) == 1 else 's'}{_moved(fixed, moving, given, points)}",
     )
+
+
+def _determined(
+    task: Task, key: str, pivots: ComplexArray, points: ComplexArray, angles: Array
+) -> DyadSet:
+    """The dyads of given pivots, fixed in the frame of these poses, through all four of them."""
+    reach = 4.0 * _ON_CURVE * float(np.abs(points - points.mean()).max())
+    found = dyads_with_pivots(pivots, points, angles, reach)
+    if len(found) == len(pivots):
+        return found
+    lonely = [k for k, p in enumerate(pivots) if not (np.abs(found.fixed - p) < reach).any()]
+    told = "determines no dyad: the body turns about it from one pose to another"
+    raise _refused(task, "given", told, key, lonely[0] if lonely else 0)
+
+
+def _moved(
+    fixed: ComplexArray, moving: ComplexArray, given: Sequence[DyadSet], points: ComplexArray
+) -> str:
+    """How far given pivots are off their curves, on which those of the proved designs are."""
+    wanted = [(x, name) for x, name in ((fixed, "fixed"), (moving, "moving")) if len(x)]
+    away = max(
+        (
+            float(np.abs(getattr(dyads, name) - x).max())
+            for (x, name), dyads in zip(wanted, given, strict=True)
+        ),
+        default=0.0,
+    )
+    if away <= _EXACT * float(np.abs(points - points.mean()).max()):
+        return ""
+    return f"; given pivots are moved by up to {away:.2g} onto their curve"
 
 
 def _check_on_curve(

@@ -197,6 +197,11 @@ class SynthesizedDesign(JudgedDesign):
         return float(self.group.verdicts.size[self.index])
 
     @property
+    def shortest(self) -> float:
+        """The shortest link, or the distance of the fixed pivots [length]."""
+        return float(self.group.verdicts.shortest[self.index])
+
+    @property
     def error(self) -> float:
         """How far positions are missed, the largest distance, or the structural error."""
         miss = float(self.group.given.miss[self.index])

@@ -18,7 +18,7 @@ from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
-from linkwork.design.synthesis.improved_mechanism import tested_in_rows
+from linkwork.design.synthesis.improved_mechanism import SweptDesign, wishes_in_motion
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.motion_synthesis import solve_motion
@@ -108,8 +108,7 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         else "different local minima"
     )
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
-    if ranked:
-        told += _of_rows(task)
+    told += _of_motion(task, ranked)
     told += "" if task.curve is None else task.curve.note
     return Synthesis(
         task=task,
@@ -130,6 +129,7 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
 def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
     """All Watt-II six-bars of a function, sound ones by falling score."""
     designs, found, (grade, message) = solve_watt(task, wishes_of(task, Drive.A0), progress)
+    ranked = _ranked_alone(task, designs)
     return Synthesis(
         task=task,
         complex=len(found.roots.x),
@@ -138,17 +138,20 @@ def _six_bars(task: Task, progress: Callable[[float], None] | None) -> Synthesis
         triples=0,
         linkages=len(designs),
         completeness=grade,
-        message=message + (_of_rows(task) if designs else ""),
+        message=message + _of_motion(task, ranked),
         dyads=(),
-        designs=_ranked_alone(task, designs),
+        designs=ranked,
     )
 
 
-def _of_rows(task: Task) -> str:
-    """Which wishes are tested in the rows of a table, of mechanisms that are swept."""
-    wishes = " and ".join(tested_in_rows(task))
-    told = "tested in the rows of the table, all else on the whole motion"
-    return f"; {wishes} {told}" if wishes else ""
+def _of_motion(task: Task, designs: Sequence[SweptDesign]) -> str:
+    """Where wishes are proved for the sound ones of designs that are swept."""
+    sound, wishes = [d.moved for d in designs if not d.kinds], " and ".join(wishes_in_motion(task))
+    if not wishes or not sound:
+        return ""
+    if all(design.proved_in_motion for design in sound):
+        return f"; {wishes} proved on the whole motion"
+    return f"; {wishes} tested in the rows of the table, all else on the whole motion"
 
 
 def _ranked_alone(

@@ -31,7 +31,7 @@ from linkwork.design.synthesis.wanted_mechanisms import (
     watt_pivot_problems,
 )
 from linkwork.design.synthesis.wishes import Wishes
-from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.angles import AngleUnit, least_arc
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EQUAL_ROWS
@@ -274,7 +274,8 @@ class Task:
             timed = [one for one, _ in self.function.pairs]
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
-            span, asked = max(timed) - min(timed), abs(wanted.range[1] - wanted.range[0])
+            _, span = least_arc(np.array(timed, dtype=float), self.angle.turn)
+            asked = abs(wanted.range[1] - wanted.range[0])
             if span > asked * (1.0 + EQUAL_ROWS):
                 yield (
                     ("wanted", "input"),

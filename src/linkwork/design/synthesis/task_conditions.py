@@ -106,7 +106,7 @@ class Ranking:
 
     transmission: float = 1.0
     size: float = 1.0
-    error: float = 1.0
+    error: float = 5.0
     deliver: int = 20
 
     def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:

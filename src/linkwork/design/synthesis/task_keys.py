@@ -183,7 +183,7 @@ _RANK = Key(
                         Key("error", PlainNumber(), "Weight of exactness"),
                     )
                 ),
-                "Weights of the ranking; default { transmission = 1, size = 1, error = 1 }",
+                "Weights of the ranking; default { transmission = 1, size = 1, error = 5 }",
             ),
             Key("deliver", Whole(1, 10**6), "The largest number of designs delivered; default 20"),
         )

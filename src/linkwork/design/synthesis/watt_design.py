@@ -11,11 +11,7 @@ import numpy as np
 
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.improved_mechanism import (
-    ImprovedMechanism,
-    SweptDesign,
-    tested_in_rows,
-)
+from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, SweptDesign
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
@@ -124,15 +120,24 @@ class WattDesign(SweptDesign):
 
     @property
     def transmission(self) -> float:
-        """The least transmission angle of both loops in the rows of the driven range, NaN for a
-        design that changes branch or circuit [file's angle unit].
+        """A lower bound of the least transmission angle of both loops in the driven range, NaN for
+        a design that changes branch or circuit [file's angle unit].
         """
         return float("nan") if self.swept is None else self.swept.transmission
 
     @cached_property
     def size(self) -> float:
         """The longest side of a link, or distance of fixed pivots [length]."""
-        return max(abs(self.points[q] - self.points[p]) for p, q in SIDES)
+        return max(self._sides)
+
+    @property
+    def shortest(self) -> float:
+        """The shortest side of a link, or distance of fixed pivots [length]."""
+        return min(self._sides)
+
+    @property
+    def _sides(self) -> list[float]:
+        return [abs(self.points[q] - self.points[p]) for p, q in SIDES]
 
     @cached_property
     def error(self) -> float:
@@ -185,4 +190,9 @@ class WattDesign(SweptDesign):
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
 
     def _details(self) -> Mapping[str, Any]:
-        return {"inputs": list(self.inputs), "tested_in_rows": list(tested_in_rows(self.task))}
+        swept = self.swept
+        return {
+            "inputs": list(self.inputs),
+            "proved_in_motion": [] if swept is None else list(swept.proved_in_motion),
+            "tested_in_rows": [] if swept is None else list(swept.tested_in_rows),
+        }

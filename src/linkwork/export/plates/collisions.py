@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.export.plates.body_poses import BodyPoses
 from linkwork.export.plates.layer_order import Conflict
-from linkwork.export.plates.motion_boxes import BodyPoses, Boxes, divided
 from linkwork.export.plates.packages import shapely
 from linkwork.export.plates.plate import BRIDGE, Pin, Plate
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.motion.model import Model
+from linkwork.motion.motion_boxes import Boxes, refined
 
 __all__ = ["Collisions", "Proved", "prove_clear"]
 
-_HALVINGS = 24  # of a box, at most
 _MOST_BOXES = 60_000  # that a proof may take in all
 
 
@@ -214,12 +213,9 @@ def prove_clear(
     Parts stay apart in a box if their distance in its middle exceeds what both can move. A box
     in which they may not is divided, and those are that come of it.
     """
-    pairs, lead = collisions.meeting(layers), boxes.lead
-    column = (model.untimed or model).compiled.solver.unknowns + lead
-    open_: list[tuple[float, float]] = []
-    hit: set[Conflict] = set()
-    taken = 0
-    for level in range(_HALVINGS):
+    pairs, hit = collisions.meeting(layers), set[Conflict]()
+
+    def decide(boxes: Boxes) -> BoolArray | None:
         clear = boxes.holds & slots(boxes)
         spread = poses.spread(boxes)
         moves = {part: collisions.moves(spread, part) for pair in pairs for part in pair}
@@ -227,18 +223,7 @@ def prove_clear(
             if (distance[boxes.known] <= 0.0).any():
                 hit.add(pair)
             clear &= distance > moves[pair[0]] + moves[pair[1]]
-        taken += len(boxes.v)
-        rest = boxes.take(np.flatnonzero(~clear))
-        last = level == _HALVINGS - 1 or taken + 2 * len(rest.v) > _MOST_BOXES
-        wide = np.isfinite(rest.half).all(axis=1) & (rest.half > 0.0).any(axis=1)
-        useful = rest.known & wide & (not last and not hit)
-        left = rest.take(np.flatnonzero(~useful))
-        own, half = left.v[:, column], left.half[:, lead]
-        open_ += zip((own - half).tolist(), (own + half).tolist(), strict=True)
-        boxes = rest.take(np.flatnonzero(useful))
-        if not len(boxes.v):
-            break
-        boxes = divided(model, boxes)
-        if progress is not None:
-            progress(1.0 - 0.5 ** math.log2(2 + level))
-    return Proved(open=tuple(open_), hit=frozenset(hit))
+        return None if hit else clear
+
+    low, high = refined(model, boxes, decide, most=_MOST_BOXES, progress=progress).ends
+    return Proved(open=tuple(zip(low.tolist(), high.tolist(), strict=True)), hit=frozenset(hit))

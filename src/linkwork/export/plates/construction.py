@@ -12,8 +12,8 @@ import numpy as np
 
 from linkwork.drawing.link_symbols import convex_outline
 from linkwork.export.plates.arms import arms_between
+from linkwork.export.plates.body_poses import BodyPoses, variables_of_all
 from linkwork.export.plates.gears import GearMesh, Wheel, gear_meshes
-from linkwork.export.plates.motion_boxes import BodyPoses, variables_of
 from linkwork.export.plates.options import PlateOptions, Sizes, sizes_of
 from linkwork.export.plates.outline import Outline, circle, rounded
 from linkwork.export.plates.packages import shapely
@@ -84,7 +84,7 @@ class Construction:
         linkage = model.description
         assert isinstance(linkage, Linkage)
         longest = mm * model.equations.length_scale
-        first = variables_of(model, motion)[:1]
+        first = variables_of_all(model, motion)[:1]
         placed = BodyPoses(model, list(linkage.links), mm).of(first)
         poses = {link: (complex(z[0]), complex(turn[0])) for link, (z, turn) in placed.items()}
         bodies = rigid_bodies(linkage, mm, poses)

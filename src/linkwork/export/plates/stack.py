@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from linkwork.export.plates.body_poses import BodyPoses, variables_of_all
 from linkwork.export.plates.bridge import bridged, columns_around
 from linkwork.export.plates.collisions import Collisions, Proved, prove_clear
 from linkwork.export.plates.construction import Construction, check_webs
 from linkwork.export.plates.layer_order import Conflict, LayerOrder, find_layers, obstacles
-from linkwork.export.plates.motion_boxes import BodyPoses, Boxes, boxes_of
 from linkwork.export.plates.options import PlateOptions
 from linkwork.export.plates.plate import PlateStack
 from linkwork.foundation.arrays import BoolArray
@@ -19,6 +19,7 @@ from linkwork.foundation.units import LENGTHS
 from linkwork.mechanism.linkage import Linkage
 from linkwork.mechanism.part.pairs import KinematicPairs
 from linkwork.motion.model import Model
+from linkwork.motion.motion_boxes import Boxes, boxes_of
 from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 
@@ -59,7 +60,7 @@ def stack_of(
     tell = progress or (lambda fraction: None)
     bodies = [plate.body for plate in made.plates]
     poses = BodyPoses(model, list(dict.fromkeys(bodies)), millimetres)
-    boxes = boxes_of(model, motion)
+    boxes = boxes_of(model, motion, variables_of_all(model, motion))
     placed = poses.of(boxes.v)
     collisions = Collisions(made.plates, made.pins, made.meshes, made.sizes.spacer / 2.0)
     conflicts = collisions.conflicts(placed, made.sizes.gap, lambda x: tell(_SAMPLED * x))

@@ -7,6 +7,7 @@ everything that is connected is found.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from linkwork.foundation.rounding import CLOSER_TANGENT, REGULAR_CONDITION
 from linkwork.foundation.status import Status
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of
+from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
@@ -27,8 +29,9 @@ from linkwork.numerics.continuation.local_parametrization import (
     same_position,
 )
 
-__all__ = ["Arc", "Explorer", "positions_near"]
+__all__ = ["Arc", "Explorer", "positions_at_value"]
 
+_FINE = 8  # positions of a branch per step of its curve
 _STRIDES = (1e-2, 3e-3, 1e-3, 1e-4)  # weighted, tried in this order
 _NEAR = 0.3  # weighted: positions further from a branch do not lie on it
 _STILL = 1e-5  # weighted change of the parameter along an arc on which it rests, up to a crossing
@@ -66,12 +69,10 @@ class Explorer:
     Parameters
     ----------
     walks : Walks
-    fine : int
-        Positions per step that branches keep.
     """
 
-    def __init__(self, walks: Walks, fine: int) -> None:
-        self.walks, self.leads, self.fine = walks, walks.leads, fine
+    def __init__(self, walks: Walks) -> None:
+        self.walks, self.leads = walks, walks.leads
         self.restart()
 
     def restart(self) -> None:
@@ -84,7 +85,7 @@ class Explorer:
     def solved_branches(self, arc: Arc) -> tuple[CurveBranch, ...]:
         """The branches of an arc, all their positions solved."""
         up = self.walks.stepwise(arc.up)
-        return tuple(_branches(self.leads, up, arc.down, self.fine, solved=True))
+        return tuple(_branches(self.leads, up, arc.down, solved=True))
 
     def settle(self) -> bool:
         """Prove all arcs; false if one was replaced, so that others may follow from it."""
@@ -105,25 +106,35 @@ class Explorer:
         for number, arc in enumerate(self.arcs):
             if any(_lies_on(self.leads, branch, seed) for branch in arc.branches):
                 return number
-        found = self._explore(seed, 1.0)
-        self._branch_off()
-        return found
+        first, *_ = self.follow(seed)
+        return first
 
-    def _branch_off(self) -> None:
-        """Follow every half-branch of every crossing that nothing came along yet."""
+    def follow(self, seed: Array) -> Iterator[int]:
+        """The number of the new arc through a position, then of each one that branches off from
+        what was found; every arc is followed when it is asked for.
+        """
+        yield self._explore(seed, 1.0)
         number = 0
         while number < len(self.crossings):
             crossing = self.crossings[number]
             for k, direction in enumerate(crossing.directions):
                 for sign in (1.0, -1.0):
+                    # nothing came along this half-branch yet
                     if (number, k, sign) in self._covered:
                         continue
                     other = crossing.directions[1 - k]
                     beyond = _beyond(self.leads, crossing.v, sign * direction, other)
                     self._covered.add((number, k, sign))
                     if beyond is not None:
-                        self._explore(beyond, sign * direction)
+                        yield self._explore(beyond, sign * direction)
             number += 1
+
+    def fits(self, arc: Arc) -> bool:
+        """Whether redundant links fit all along an arc."""
+        equations = self.walks.drive.model.equations
+        if not equations.redundant:
+            return True
+        return all((misfit(equations, b.v) <= FITS).all() for b in self.solved_branches(arc))
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
         """Follow the curve through a seed both ways; the number of the arc."""
@@ -142,7 +153,7 @@ class Explorer:
             down=down,
             end=reason,
             crossings=tuple(ends),
-            branches=tuple(_branches(self.leads, up, down, self.fine, solved=False)),
+            branches=tuple(_branches(self.leads, up, down, solved=False)),
         )
         if _rests(self.leads, arc):
             arc = replace(arc, end=CircuitEnd.INPUT_CONSTANT)
@@ -239,11 +250,11 @@ def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -
 
 
 def _branches(
-    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, fine: int, *, solved: bool
+    leads: Parametrizations, up: TracedCurve, down: TracedCurve | None, *, solved: bool
 ) -> list[CurveBranch]:
     """The branches of an arc; the first one is joined from both walks."""
     onward, back = (
-        branches_of(leads, walk, fine, solved=solved)
+        branches_of(leads, walk, _FINE, solved=solved)
         if walk is not None and walk.curve.legs
         else []
         for walk in (up, down)
@@ -273,7 +284,7 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
     own = leads.with_parameter(leads.parameter)
     if own is None:
         return False
-    for guess in positions_near(leads, branch, float(seed[leads.parameter])):
+    for guess in _positions_near(leads, branch, float(seed[leads.parameter])):
         # far from the branch: Newton-Raphson could only come back to it
         if np.abs(apart(leads, guess, seed) / leads.scale).max() > _NEAR:
             continue
@@ -285,7 +296,19 @@ def _lies_on(leads: Parametrizations, branch: CurveBranch, seed: Array) -> bool:
     return False
 
 
-def positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
+def positions_at_value(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
+    """The positions (N,) of a branch at a value of the parameter, modulo whole turns."""
+    own = leads.with_parameter(leads.parameter)
+    found = []
+    for guess in _positions_near(leads, branch, value):
+        if own is not None:
+            done = own.solver.solve(guess[own.order][None, :])
+            if done.status[0] == Status.CONVERGED.code:
+                found.append(own.whole(done.v[0]))
+    return found
+
+
+def _positions_near(leads: Parametrizations, branch: CurveBranch, value: float) -> list[Array]:
     """Interpolated positions (N,) of a branch at a value of the parameter, modulo whole turns."""
     p = leads.parameter
     low, high = branch.range(p)

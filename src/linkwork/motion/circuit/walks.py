@@ -20,11 +20,13 @@ class Walks:
 
     Curves are traced boldly at first, and proved together by :meth:`settle`: few large arrays take
     far less time than many small ones. From then on each is proved at once. Where compiled code
-    proves a whole turn of the input, nothing remains to be done.
+    proves a whole turn of the input, nothing remains to be done. ``prove_turns``: whether to prove
+    where dead points are.
     """
 
-    def __init__(self, drive: Drive, certify: bool) -> None:
+    def __init__(self, drive: Drive, certify: bool, *, prove_turns: bool = True) -> None:
         self.drive, self.leads, self.certify = drive, drive.leads, certify
+        self.prove_turns = prove_turns
         self._known: dict[tuple[bytes, bytes], TracedCurve] = {}
         self._open: dict[tuple[bytes, bytes], tuple[Array, float | Array]] = {}
         self._proved: dict[int, TracedCurve] = {}
@@ -41,7 +43,9 @@ class Walks:
                 self._known[key] = turned
                 self._turned[id(turned.curve)] = start
         if key not in self._known:
-            found = trace_boldly(self.leads, start, heading, self.certify)
+            found = trace_boldly(
+                self.leads, start, heading, self.certify, prove_turns=self.prove_turns
+            )
             if self.certify and found.curve.legs:
                 if self._settled:
                     proof = prove_curve(self.leads, found.curve)

@@ -37,11 +37,14 @@ class Parametrization:
     """The equations with the variable ``lead`` known.
 
     ``order`` (N,): the variables of the whole in the solver's order, the leading one last.
+    ``divided_steps``: the pieces of steps, both ends among them, by a variable's place and the
+    identities of these ends.
     """
 
     lead: int
     solver: BlockSolver
     order: IndexArray
+    divided_steps: dict[tuple[int, int, int], list[Node]] = field(default_factory=dict, repr=False)
     _nodes: dict[bytes, Node] = field(default_factory=dict, repr=False)
 
     @property

@@ -17,6 +17,7 @@ from linkwork.numerics.newton import sharp
 __all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
+_KEPT = 256  # divided steps of one leader
 _DIVISIONS = 24  # halvings of a step in which a variable turns back several times
 _SAFE = 4.0  # the error of a cubic is at most this many times that halfway
 _SEARCH = 80  # positions solved to find a sign change
@@ -116,15 +117,23 @@ def sign_change(
     return best
 
 
-def divide_step(
-    led: Parametrization, place: int, a: Node, b: Node, depth: int = _DIVISIONS
-) -> list[Node]:
+def divide_step(led: Parametrization, place: int, a: Node, b: Node) -> list[Node]:
     """A step, divided so finely that a variable turns back at most once in each piece.
 
     The cubic through the variable's rates and their derivatives at both ends is compared with the
     rate halfway. The step is halved until that cubic, within its error, is zero at most once;
     reversals within the rounding of the rate are not seen.
     """
+    # the search for dead points divides the steps that the search for the closing point has divided
+    key = place, id(a), id(b)
+    if key not in led.divided_steps:
+        if len(led.divided_steps) >= _KEPT:
+            led.divided_steps.clear()
+        led.divided_steps[key] = _divide(led, place, a, b, _DIVISIONS)
+    return led.divided_steps[key]
+
+
+def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> list[Node]:
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
     middle = node_between(led, a, b, 0.5) if h and depth else None
@@ -136,8 +145,8 @@ def divide_step(
     off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
     if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
-    left = divide_step(led, place, a, middle, depth - 1)
-    return [*left, *divide_step(led, place, middle, b, depth - 1)[1:]]
+    left = _divide(led, place, a, middle, depth - 1)
+    return [*left, *_divide(led, place, middle, b, depth - 1)[1:]]
 
 
 def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: float) -> bool:

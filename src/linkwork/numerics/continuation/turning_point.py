@@ -75,15 +75,19 @@ class TurningPoint:
         return self.proof is not None
 
 
-def turning_points(leads: Parametrizations, curve: Curve) -> list[TurningPoint]:
-    """The dead points on a curve, in its order.
+def turning_points(
+    leads: Parametrizations, curve: Curve, *, prove: bool = True
+) -> list[TurningPoint]:
+    """The dead points on a curve, in its order, with their proofs if asked for.
 
     Where the parameter's rate by the leader changes sign, Newton-Raphson on that rate, kept inside
     the sign change, finds the place. Steps in which the rate may change sign twice are divided.
     Where a place is not proved to lie between both ends at once, proved steps lead to it.
     """
     steps = list(_turning_steps(leads, curve))
-    turns = [_refine_turn(leads, *step) for step in steps]
+    turns = [_refine_turn(leads, *step, prove=prove) for step in steps]
+    if not prove:
+        return turns
     legs = {
         k: Leg(led=led, nodes=_distinct(low, turns[k].node, high))
         for k, (led, low, high, _) in enumerate(steps)
@@ -259,13 +263,21 @@ def _first_turn(
 
 
 def _refine_turn(
-    leads: Parametrizations, led: Parametrization, low: Node, high: Node, where: tuple[int, int]
+    leads: Parametrizations,
+    led: Parametrization,
+    low: Node,
+    high: Node,
+    where: tuple[int, int],
+    *,
+    prove: bool = True,
 ) -> TurningPoint:
-    """The place between two nodes at which the parameter's rate is zero, with its proof."""
+    """The place between two nodes at which the parameter's rate is zero, with its proof if asked
+    for.
+    """
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
     here = _level(led, place, low, high)
-    proof = prove_dead_point(led, here.v, place)
+    proof = prove_dead_point(led, here.v, place) if prove else None
     v, direction = led.whole(here.v), led.whole(here.first)
     t = float(v[p])
     if proof is None:

@@ -24,11 +24,12 @@ from linkwork.numerics.homotopy.monodromy import (
 from linkwork.numerics.homotopy.parameter_path import Tracker
 from linkwork.numerics.homotopy.trace_test import TraceDefect, trace_defect
 
-__all__ = ["ConfirmedMember", "LastFamily", "solve_and_confirm"]
+__all__ = ["DIRECTIONS", "ConfirmedMember", "LastFamily", "solve_and_confirm"]
 
 _STRAIGHT = 1e-7  # a trace's distance from a straight line that rounding explains
 _SEEN = 100.0  # times less straight is the trace of one solution less
-_TRIES = 20  # random directions of the trace test, until no path is lost
+#: Random directions of a trace test: of many paths one may be lost in some of them, or jump.
+DIRECTIONS = 20
 
 
 class LastFamily(Family, Protocol):
@@ -66,6 +67,7 @@ def solve_and_confirm(
     *,
     reach: float = 1.0,
     idle: int = IDLE,
+    directions: int = DIRECTIONS,
     rounds: int = 1,
 ) -> ConfirmedMember:
     """Solve a random member; follow further closed paths while the trace test denies it.
@@ -82,13 +84,15 @@ def solve_and_confirm(
         Of the trace test, see :func:`trace_defect`.
     idle : int
         Closed paths without a new solution before a trace test.
+    directions : int
+        Of a trace test at most; one that confirms the solutions is enough.
     rounds : int
         Trace tests at most; the last result is returned, confirmed or not.
     """
     member = solve_by_monodromy(family, rng, tracker, report, idle)
     while True:
         rounds -= 1
-        found = _tested(family, member, rng, tracker, reach)
+        found = _tested(family, member, rng, tracker, reach, directions)
         if found.confirmed:
             member = solve_by_few(family, member, rng, tracker)
             if member is found.member:
@@ -99,10 +103,17 @@ def solve_and_confirm(
 
 
 def _tested(
-    family: LastFamily, member: Member, rng: np.random.Generator, tracker: Tracker, reach: float
+    family: LastFamily,
+    member: Member,
+    rng: np.random.Generator,
+    tracker: Tracker,
+    reach: float,
+    directions: int,
 ) -> ConfirmedMember:
-    for _ in range(_TRIES):
+    for _ in range(directions):
         trace = trace_defect(family, member, rng, tracker, reach)
-        if not trace.lost:
+        found = ConfirmedMember(member=member, trace=trace)
+        # a set with a gap is straight in no direction
+        if found.confirmed:
             break
-    return ConfirmedMember(member=member, trace=trace)
+    return found

@@ -1,0 +1,54 @@
+"""What is asked of a whole motion: the least transmission angle, and contact with circles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from linkwork.foundation.arrays import Array
+from linkwork.mechanism.dyad import Dyad
+
+__all__ = ["Contact", "LeastAngle", "MotionBounds"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeastAngle:
+    """The least angle is between ``low`` and ``high`` [rad], the angle at the input ``at``."""
+
+    low: float
+    high: float
+    at: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """``met``: the side in a circle and the input there, if one is found; ``open``: the interval
+    of the input in which contact is not excluded.
+    """
+
+    met: tuple[int, float] | None
+    open: tuple[float, float] | None
+
+
+class MotionBounds(Protocol):
+    """A motion that is proved between its rows, too; inputs in file units."""
+
+    @property
+    def dyads(self) -> tuple[Dyad, ...]:
+        """The dyads with a transmission angle, one for each pin."""
+
+    def least_transmission(self, wanted: float) -> LeastAngle:
+        """The least transmission angle of all dyads, of which there is at least one, folded to 0 to
+        a quarter of a turn; ``wanted``: decide whether it is smaller than this [rad].
+        """
+
+    def contact(self, sides: Sequence[tuple[str, str]], circles: Array) -> Contact:
+        """Whether sides between two points of a link come into circles.
+
+        Parameters
+        ----------
+        sides : sequence of (str, str)
+        circles : (M, 3)
+            x, y, radius [length].
+        """

@@ -1,0 +1,82 @@
+"""What to do about delivered designs that a designer would not build, or about none at all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from linkwork.design.synthesis.result import Synthesis
+from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
+
+__all__ = ["advice_of", "remarks_on"]
+
+#: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
+_LEAST_TRANSMISSION = 30.0  # [deg]
+_MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
+_MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
+
+
+def remarks_on(found: Synthesis) -> tuple[str, ...]:
+    """What is doubtful about delivered designs, and the wishes that refuse these.
+
+    A task that states a wish gets no remark about it.
+    """
+    return tuple(_remarks(found))
+
+
+def _remarks(found: Synthesis) -> Iterator[str]:
+    task, designs = found.task, found.delivered
+    wanted = task.wanted
+    if not wanted.transmission:
+        least = _LEAST_TRANSMISSION * task.angle.turn / 360.0
+        few = sum(design.transmission < least for design in designs)
+        if few:
+            yield (
+                f"Delivered designs with a transmission angle below {least:.4g} "
+                f"{task.angle.value}: {few}. [wanted] transmission = {{ least = {least:.4g} }} "
+                "refuses them."
+            )
+    if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
+        few = sum(design.size > _MOST_RATIO * design.shortest for design in designs)
+        if few:
+            yield (
+                f"Delivered designs with a longest link over {_MOST_RATIO:g} times the shortest: "
+                f"{few}. [wanted] lengths = {{ ratio = {_MOST_RATIO:g} }} refuses them."
+            )
+
+
+def advice_of(found: Synthesis) -> str:
+    """What could be changed in a task without a sound design that no relaxed wish would help; ""
+    if there is a sound design, or a wish to relax.
+    """
+    if found.sound or found.task.kind == "improve" or found.costliest is not None:
+        return ""
+    if found.designs and not found.defects.keys() & {*_MOVING}:
+        return ""
+    first, *others = _changes(found)
+    steps = first + "".join(f", or {other}" for other in others)
+    blame = "No wish is to blame. " if found.designs else ""
+    return f"{blame}Try to {steps}."
+
+
+def _changes(found: Synthesis) -> Iterator[str]:
+    """Changes of a task that give further designs, the smallest first."""
+    task = found.task
+    if task.function is not None:
+        yield "change the ranges of input and output"
+        if not task.function.fit:
+            yield 'approximate the function, fit = "minimax"'
+        return
+    if task.kind == "motion" and not {*MECHANISMS} <= {*task.mechanisms}:
+        other = next(name for name in MECHANISMS if name not in task.mechanisms)
+        yield f'allow other kinds of mechanism, such as "{other}"'
+    if task.wanted.region:
+        yield "enlarge the region of fixed pivots"
+    if task.given.fixed_pivots or task.given.moving_pivots or task.given.lengths:
+        yield "give fewer pivots and lengths"
+    if found.starts:
+        yield "search from more starts"
+    elif not any(position.tolerance for position in task.positions):
+        yield "give positions a tolerance"
+    yield "move a position or leave it out"

@@ -1,0 +1,26 @@
+"""Arcs that contain angles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwork.foundation.angles import least_arc
+
+
+@pytest.mark.parametrize(
+    ("angles", "begin", "extent"),
+    [
+        ([20.0, 50.0, 140.0], 20.0, 120.0),
+        ([350.0, 10.0, 30.0], 350.0, 40.0),
+        ([10.0, 350.0, 30.0], 350.0, 40.0),
+        ([-30.0, 400.0], -30.0, 70.0),
+        ([77.0], 77.0, 0.0),
+    ],
+)
+def test_the_least_arc_contains_all_angles(
+    angles: list[float], begin: float, extent: float
+) -> None:
+    found = least_arc(np.array(angles), 360.0)
+    assert found[1] == pytest.approx(extent, abs=1e-12)
+    assert (found[0] - begin) % 360.0 == pytest.approx(0.0, abs=1e-12)
