@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +33,9 @@ from linkwork.export.report.document import (
     printed,
     split_columns,
 )
+from linkwork.export.report.docx_writer import docx_bytes
+from linkwork.export.report.html_writer import html_bytes
+from linkwork.export.report.pdf_writer import pdf_bytes, typst_text
 from linkwork.export.report.report import WrittenReport, document_of, report_of
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.results.listing.column import Column
@@ -157,17 +162,34 @@ def test_markdown_names_pictures_that_exist(written: dict[str, Path]) -> None:
     assert text.count("$$") == 6
 
 
-@pytest.mark.parametrize("suffix", ["html", "pdf", "docx", "md"])
-def test_two_runs_write_the_same_bytes(suffix: str, written: dict[str, Path]) -> None:
-    again = written[suffix].with_name(f"again.{suffix}")
-    mechanism = coarse(read_example("four-bar"), 4)
-    files = mechanism.to_report(again, template=written[suffix].parent / "short.toml")
-    pictures = [again.parent / "again-pictures/figure-1.png"] if suffix == "md" else []
-    assert files == (again, *pictures)
-    assert again.read_bytes().replace(b"again-pictures", b"bar-pictures") == (
-        written[suffix].read_bytes()
-    )
-    assert suffix != "pdf" or again.read_bytes().startswith(b"%PDF")
+def test_tables_that_fit_stay_on_one_page() -> None:
+    document = _document("four-bar", "motion")
+    lone, *_ = _tables(document).values()
+    twice = (replace(c, cells=(*c.cells, *c.cells)) for c in lone.columns)
+    long = replace(lone, columns=tuple(twice))
+    assert [lone.is_short, long.is_short] == [True, False]
+    section = Section(title="T", blocks=(lone, long))
+    document = Document.numbered("T", (), [section])
+    html = html_bytes(document, lambda part: None).decode()
+    assert re.findall(r'<div class="(scroll[^"]*)"', html) == ["scroll short", "scroll"]
+    assert re.findall(r"#listed\(\"[^\"]*\", (\w+),", typst_text(document, {})) == ["true", "false"]
+    body = docx.Document(BytesIO(docx_bytes(document, lambda part: None))).tables
+    kept = [[bool(row.cells[0].paragraphs[0].paragraph_format.keep_with_next) for row in t.rows]
+            for t in body]  # fmt: skip
+    assert kept == [[True] * 13 + [False], [False] * 27]
+
+
+def test_two_runs_write_the_same_bytes(written: dict[str, Path]) -> None:
+    folder, mechanism = written["md"].parent, coarse(read_example("four-bar"), 4)
+    files = mechanism.to_report(folder / "again.md", template=folder / "short.toml")
+    assert files == (folder / "again.md", folder / "again-pictures/figure-1.png")
+    again = files[0].read_bytes().replace(b"again-pictures", b"bar-pictures")
+    assert again == written["md"].read_bytes()
+    # the document of a further run, in the other formats
+    document = _of(coarse(read_example("four-bar"), 4), template_of(str(folder / "short.toml")))
+    for suffix, to_bytes in (("html", html_bytes), ("pdf", pdf_bytes), ("docx", docx_bytes)):
+        assert to_bytes(document, lambda part: None) == written[suffix].read_bytes(), suffix
+    assert written["pdf"].read_bytes().startswith(b"%PDF")
 
 
 # Contents
@@ -471,6 +493,7 @@ def test_unknown_templates_formats_and_packages_are_refused(
     with pytest.raises(lw.InputError, match=r"a report is one of \.html, \.pdf, \.docx, \.md"):
         bar.to_report(tmp_path / "x.odt")
     (tmp_path / "short.toml").write_text('sections = ["versions"]')
+    monkeypatch.setattr(lw.Mechanism, "findings", lambda *_: pytest.fail("it computes"))
     for suffix, package in (("pdf", "typst"), ("docx", "docx")):
         monkeypatch.setitem(sys.modules, package, None)
         with pytest.raises(lw.MissingPackageError, match=r'pip install "linkwork\[report\]"'):

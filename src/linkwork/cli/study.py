@@ -22,6 +22,7 @@ from linkwork.batch.study import (
 )
 from linkwork.batch.study.chunk_manifest import chunks_with_entry
 from linkwork.batch.study.plan_file import read_plan_bytes
+from linkwork.batch.study.zarr_files import check_packages
 from linkwork.cli.interrupts import check_interrupt
 from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
@@ -91,6 +92,7 @@ def study(
         raise InputError(
             "a study needs a plan and a store:\n    linkwork study plan.toml -o out.zarr"
         )
+    check_packages()
     asked = _read(plan, names)
     with study_progress(quiet) as tell:
         try:

@@ -27,7 +27,7 @@ from linkwork.cli.output_file import check_outputs, write_bytes, write_table
 from linkwork.cli.position_page import residual_measure
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
 from linkwork.drawing.scene import Scene
-from linkwork.export import workbook_of
+from linkwork.export import check_xlsxwriter, workbook_of
 from linkwork.mechanism.dimensions import Number
 from linkwork.motion import solve_round_start
 from linkwork.results.motion import Motion
@@ -95,6 +95,8 @@ def sweep(
         if name is not None:
             picture.check_picture(name)
     check_outputs(file, csv, draw, plot, workbook=xlsx, as_json=as_json)
+    if xlsx is not None:
+        check_xlsxwriter()
     mechanism = read_mechanism(file, changes)
     if draw is not None:
         picture.check_points(mechanism)

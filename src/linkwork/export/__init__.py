@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     )
     from linkwork.export.workbook.workbook import (
         WrittenWorkbook as WrittenWorkbook,
+        check_xlsxwriter as check_xlsxwriter,
         workbook_of as workbook_of,
     )
     from linkwork.results.csv_text import (

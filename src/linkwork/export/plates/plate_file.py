@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from linkwork.export.plates import packages
 from linkwork.export.plates.dxf import dxf_of
 from linkwork.export.plates.placing import assembled, in_rows
 from linkwork.export.plates.plate import PlateStack
@@ -15,17 +16,25 @@ from linkwork.foundation.paths import suffix_of
 __all__ = ["check_plate_file", "plates_of"]
 
 _FORMATS = (".dxf", ".svg", ".stl", ".3mf", ".step")
+#: Packages that formats need, in addition to that of outlines.
+_WRITERS = {".dxf": packages.ezdxf, ".step": packages.build123d}
 
 
 def check_plate_file(file: Path) -> str:
-    """The suffix of a file of plates.
+    """The suffix of a file of plates, if this installation can write it.
 
     Raises
     ------
     InputError
         If there is no such format.
+    MissingPackageError
+        If a package is not installed.
     """
-    return suffix_of(file, "plates", _FORMATS)
+    suffix = suffix_of(file, "plates", _FORMATS)
+    packages.shapely()
+    if suffix in _WRITERS:
+        _WRITERS[suffix]()
+    return suffix
 
 
 def plates_of(stack: PlateStack, file: Path, *, layout: bool = False) -> bytes:

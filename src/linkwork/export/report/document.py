@@ -64,6 +64,9 @@ class Equation:
     number: int = 0
 
 
+_SHORT = 20  # rows
+
+
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """A table with its caption; all columns have the same number of cells."""
@@ -71,6 +74,11 @@ class Table:
     caption: str
     columns: tuple[Column, ...]
     number: int = 0
+
+    @property
+    def is_short(self) -> bool:
+        """Whether it is kept on one page."""
+        return max((len(column.cells) for column in self.columns), default=0) <= _SHORT
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

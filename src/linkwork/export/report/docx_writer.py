@@ -24,7 +24,7 @@ from linkwork.export.report.equation_terms import office_terms
 from linkwork.export.report.figure_files import FigureFile, figure_files
 from linkwork.foundation.errors import MissingPackageError
 
-__all__ = ["docx_bytes"]
+__all__ = ["docx_bytes", "docx_package"]
 
 _MATH = "http://schemas.openxmlformats.org/officeDocument/2006/math"
 _DATE = (1980, 1, 1, 0, 0, 0)  # the first that archives can have
@@ -35,6 +35,23 @@ _WIDTH = 166.0  # of a table [mm]
 _FONT, _MONOSPACED = "Arial", "DejaVu Sans Mono"
 
 
+def docx_package() -> Any:
+    """python-docx.
+
+    Raises
+    ------
+    MissingPackageError
+        If it is not installed.
+    """
+    try:
+        import docx
+    except ImportError:
+        raise MissingPackageError(
+            'Word reports need python-docx: pip install "linkwork[report]"'
+        ) from None
+    return docx
+
+
 def docx_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     """The document as the content of a .docx file.
 
@@ -43,13 +60,7 @@ def docx_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     MissingPackageError
         If python-docx is not installed.
     """
-    try:
-        import docx
-    except ImportError:
-        raise MissingPackageError(
-            'Word reports need python-docx: pip install "linkwork[report]"'
-        ) from None
-
+    docx = docx_package()
     pictures = {figure.number: figure for figure in figure_files(document, "png", progress)}
     file = docx.Document()
     _Writer(file, pictures).write(document)
@@ -162,6 +173,9 @@ class _Writer:
             self._column(grid, k, cells[k], width, right=column.align != "left")
         for cell in grid.rows[0].cells:
             cell.paragraphs[0].runs[0].font.bold = True
+        if table.is_short:
+            for cell in grid.columns[0].cells[:-1]:
+                cell.paragraphs[0].paragraph_format.keep_with_next = True
         self._rules(grid)
         self.file.add_paragraph()
 

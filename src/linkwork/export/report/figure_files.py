@@ -14,7 +14,7 @@ __all__ = ["FigureFile", "figure_files"]
 
 _DPI = 200.0  # twice that of a screen
 _INCH, _POINTS = 25.4, 72.0  # [mm], [pt/in]
-_WIDEST, _TALLEST = 150.0, 115.0  # printed [mm]: two figures fit a page
+_WIDEST, _TALLEST = 150.0, 104.0  # printed [mm]: a heading and two figures fit a page
 _SIDES = [re.compile(rb'<svg [^>]*\b%s="([\d.]+)pt"' % side) for side in (b"width", b"height")]
 
 

@@ -55,7 +55,7 @@ th.w,td.w{white-space:nowrap}
 th.n,td.n{text-align:right;white-space:nowrap}
 thead{border-top:1.5px solid #333;border-bottom:1px solid #777;display:table-header-group}
 tbody{border-bottom:1.5px solid #333}
-tr{break-inside:avoid}
+tr,.short{break-inside:avoid}
 .equation{display:flex;gap:1em;align-items:baseline;margin:.45em 0 .45em 1.2em;break-inside:avoid}
 .equation>span:first-child{flex:1;line-height:1.9;min-width:0}
 .equation math{font-size:1.08em}
@@ -64,7 +64,7 @@ border:1px solid #ddd;padding:10px;white-space:pre-wrap;overflow-wrap:anywhere}
 h2,h3,.caption{break-after:avoid}
 @media (max-width:520px){dl{grid-template-columns:1fr;gap:0}dd{margin:0 0 .4em}nav ol{columns:1}}
 @media print{body{font-size:10.5pt}main{max-width:none;padding:0}nav{display:none}
-.scroll{overflow:visible}pre{font-size:8pt}figure svg{max-height:115mm}}
+.scroll{overflow:visible}pre{font-size:8pt}figure svg{max-height:104mm}}
 """
 
 
@@ -133,9 +133,10 @@ def _table(table: Table) -> str:
     rows = zip(*map(printed, table.columns), strict=True)
     body = "".join(row(cells, "td") for cells in rows)
     name = f"table-{table.number}"
+    kind = "scroll short" if table.is_short else "scroll"
     return (
         f'<p class="caption" id="{name}">Table {table.number}. {escape(table.caption)}</p>'
-        f'<div class="scroll" tabindex="0" role="group" aria-labelledby="{name}"><table>'
+        f'<div class="{kind}" tabindex="0" role="group" aria-labelledby="{name}"><table>'
         f"<thead>{head}</thead><tbody>{body}</tbody></table></div>"
     )
 

@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from linkwork.export.report.document import (
     Block,
@@ -23,7 +24,7 @@ from linkwork.export.report.equation_terms import typst_terms
 from linkwork.export.report.figure_files import figure_files
 from linkwork.foundation.errors import MissingPackageError
 
-__all__ = ["pdf_bytes", "typst_text"]
+__all__ = ["pdf_bytes", "typst_package", "typst_text"]
 
 _PREAMBLE = """\
 #set document(title: TITLE, author: AUTHOR, date: none)
@@ -39,18 +40,35 @@ _PREAMBLE = """\
 #let formula(number, body) = block(inset: (left: 1.2em), width: 100%, breakable: false,
   grid(columns: (1fr, auto), column-gutter: 1em, par(leading: 0.9em, body), number))
 #let cap(body) = block(above: 1.1em, below: 0.5em, sticky: true, text(size: 9pt, body))
-#let listed(caption, columns, align, header, ..cells) = {
+#let listed(caption, short, columns, align, header, ..cells) = block(breakable: not short, {
   cap(caption)
   set text(size: 9pt)
   table(columns: columns, align: align, stroke: none, inset: (x: 5pt, y: 2.6pt),
     table.hline(stroke: 0.8pt), table.header(..header, table.hline(stroke: 0.4pt)),
     ..cells, table.hline(stroke: 0.8pt))
-}
+})
 #let shown(path, width, caption) = block(breakable: false, above: 1.2em, below: 1.2em)[
   #align(center, image(path, width: width))
   #text(size: 9pt, caption)
 ]
 """
+
+
+def typst_package() -> Any:
+    """Typst.
+
+    Raises
+    ------
+    MissingPackageError
+        If it is not installed.
+    """
+    try:
+        import typst
+    except ImportError:
+        raise MissingPackageError(
+            'PDF reports need Typst: pip install "linkwork[report]"'
+        ) from None
+    return typst
 
 
 def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
@@ -61,13 +79,7 @@ def pdf_bytes(document: Document, progress: Callable[[float], None]) -> bytes:
     MissingPackageError
         If Typst is not installed.
     """
-    try:
-        import typst
-    except ImportError:
-        raise MissingPackageError(
-            'PDF reports need Typst: pip install "linkwork[report]"'
-        ) from None
-
+    typst = typst_package()
     # Typst reads pictures from a folder only
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -135,7 +147,8 @@ def _table(table: Table) -> Iterator[str]:
     align = ", ".join("left" if word else "right" for word in words)
     header = ", ".join(f"strong({_quoted(column.header)})" for column in table.columns)
     caption = _quoted(f"Table {table.number}. {table.caption}")
-    yield f"#listed({caption}, ({columns},), ({align},), ({header},),"
+    short = "true" if table.is_short else "false"
+    yield f"#listed({caption}, {short}, ({columns},), ({align},), ({header},),"
     for cells in zip(*map(printed, table.columns), strict=True):
         yield "  " + ", ".join(map(_quoted, cells)) + ","
     yield ")"

@@ -15,11 +15,11 @@ from linkwork.export.report import (
     motion_sections,
 )
 from linkwork.export.report.document import Block, Document, Facts, Section
-from linkwork.export.report.docx_writer import docx_bytes
+from linkwork.export.report.docx_writer import docx_bytes, docx_package
 from linkwork.export.report.findings import Findings
 from linkwork.export.report.html_writer import html_bytes
 from linkwork.export.report.markdown_writer import markdown_files
-from linkwork.export.report.pdf_writer import pdf_bytes
+from linkwork.export.report.pdf_writer import pdf_bytes, typst_package
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.foundation.paths import suffix_of, unwritten
 from linkwork.foundation.written_file import save_bytes
@@ -29,6 +29,8 @@ __all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "repo
 
 #: Formats of reports by suffix.
 FORMATS = (".html", ".pdf", ".docx", ".md")
+
+_PACKAGES = {".pdf": typst_package, ".docx": docx_package}
 
 _Builder = Callable[[Findings, Template], Iterator[Block]]
 _SECTIONS: Mapping[str, tuple[str, _Builder]] = {
@@ -83,14 +85,18 @@ class WrittenReport:
 
 
 def check_report_file(path: Path) -> None:
-    """Reject a file of another format before any computation.
+    """Reject a file that cannot be written here before any computation.
 
     Raises
     ------
     InputError
         If the suffix is not one of :data:`FORMATS`.
+    MissingPackageError
+        If the package that writes the format is not installed.
     """
-    suffix_of(path, "a report", FORMATS)
+    suffix = suffix_of(path, "a report", FORMATS)
+    if suffix in _PACKAGES:
+        _PACKAGES[suffix]()
 
 
 def document_of(found: Findings, template: Template) -> Document:

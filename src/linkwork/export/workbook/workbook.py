@@ -41,7 +41,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
 
-__all__ = ["WrittenWorkbook", "workbook_of"]
+__all__ = ["WrittenWorkbook", "check_xlsxwriter", "workbook_of"]
 
 _MOST_ROWS = 20_000
 _MOST_CELLS = 2_000_000
@@ -149,15 +149,27 @@ def _write_sheets(
     progress(_SHEETS)
 
 
-def _new(buffer: io.BytesIO) -> tuple[Any, type]:
-    """A workbook, and the class of its sheets."""
+def check_xlsxwriter() -> None:
+    """Check that XlsxWriter is installed.
+
+    Raises
+    ------
+    MissingPackageError
+        If it is not.
+    """
     try:
-        import xlsxwriter
-        from xlsxwriter.worksheet import Worksheet
+        import xlsxwriter  # noqa: F401  # loaded as it will be for the workbook
     except ImportError:
         raise MissingPackageError(
             'workbooks need XlsxWriter: pip install "linkwork[tables]"'
         ) from None
+
+
+def _new(buffer: io.BytesIO) -> tuple[Any, type]:
+    """A workbook, and the class of its sheets."""
+    check_xlsxwriter()
+    import xlsxwriter
+    from xlsxwriter.worksheet import Worksheet
 
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     return xlsxwriter.Workbook(buffer, options), type("Sheet", (FastCells, Worksheet), {})
