@@ -13,33 +13,7 @@ from tests.campaigns.library_defects import JudgedCase, judged_change, library_c
 __all__ = ["measure"]
 
 _CASES = 24  # of a mechanism
-_USUAL = 50.0  # ms of processor time
-#: Mechanisms whose verdicts take longer, with limits [ms]; docs/benchmarks.md gives the causes.
-_LIMITS = {
-    "antiparallelogram": 100.0,
-    "beam-engine": 300.0,
-    "dixon-one": 250.0,
-    "dixon-two": 2500.0,
-    "double-butterfly": 100.0,
-    "excavator": 500.0,
-    "galloway": 100.0,
-    "garage-door": 250.0,
-    "hart-inversor": 250.0,
-    "jansen-leg": 100.0,
-    "kempe-translator": 1500.0,
-    "landing-gear": 100.0,
-    "pantograph": 100.0,
-    "parallel-cranks": 100.0,
-    "parallelogram": 100.0,
-    "peaucellier": 500.0,
-    "rack-steering": 100.0,
-    "roberts": 100.0,
-    "scissor-lift": 1000.0,
-    "scissor-three-bars": 100.0,
-    "scott-russell": 100.0,
-    "three-rpr": 100.0,
-    "toggle-press": 200.0,
-}
+_LIMIT = 50.0  # ms of processor time; docs/benchmarks.md gives the causes of longer ones
 
 
 def measure(repeats: int = 2) -> bool:
@@ -57,7 +31,7 @@ def measure(repeats: int = 2) -> bool:
             times.append(_best(mechanism, case, repeats))
         circuits = seconds(partial(_all_circuits, mechanism, cases[0].point), time.process_time)
         text = f"{name}: {wrong['false']} of {len(cases)} differ, circuits {1e3 * circuits:.0f} ms"
-        held = bar(text, [1e3 * max(times)], _LIMITS.get(name, _USUAL)) and held
+        held = bar(text, [1e3 * max(times)], _LIMIT) and held
     return held
 
 
