@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -13,17 +14,10 @@ from linkwork.design.synthesis.closed_forms import solve_with_bound
 from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
 from linkwork.design.synthesis.dyads import solve_five_poses
 from linkwork.design.synthesis.found import Found
-from linkwork.design.synthesis.free_start_fit import fit_free_starts
-from linkwork.design.synthesis.function_fit import (
-    least_squares_fit,
-    minimax_fit,
-    rocker_errors,
-    slider_errors,
-)
-from linkwork.design.synthesis.function_goal import FunctionGoal
+from linkwork.design.synthesis.function_fits import fit_functions
 from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
@@ -35,6 +29,8 @@ _STARTS = 24  # start angles in each direction, where two are free
 _TRIVIAL = 1e-6  # relative: both moving pivots at the fixed ones move in every function
 _FIVE, _FOUR = 5, 4
 _SHARES = (0.067, 0.15, 0.25, 0.0)  # of the range, before the first point of a start
+# where starts are given: before the first and behind the last point, and before the middle one
+_FIRSTS, _MIDDLES = (0.0, 0.067, 0.15, 0.25, 0.35), (0.4, 0.5, 0.6)
 
 
 def solve_function(task: Task, progress: Callable[[float], None] | None = None) -> Found:
@@ -42,18 +38,17 @@ def solve_function(task: Task, progress: Callable[[float], None] | None = None) 
     goal = task.function
     assert goal is not None, "a task of functions has one"
     slides = task.mechanisms[0] == "slider-crank"
-    if goal.fit and goal.starts_fixed:
-        return _fitted(task, goal, slides)
-    inputs, outputs = goal.precision_points()
+    inputs, outputs = goal.dense_points() if goal.fit else goal.precision_points()
     u = np.array([inputs * task.angle.radians])
     v = np.array([outputs * (1.0 if slides else task.angle.radians)])
+    if not goal.starts_fixed:
+        u, v = u - u[:, :1], v - v[:, :1]
+    if goal.fit:
+        return _fitted(task, u[0], v[0], slides, progress)
     if goal.starts_fixed:
         made, determined = _through_three(u, v, slides)
         zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
         return _found(task, made, complete=1 if determined.all() else -1, zero=zero)
-    u, v = u - u[:, :1], v - v[:, :1]
-    if goal.fit:
-        return _fitted_freely(task, u[0], v[0], slides, progress)
     if u.shape[1] == _FIVE:
         return _through_five(task, u, v, slides)
     if u.shape[1] == _FOUR:
@@ -207,98 +202,96 @@ def _through_four(task: Task, u: Array, v: Array, slides: bool) -> Found:
     return _found(task, _coupled(dyads, u, v, slides), complete=0)
 
 
-def _fitted(task: Task, goal: FunctionGoal, slides: bool) -> Found:
-    """The best fits over the whole range, from precision points as starts."""
-    inputs, outputs = goal.dense_points()
-    u = inputs * task.angle.radians
-    v = outputs * (1.0 if slides else task.angle.radians)
-    made: list[Candidates] = []
-    best, levelled = np.inf, False
-    for start, side in _starts(u, v, slides):
-        errors = (slider_errors if slides else rocker_errors)(u, v, side)
-        if not np.isfinite(errors(start)[0]).all():
-            continue
-        lengths = least_squares_fit(errors, start)
-        level = False
-        if goal.fit == "minimax":
-            lengths, level = minimax_fit(errors, lengths)
-        wrong = errors(lengths)[0]
-        size = float(np.abs(wrong).max() if goal.fit == "minimax" else wrong @ wrong)
-        # another start that ends at the same fit is not another design
-        if size >= best * (1.0 - 1e-9):
-            continue
-        best, levelled = size, level
-        made = _fit_design(u, v + wrong, lengths, slides, float(np.abs(wrong).max()))
-    found = _found(task, made, complete=0, zero=(float(u[0]), 0.0 if slides else float(v[0])))
-    if not levelled:
-        return found
-    message = "the best minimax fit found: equal errors of alternating sign, a local minimum"
-    return replace(found, message=message)
-
-
-def _fitted_freely(
+def _fitted(
     task: Task,
     u: Array,
     v: Array,
     slides: bool,
     progress: Callable[[float], None] | None,
 ) -> Found:
-    """Different fits of pairs by their differences, from loops through three of them."""
-    goal, first = task.function, (-np.inf, np.inf)
+    """Different fits of pairs, with given starts or by differences, from loops through three."""
+    goal = task.function
     assert goal is not None, "a task of functions has one"
-    if task.wanted.range is not None:
-        ends = sorted(map(task.in_radians, task.wanted.range))
-        first = ends[0] - float(u.min()), ends[1] - float(u.max())
-        first = first[0], max(first)  # equal to rounding, if the pairs fill the range
-    x, sides = [], []
-    for share in _SHARES:
-        index = (np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)).round().astype(int)
-        begun = _freely_begun(u[None, index], v[None, index], slides)
-        for loops in _through_three(*begun, slides)[0]:
-            a = loops.moving_a[:, 0]
-            coupler = loops.moving_b[:, 0] - a
-            rocker = loops.moving_b[:, 0] - loops.fixed_b
-            second = loops.fixed_b.imag if slides else np.abs(rocker)
-            out = rocker.real if slides else np.angle(rocker)
-            begin = np.angle(a) - u[index[0]], out - v[index[0]]
-            x.append(np.stack([np.abs(a), second, np.abs(coupler), *begin], axis=1))
-            sides.append(np.sign(coupler.real if slides else cross(coupler, rocker)))
-    none = np.zeros((0, 5)), np.zeros(0)
-    starts = np.concatenate([none[0], *x]), np.concatenate([none[1], *sides])
-    fits = fit_free_starts(
-        u, v, starts, slides=slides, minimax=goal.fit == "minimax", first=first, progress=progress
+    first = None if goal.starts_fixed else _first_inputs(task, u)
+    begun = _given_begins(u, v) if goal.starts_fixed else _free_begins(u, v, slides)
+    starts = [
+        _lanes(loops, u[index[0]], v[index[0]], slides, goal.starts_fixed)
+        for index, own in begun
+        for loops in _through_three(*own, slides)[0]
+    ]
+    starts.append((np.zeros((0, 5)), np.zeros(0)))
+    x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
+    fits = fit_functions(
+        u,
+        v,
+        (x, side),
+        slides=slides,
+        minimax=goal.fit == "minimax",
+        first=first,
+        progress=progress,
     )
     made: list[Candidates] = []
     for own, wrong in zip(fits.x, fits.wrong, strict=True):
         miss = float(np.abs(wrong).max())
         made += _fit_design(u + own[3], v + own[4] + wrong, own[:3], slides, miss)
-    found = _found(task, made, complete=0)
-    message = f"a sample: {len(made)} different {goal.fit} fits from {len(starts[0])} starts"
+    zero = (float(u[0]), 0.0 if slides else float(v[0])) if goal.starts_fixed else None
+    found = _found(task, made, complete=0, zero=zero)
+    told = f"1 {goal.fit} fit" if len(made) == 1 else f"{len(made)} different {goal.fit} fits"
+    message = f"a sample: {told} from {len(x)} starts"
     if not made:
         message = "nothing found: no loop through three of the pairs follows all of them"
     if fits.minimal.any():
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
-    return replace(found, message=message, starts=len(starts[0]))
+    if not fits.closes.all():
+        message += "; the best one is no local minimum: its loop hardly closes"
+        return replace(found, message=message)
+    return replace(found, message=message, starts=len(x))
 
 
-def _starts(u: Array, v: Array, slides: bool) -> Iterator[tuple[Array, float]]:
-    """Lengths and sides of the loops through three points of the range."""
+def _first_inputs(task: Task, u: Array) -> tuple[float, float]:
+    """Bounds of the angle that is added to inputs (N,), of which the first is 0."""
+    if task.wanted.range is None:
+        return -np.inf, np.inf
+    ends = sorted(map(task.in_radians, task.wanted.range))
+    low, high = ends[0] - float(u.min()), ends[1] - float(u.max())
+    return low, max(low, high)  # equal to rounding, if the pairs fill the range
+
+
+#: Three places of pairs, and inputs and outputs there (B, 3).
+_Begun = tuple[IndexArray, tuple[Array, Array]]
+
+
+def _free_begins(u: Array, v: Array, slides: bool) -> Iterator[_Begun]:
+    """A grid of starts, at a few places."""
     for share in _SHARES:
-        places = np.array([share, 0.5, 1.0 - share]) * (len(u) - 1)
-        index = places.round().astype(int)
-        for made in _through_three(u[None, index], v[None, index], slides)[0]:
-            crank = made.moving_a[:, 0] * np.exp(-1j * u[index[0]])
-            coupler = np.abs(made.moving_b[0, 0] - made.moving_a[0, 0])
-            if slides:
-                yield (
-                    np.array([crank[0].real, made.fixed_b[0].imag, coupler]),
-                    float(np.sign((made.moving_b[0, 0] - made.moving_a[0, 0]).real)),
-                )
-                continue
-            rocker = made.moving_b[:, 0] - made.fixed_b
-            side = cross(made.moving_b[:, 0] - made.moving_a[:, 0], rocker)
-            signed = (rocker * np.exp(-1j * v[index[0]]))[0].real
-            yield np.array([crank[0].real, signed, coupler]), float(np.sign(side[0]))
+        index = _places(len(u), (share, 0.5, 1.0 - share))
+        yield index, _freely_begun(u[None, index], v[None, index], slides)
+
+
+def _given_begins(u: Array, v: Array) -> Iterator[_Begun]:
+    """Many places."""
+    for shares in product(_FIRSTS, _MIDDLES, _FIRSTS):
+        index = _places(len(u), (shares[0], shares[1], 1.0 - shares[2]))
+        if len(set(index)) == len(index):
+            yield index, (u[None, index], v[None, index])
+
+
+def _places(count: int, shares: Sequence[float]) -> IndexArray:
+    return np.asarray((np.array(shares) * (count - 1)).round().astype(np.intp))
+
+
+def _lanes(loops: Candidates, u: float, v: float, slides: bool, fixed: bool) -> tuple[Array, Array]:
+    """Parameters (D, 5) and sides (D,) of loops at their first place, at input u and output v."""
+    a = loops.moving_a[:, 0]
+    coupler = loops.moving_b[:, 0] - a
+    rocker = loops.moving_b[:, 0] - loops.fixed_b
+    side = np.sign(coupler.real if slides else cross(coupler, rocker))
+    crank, second = np.abs(a), loops.fixed_b.imag if slides else np.abs(rocker)
+    begin = np.angle(a) - u, (rocker.real if slides else np.angle(rocker)) - v
+    if fixed:
+        crank, begin = (a * np.exp(-1j * u)).real, (np.zeros(len(a)), np.zeros(len(a)))
+        second = second if slides else (rocker * np.exp(-1j * v)).real
+    return np.stack([crank, second, np.abs(coupler), *begin], axis=1), side
 
 
 def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -> list[Candidates]:
@@ -329,9 +322,6 @@ def _found(
     elif complete < 0:
         grade = Completeness.NOT_PROVED
         message = "not proved: to rounding, the equations are singular"
-    goal = task.function
-    if goal is not None and goal.fit:
-        message = f"the best {goal.fit} fit that was found; others may be better"
     return Found(
         candidates=tuple(made),
         complex=abs(complete) or real,

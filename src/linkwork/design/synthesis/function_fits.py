@@ -1,8 +1,9 @@
-"""Functions of which only differences count: fits of the dimensions with both start angles.
+"""Fits of functions: dimensions whose output follows pairs best, by least squares or minimax.
 
 Each lane has the dimensions of a four-bar (crank a, rocker b, coupler c, ground 1) or slider-crank
 (crank a, offset e, rod c), then the angle that is added to the inputs, and the angle or
-displacement that is added to the outputs.
+displacement that is added to the outputs: 0 where the starts are given, free where only
+differences count. With given starts a negative crank or rocker points the other way.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.design.improvement.largest_miss import POWERS, largest_misses, powered
-from linkwork.design.synthesis.function_fit import (
+from linkwork.design.synthesis.structural_error import (
     levelled,
     levels_minimise,
     rocker_errors,
@@ -23,18 +24,19 @@ from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.numerics.lane_least_squares import Box, Residuals, minimise, starts_of
 
-__all__ = ["FreeStartFits", "fit_free_starts"]
+__all__ = ["FunctionFits", "fit_functions"]
 
 _STEPS, _POWER_STEPS = 150, 40
 _LANES = 120  # of the starts, those with the smallest sums of squares
 _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
 _LEVEL = 1e-9  # relative: by which equal errors may exceed those before, to rounding
+_HARDLY = 0.01  # the sine of the least transmission angle
 _ALIKE = 1e-4  # relative: lanes that end at one fit
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FreeStartFits:
+class FunctionFits:
     """D different fits, best first.
 
     Parameters
@@ -44,6 +46,9 @@ class FreeStartFits:
         Signs of the loops.
     wrong : (D, N)
         Structural errors at the pairs [rad or length].
+    closes : (D,)
+        Whether a loop closes with some transmission angle; where it does not, a fit ends that would
+        go on.
     minimal : (D,)
         Whether a fit is proved to be a local minimum of the largest error, to first order.
     """
@@ -51,6 +56,7 @@ class FreeStartFits:
     x: Array
     side: Array
     wrong: Array
+    closes: BoolArray
     minimal: BoolArray
 
 
@@ -77,37 +83,33 @@ class _Lanes:
         )
 
 
-def fit_free_starts(
+def fit_functions(
     u: Array,
     v: Array,
     starts: tuple[Array, Array],
     *,
     slides: bool,
     minimax: bool,
-    first: tuple[float, float],
+    first: tuple[float, float] | None,
     progress: Callable[[float], None] | None = None,
-) -> FreeStartFits:
+) -> FunctionFits:
     """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
 
-    ``first``: bounds of the angle that is added to the inputs [rad].
+    ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
+    Fits whose loops hardly close, which are no local minima, are left out but for the best one.
     """
     x, side = starts
     size = float(np.ptp(v)) if slides else 1.0
-    box = Box(
-        least=np.array([size / _FAR, -_FAR * size if slides else size / _FAR, size / _FAR,
-                        first[0], -np.inf]),
-        most=np.array([_FAR * size] * 3 + [first[1], np.inf]),
-    )  # fmt: skip
-    if np.isfinite(sum(first)):
+    box = _box(size, slides, first)
+    if first is not None and np.isfinite(sum(first)):
         # whole turns that bring starts nearest to their bounds
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
     lanes = _Lanes(u, v, slides, side)
     x = box.inside(x)
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     if not np.isfinite(wrong).all(axis=1).any():
-        return FreeStartFits(
-            x=x[:0], side=side[:0], wrong=wrong[:0], minimal=np.zeros(0, dtype=bool)
-        )
+        none = np.zeros(0, dtype=bool)
+        return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
     total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
     lanes, side = _Lanes(u, v, slides, side[some]), side[some]
@@ -134,7 +136,37 @@ def fit_free_starts(
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
     index = _different(x, measure)
-    return FreeStartFits(x=x[index], side=side[index], wrong=wrong[index], minimal=minimal[index])
+    closes = _closes(x, u, slides)
+    index = index[closes[index] | (np.arange(len(index)) == 0)]
+    return FunctionFits(
+        x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
+        minimal=minimal[index],
+    )  # fmt: skip
+
+
+def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:
+    """Bounds of lengths, which may point the other way where starts are given, and of starts."""
+    small, large = size / _FAR, _FAR * size
+    if first is None:
+        least, starts = [-large, -large, small], [(0.0, 0.0), (0.0, 0.0)]
+    else:
+        least = [small, -large if slides else small, small]
+        starts = [first, (-np.inf, np.inf)]
+    return Box(
+        least=np.array([*least, *(low for low, _ in starts)]),
+        most=np.array([large] * 3 + [high for _, high in starts]),
+    )
+
+
+def _closes(x: Array, u: Array, slides: bool) -> BoolArray:
+    """Whether loops close with some transmission angle at all inputs, (D,)."""
+    a, second, c = x[:, :3].T[:, :, None]
+    crank = a * np.exp(1j * (u + x[:, 3:4]))
+    if slides:
+        cosine = (second - crank.imag) / c
+    else:
+        cosine = (second**2 + c**2 - np.abs(1.0 - crank) ** 2) / (2.0 * second * c)
+    return np.asarray((1.0 - cosine**2 >= _HARDLY**2).all(axis=1))
 
 
 def _different(x: Array, measure: Array) -> IndexArray:
@@ -151,7 +183,7 @@ def _sharpened(lanes: _Lanes, x: Array, k: int, box: Box) -> tuple[Array, bool]:
     """A fit whose largest errors are made equal, if that lowers them, and whether it is minimal;
     numbers at their bounds stay there.
     """
-    free = (x > box.least) & (x < box.most)
+    free, given = (x > box.least) & (x < box.most), box.least == box.most
 
     def errors(own: Array) -> tuple[Array, Array]:
         every = x.copy()
@@ -171,4 +203,4 @@ def _sharpened(lanes: _Lanes, x: Array, k: int, box: Box) -> tuple[Array, bool]:
     sharp[free] = found[0]
     if (box.inside(sharp) != sharp).any():
         return x, False
-    return sharp, bool(free.all()) and levels_minimise(errors, found[0], points)
+    return sharp, bool((free | given).all()) and levels_minimise(errors, found[0], points)

@@ -1,9 +1,8 @@
-"""Dimensions whose output follows a function best over a range: least squares and minimax."""
+"""Structural errors of four-bars and slider-cranks, and largest ones that are equal."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 
@@ -13,10 +12,8 @@ from linkwork.foundation.rounding import EPSILON
 
 __all__ = [
     "Errors",
-    "least_squares_fit",
     "levelled",
     "levels_minimise",
-    "minimax_fit",
     "rocker_errors",
     "slider_errors",
 ]
@@ -25,10 +22,7 @@ __all__ = [
 Errors = Callable[[Array], tuple[Array, Array]]
 
 _MOST_STEPS = 100
-_MOST_EXCHANGES = 40
 _SMALLEST_STEP = 1e-13  # relative: Newton steps end in rounding
-_FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.3, 4.0
-_LARGEST_DAMPING = 1e12
 _REGULAR = 1e-7  # relative: far above the rounding of derivatives
 _LEVEL = 1e-9  # by which the largest error may exceed that of the reference points
 
@@ -87,66 +81,6 @@ def slider_errors(
             return wrong, np.stack(gradient, axis=-1)
 
     return errors
-
-
-def least_squares_fit(errors: Errors, start: Array) -> Array:
-    """The parameters with the least sum of squares near a start: Levenberg and Marquardt."""
-    x, damping = start.copy(), _FIRST_DAMPING
-    e, jacobian = errors(x)
-    total = float(e @ e)
-    for _ in range(_MOST_STEPS):
-        normal = jacobian.T @ jacobian
-        step = np.linalg.solve(
-            normal + damping * np.diag(np.diag(normal) + EPSILON), -jacobian.T @ e
-        )
-        tried, new = errors(x + step), x + step
-        sum_there = float(tried[0] @ tried[0])
-        if sum_there <= total:
-            done = np.abs(step).max() <= _SMALLEST_STEP * np.abs(x).max()
-            x, (e, jacobian), total = new, tried, sum_there
-            damping *= _LESS
-            if done:
-                break
-        else:  # also for NaN: the loop does not close there
-            damping *= _MORE
-            if damping > _LARGEST_DAMPING:
-                break
-    return x
-
-
-def minimax_fit(errors: Errors, start: Array) -> tuple[Array, bool]:
-    """The parameters with the least largest error, and whether it is proved to be a local minimum.
-
-    Remez's exchange: errors of n + 1 points are levelled to ±E by Newton's method, then the points
-    move to the largest errors. If no error exceeds |E| in the end, the n + 1 equal errors of
-    alternating sign prove the minimum (Chebyshev; Haar's condition is assumed of the derivatives).
-    """
-    x = start.copy()
-    for _ in range(_MOST_EXCHANGES):
-        e, _unused = errors(x)
-        points = _alternating(e, len(x) + 1)
-        if points is None:
-            return start, False
-        equal = levelled(errors, x, points)
-        if equal is None:
-            return start, False
-        x, level = equal
-        largest = np.abs(errors(x)[0]).max()
-        if largest <= level * (1.0 + _LEVEL) + EPSILON:
-            return x, True
-    return x, False
-
-
-def _alternating(e: Array, count: int) -> list[int] | None:
-    """The places of ``count`` large errors of alternating sign; ``None`` if there are fewer."""
-    if not np.isfinite(e).all():
-        return None
-    ends = [0, *(np.flatnonzero(np.sign(e[1:]) != np.sign(e[:-1])) + 1), len(e)]
-    places = [start + int(np.abs(e[start:end]).argmax()) for start, end in pairwise(ends)]
-    while len(places) > count:
-        # leave out the smaller end, so that signs alternate still
-        del places[0 if abs(e[places[0]]) < abs(e[places[-1]]) else -1]
-    return places if len(places) == count else None
 
 
 def levels_minimise(errors: Errors, x: Array, points: list[int]) -> bool:
