@@ -85,7 +85,8 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
     if as_json:
         print_json({"paths": len(made), "file": output, "unfinished": list(made.unfinished)})
         return
-    print_lines(wrapped(f"Wrote {len(made):,} paths of {len(stores)} stores to {output}."))
+    shown = "1 store" if len(stores) == 1 else f"{len(stores)} stores"
+    print_lines(wrapped(f"Wrote {len(made):,} paths of {shown} to {output}."))
     for told in made.unfinished:
         print_lines(wrapped(f"{told}. Finish it and repeat this command for the others."))
 
