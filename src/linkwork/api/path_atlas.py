@@ -126,7 +126,7 @@ class PathAtlas:
         ----------
         stores : sequence of paths
         progress : callable, optional
-            Told the finished fraction; may raise an error to end the work.
+            Called with the finished fraction; may raise an error to end the work.
 
         Raises
         ------

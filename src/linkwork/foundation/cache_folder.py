@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from linkwork.foundation.arrays import AnyArray
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.written_file import save_bytes
 
 __all__ = ["CACHE_VARIABLE", "cache_folder", "keep_arrays", "user_cache"]
 
@@ -33,12 +36,8 @@ def user_cache(program: str, author: str | Literal[False] | None = None) -> Path
 
 def keep_arrays(path: Path, arrays: Mapping[str, AnyArray]) -> None:
     """Write a file (.npz), whole or not at all; nothing where that is not possible."""
-    part = path.with_name(f"{os.urandom(8).hex()}.part")  # another process may write the same file
-    with suppress(OSError):
+    held = BytesIO()
+    np.savez(held, **arrays)  # type: ignore[arg-type]  # arrays alone
+    with suppress(OSError, InputError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with part.open("xb") as file:
-                np.savez(file, **arrays)  # type: ignore[arg-type]  # arrays alone
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
+        save_bytes(held.getvalue(), path)

@@ -26,7 +26,7 @@ def atlas_of_stores(
 ) -> PathAtlas:
     """The atlas of studies that keep the path of a point over a whole turn.
 
-    ``progress``: told the finished fraction; may raise an error to end the work.
+    ``progress``: called with the finished fraction; may raise an error to end the work.
 
     Raises
     ------

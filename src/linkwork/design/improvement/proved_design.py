@@ -52,7 +52,7 @@ def proved_design(
 ) -> ImprovedDesign:
     """A mechanism with its proof: a certified sweep of its whole table.
 
-    ``numbers``: those that were found; ``told``: what the message begins with.
+    ``numbers``: those that were found; ``told``: the beginning of the message.
     """
     motion = whole = None
     try:

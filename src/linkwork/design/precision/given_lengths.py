@@ -49,7 +49,7 @@ def four_bars_with_lengths(
     found : sequence of FourBarPositions
         Four-bars through these positions.
     progress : callable, optional
-        Told the finished fraction; may raise an error to end the work.
+        Called with the finished fraction; may raise an error to end the work.
     """
     size = given.size
     starts = np.concatenate([_linkages(given, part) / size for part in found])

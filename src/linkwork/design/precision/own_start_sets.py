@@ -51,7 +51,7 @@ class _SpentError(Exception):
 
 
 class _Budget:
-    """A tracker that follows so many paths in all, and tells the part of them that it followed."""
+    """A tracker of at most so many paths in all, which reports the part that it has followed."""
 
     def __init__(self, most: int, progress: Callable[[float], None] | None) -> None:
         self.most, self.followed, self._progress = most, 0, progress
@@ -75,7 +75,7 @@ def own_member(
 ) -> OwnMember:
     """The solved member of a family with given lengths, solved now if it is not kept.
 
-    ``progress``: told how much of the budget is spent; may raise an error to end the work.
+    ``progress``: called with the spent part of the budget; may raise an error to end the work.
     """
     known = _KNOWN.get(problem)
     if known is None:

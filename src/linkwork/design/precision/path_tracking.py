@@ -59,7 +59,7 @@ class SparingTracker:
     expected : int
         Paths that will be followed, unless some need more care.
     progress : callable, optional
-        Told the finished fraction of each batch; may raise an error to end the work.
+        Called with the finished fraction of each batch; may raise an error to end the work.
     """
 
     def __init__(self, expected: int, progress: Callable[[float], None] | None = None) -> None:

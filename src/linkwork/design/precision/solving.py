@@ -83,7 +83,7 @@ def four_bars_through(
     alike : int
         How many tasks of this kind will be solved, this one included.
     progress : callable, optional
-        Told the finished fraction of the paths; may raise an error to end the work.
+        Called with the finished fraction of the paths; may raise an error to end the work.
     """
     problem, size = given.problem, given.size
     member = member or start_member(problem)

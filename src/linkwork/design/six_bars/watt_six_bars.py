@@ -83,7 +83,7 @@ def watt_six_bars(
     member : Member, optional
         A solved member to start from; by default the shipped one.
     progress : callable, optional
-        Told the finished fraction of the paths; may raise an error to end the work.
+        Called with the finished fraction of the paths; may raise an error to end the work.
     """
     member = member or watt_member()
     inputs, outputs = inputs - inputs[0], outputs - outputs[0]

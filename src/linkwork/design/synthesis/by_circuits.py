@@ -74,7 +74,7 @@ class _Search:
         self.values = [float(value) * drive.unit for value in inputs]
         self.places = places
         self._lists: dict[int, Assemblies] = {}
-        self._ways: dict[int, float] = {}
+        self._ways: dict[CurveBranch, float] = {}
 
     def defects(self) -> tuple[Defect, ...]:
         """None if one branch passes all positions, else the defect of that which comes farthest."""
@@ -170,10 +170,10 @@ class _Search:
 
     def _way(self, branch: CurveBranch) -> float:
         """How long the paths of the points are along a branch."""
-        if id(branch) not in self._ways:
+        if branch not in self._ways:
             way = sum(float(np.abs(np.diff(z)).sum()) for z in self._points(branch.v))
-            self._ways[id(branch)] = way
-        return self._ways[id(branch)]
+            self._ways[branch] = way
+        return self._ways[branch]
 
     def _change(self, start: _Start, k: int) -> Defect:
         """The defect in front of a position that the branches of the one before do not pass."""

@@ -47,8 +47,7 @@ class FunctionFits:
     wrong : (D, N)
         Structural errors at the pairs [rad or length].
     closes : (D,)
-        Whether a loop closes with some transmission angle; where it does not, a fit ends that would
-        go on.
+        Whether a loop closes with some transmission angle, or its fit is proved to be minimal.
     minimal : (D,)
         Whether a fit is proved to be a local minimum of the largest error, to first order.
     """
@@ -96,7 +95,8 @@ def fit_functions(
     """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
 
     ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
-    Fits whose loops hardly close, which are no local minima, are left out but for the best one.
+    Fits whose loops hardly close are left out but for the best one: most are no local minima, and
+    end where errors would fall on beyond the last loop that closes.
     """
     x, side = starts
     size = float(np.ptp(v)) if slides else 1.0
@@ -136,7 +136,7 @@ def fit_functions(
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
     index = _different(x, measure)
-    closes = _closes(x, u, slides)
+    closes = _closes(x, u, slides) | minimal  # a proved minimum is one all the same
     index = index[closes[index] | (np.arange(len(index)) == 0)]
     return FunctionFits(
         x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],

@@ -243,7 +243,7 @@ def _fitted(
     if fits.minimal.any():
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     if not fits.closes.all():
-        message += "; the best one is no local minimum: its loop hardly closes"
+        message += "; the loop of the best one hardly closes: it may be no local minimum"
         return replace(found, message=message)
     return replace(found, message=message, starts=len(x))
 

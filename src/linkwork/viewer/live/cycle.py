@@ -48,7 +48,7 @@ class Cycle:
     hurried : callable
         Whether a newer change is waiting, which cancels a cycle.
     working : callable
-        Told the finished fraction of an answer that takes long.
+        Called with the finished fraction of an answer that takes long.
     """
 
     def __init__(self, subject: Subject) -> None:

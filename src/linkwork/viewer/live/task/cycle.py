@@ -75,7 +75,7 @@ class TaskCycle:
     hurried : callable
         Whether a newer change is waiting, which ends a search.
     working : callable
-        Told the finished fraction of a search.
+        Called with the finished fraction of a search.
     """
 
     def __init__(self, solve: SolveTask, name: str, folder: Path) -> None:
