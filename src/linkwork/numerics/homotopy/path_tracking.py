@@ -65,7 +65,7 @@ def track(
 ) -> Paths:
     """Follow every start (B, n), a solution at σ = 1, to σ = 0.
 
-    ``progress``: called with the finished fraction after rounds; may raise an error to end the work.
+    ``progress``: called with the finished fraction after rounds; may raise an error to end it.
     """
     with np.errstate(all="ignore"):
         return _Tracker(homotopy, start, options or PathOptions()).run(progress)
