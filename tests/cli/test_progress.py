@@ -48,3 +48,13 @@ def test_a_quick_task_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     with terminal.progress("solving") as tell:
         tell(0.5)
     assert shown.getvalue() == ""
+
+
+def test_a_stream_that_is_no_terminal_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.StringIO()
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr(terminal, "_PATIENCE", 0.01)
+    with terminal.progress("sweeping") as tell:
+        time.sleep(0.1)
+        tell(0.5)
+    assert stream.getvalue() == ""
