@@ -691,6 +691,7 @@ export interface TaskSolved {
   defects: Record<string, number>;
   costliest: string;
   costs: number;
+  advice: string;
   designs: readonly (DesignShown)[];
   left_out: number;
   dyads: readonly (DyadShown)[];
@@ -950,6 +951,7 @@ export interface DesignShown {
   error: number | null;
   score: number | null;
   reason: string;
+  remark: string;
 }
 
 export interface DyadShown {

@@ -75,7 +75,7 @@ export class DesignsTable {
   show(task: TaskState, solved: TaskSolved | null, why = ""): void {
     this.task = task;
     this.solved = solved;
-    say(this.lead, solved ? verdict(solved) : why);
+    say(this.lead, solved ? verdict(solved, task.task) : why);
     this.reasons.replaceChildren();
     if (solved && !solved.sound) for (const [defect, count] of Object.entries(solved.defects)) html("li", {}, this.reasons, `${count} × ${defect}`);
     this.fill();
@@ -170,13 +170,14 @@ export class DesignsTable {
 }
 
 /** The counts in one sentence, or why there is no sound design. */
-export function verdict(solved: TaskSolved): string {
+export function verdict(solved: TaskSolved, kind: string): string {
   const designs = `${solved.count} design${solved.count === 1 ? "" : "s"}`;
   const stopped = solved.interrupted ? "Stopped: the best so far. " : "";
-  if (!solved.count) return stopped ? "Stopped before a design was found." : "No mechanism of the wanted kinds solves the task.";
+  const none = kind === "improve" ? "No start leads to a design." : "No mechanism of the wanted kinds solves the task.";
+  if (!solved.count) return stopped ? "Stopped before a design was found." : `${none} ${solved.advice}`.trim();
   if (solved.sound) return `${stopped}${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
-  const cost = solved.costliest ? ` The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : "";
-  return `${stopped}No design is free of defects (${designs}).${cost}`;
+  const cost = solved.costliest ? `The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : solved.advice;
+  return `${stopped}No design is free of defects (${designs}). ${cost}`.trim();
 }
 
 /** A design in one line. */

@@ -242,7 +242,8 @@ export class TaskPage {
     const design = this.design?.design;
     this.chosen.hidden = !design;
     if (!design) return;
-    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : ""}`);
+    const doubt = design.reason ? `${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : design.remark;
+    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${doubt && `. ${doubt}`}`);
     this.chosen.classList.toggle("lw-t-refused", !design.sound);
     this.improve.hidden = !PATHS.includes(this.task!.task);
   }

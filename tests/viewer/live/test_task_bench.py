@@ -142,6 +142,31 @@ def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
     assert len(shown.at) == 5
 
 
+def test_doubtful_designs_have_a_remark_and_a_task_without_sound_ones_advice(
+    tmp_path: Path,
+) -> None:
+    head = 'format = 1\ntask = "motion"\nmechanism = "four-bar"\n'
+    poses = [(45, 81, 33), (-12, 93, 40.2), (-24, 40, 17.9), (35, 2, -6), (80, 27, 6.8)]
+    row = "[[positions]]\npoint = [{}, {}]\nangle = {}\n"
+    text = head + "".join(row.format(*pose) for pose in poses)
+    bench = opened(tmp_path, "five-poses")
+    found = solved(bench.handle(ask.SetText(text=text)))
+    assert found.advice == ""
+    slight = [design for design in found.designs if "transmission = { least" in design.remark]
+    assert slight
+    assert all(design.transmission < 30 for design in slight if design.transmission)
+    strict = solved(
+        bench.handle(ask.SetText(text=text + "[wanted]\ntransmission = { least = 30 }\n"))
+    )
+    assert not any("transmission" in design.remark for design in strict.designs)
+    poses = [(0, 0, 90), (-400, 1100, 50), (-1300, 1500, 5)]
+    text = head + "".join(row.format(*pose) for pose in poses)
+    text += "[wanted.fixed_pivots]\ninside = [[-1500, 200], [-100, 200], [-100, 1400]]\n"
+    without = solved(bench.handle(ask.SetText(text=text)))
+    assert without.sound == 0
+    assert "enlarge the region of fixed pivots" in without.advice
+
+
 def test_a_pivot_of_four_poses_stays_on_their_curve(tmp_path: Path) -> None:
     bench = opened(tmp_path, "four-poses")
     bench.opened()

@@ -62,7 +62,7 @@ class TaskState:
 
 @dataclass(frozen=True, kw_only=True)
 class DesignShown:
-    """A design in the list: numbers in file units, and why it is refused.
+    """A design in the list: numbers in file units, and why it is refused or doubtful.
 
     ``index``: its place in the whole list, or below -1 for a suggested one, with its ``origin``
     ("atlas", "improved", "as given"; otherwise ""); ``transmission``: the smallest over the driven
@@ -81,6 +81,7 @@ class DesignShown:
     error: float | None
     score: float | None
     reason: str
+    remark: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,8 +148,9 @@ class TaskSolved:
     """The designs for the task, sound ones first.
 
     ``live``: during a drag, with the chosen design only. ``defects``: numbers of designs by defect.
-    ``costliest``: the wish that costs most, and how many designs it costs. ``left_out``: designs
-    that are not in the list. ``centre_curve``: polylines x, y, x, y, … of possible fixed pivots.
+    ``costliest``: the wish that costs most, and how many designs it costs. ``advice``: what to
+    change where no wish is to blame. ``left_out``: designs that are not in the list.
+    ``centre_curve``: polylines x, y, x, y, … of possible fixed pivots.
     """
 
     live: bool
@@ -164,6 +166,7 @@ class TaskSolved:
     defects: dict[str, float]
     costliest: str
     costs: int
+    advice: str
     designs: tuple[DesignShown, ...]
     left_out: int  # noqa: V107
     dyads: tuple[DyadShown, ...]

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from linkwork.design.precision.cognates import cognates
+from linkwork.design.synthesis.advice import advice_of
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.improved_mechanism import SweptDesign
@@ -71,6 +72,7 @@ def task_solved(
         defects={kind.value: count for kind, count in found.defects.items()},
         costliest=wish,
         costs=costs,
+        advice="" if live else advice_of(found),
         designs=tuple(design_shown(found.designs[k], k) for k in listed),
         left_out=len(found.designs) - len(listed),
         dyads=tuple(
