@@ -714,9 +714,9 @@ export interface DesignFound {
   answers: number | null;
   design: DesignShown;
   skeleton: SkeletonShown | null;
-  fixed: readonly (readonly [number, number])[];
+  fixed: readonly (readonly (readonly [number, number])[])[];
   guided: string;
-  line: number | null;
+  lines: readonly [number | null, number | null];
   at: readonly (readonly (number)[])[];
   rows: readonly (readonly (number)[])[];
   marks: readonly (number)[];

@@ -20,6 +20,7 @@ const ABOUT: Readonly<Record<Column, string>> = {
   error: "How far positions are missed",
   score: "Score of the ranking, 0 to 1",
 };
+const NAMES: Readonly<Record<string, string>> = { "inverted-slider-crank": "inverted slider-crank", "double-slider": "double slider", "rapson-slide": "Rapson slide", "oldham-coupling": "Oldham coupling", "watt-ii": "Watt II" };
 /** Large values first when a column is chosen. */
 const FALLING: readonly Column[] = ["transmission", "score"];
 
@@ -182,7 +183,7 @@ export function verdict(solved: TaskSolved, kind: string): string {
 
 /** A design in one line. */
 export function inOneLine(design: DesignShown, task: TaskState): string {
-  const driven = design.drive === "slider" ? "driven at the slider" : `driven at ${design.drive}`;
+  const driven = design.drive.startsWith("slider") ? `driven at the ${design.drive}` : `driven at ${design.drive}`;
   const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(Number(design.transmission.toPrecision(3)), task.angle_unit)}`;
   const size = design.size === null ? "" : `, longest link ${`${trimmed(shortNumber(design.size, 4))} ${task.length_unit}`}`;
   return `${inWords(design)} ${driven}${angle}${size}`;
@@ -200,5 +201,6 @@ function origin({ origin: from, number }: DesignShown): string {
 }
 
 function inWords({ mechanism }: DesignShown): string {
-  return mechanism.replace("inverted-", "inverted ").replace(/ with a .*$/, ""); // the point is that of the task
+  const known = NAMES[mechanism] ?? mechanism;
+  return known.replace(/ with a .*$/, ""); // the point is that of the task
 }

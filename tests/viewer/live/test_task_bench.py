@@ -11,9 +11,11 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.six_bars import watt_six_bars
+from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.answers import GivenUpError, Hurry
@@ -109,9 +111,10 @@ def test_a_dragged_point_changes_its_numbers_and_is_one_step_of_the_history(tmp_
     assert bench.text == before
 
 
-@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
+@pytest.mark.parametrize("mechanism", [*MECHANISMS, *GUIDED])
 def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanism: str) -> None:
-    bench = opened(tmp_path, "four-poses")
+    bench = opened(tmp_path, "three-poses" if mechanism in GUIDED else "four-poses")
+    bench.handle(do.SetTaskEntry(key="wanted", value=None))
     events = bench.handle(do.SetTaskEntry(key="mechanism", value=mechanism))
     found = solved(events).chosen
     assert found is not None
@@ -124,11 +127,18 @@ def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanis
     passed = (1 - share) * rows[below] + share * rows[below + 1]
     assert np.abs(passed - at).max() < 1e-3 * np.ptp(rows)
     assert np.abs(at[:, 4:] - positions(bench)).max() < 1e-9 * np.ptp(rows)
-    if found.line is not None:  # the line of the coupler passes B0 in every row
-        a, b = rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3]
-        along = (b - a) / abs(b - a) * np.exp(1j * found.line)
-        off = (complex(*found.fixed[1]) - b) * along.conj()
-        assert np.abs(off.imag).max() < 1e-9 * np.ptp(rows)
+    # each joint keeps its distance from a fixed pivot, slides on a fixed line, or a line through
+    # it passes the pivot
+    joints = rows[:, 0:4:2] + 1j * rows[:, 1:4:2]
+    coupler = (joints[:, 1] - joints[:, 0]) / abs(joints[:, 1] - joints[:, 0])
+    for joint, held, line in zip(joints.T, found.fixed, found.lines, strict=True):
+        start, *others = (complex(*place) for place in held)
+        off = np.abs(joint - start) - abs(joint[0] - start)
+        if others:
+            off = ((joint - start) * np.conj(others[0] - start)).imag / abs(others[0] - start)
+        elif line is not None:
+            off = ((start - joint) * (coupler * np.exp(1j * line)).conj()).imag
+        assert np.abs(off).max() < 1e-9 * np.ptp(rows)
 
 
 def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
@@ -173,7 +183,7 @@ def test_a_pivot_of_four_poses_stays_on_their_curve(tmp_path: Path) -> None:
     found = solved(bench.handle(do.AddTaskPoint(of="fixed pivot", x=50, y=50)))
     assert found.chosen is not None
     (pivot,) = lw.Task.loads(bench.text).described.given.fixed_pivots
-    ends = [math.dist(pivot, fixed) for fixed in found.chosen.fixed[:2]]
+    ends = [math.dist(pivot, fixed) for (fixed,) in found.chosen.fixed]
     assert min(ends) < 1e-6
     # also when a pose is moved, which moves the curve
     moved = bench.handle(do.MoveTaskPoint(of="position", index=2, x=-112, y=120))

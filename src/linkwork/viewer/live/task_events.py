@@ -103,10 +103,9 @@ class SkeletonShown:
 class DesignFound:
     """A design at the positions and in between: x, y of A, B and P, one row after another.
 
-    ``fixed``: A0 and B0; of a slider-crank A0 and two points of its line; of a slider at A a point
-    of its line in place of A0. ``line``: of a coupler that slides through B0, the direction of its
-    line from that of AB [rad]. ``at``: a row for
-    each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
+    ``fixed``: of A and of B the fixed pivot, or two points of the line on which it slides.
+    ``lines``: of couplers that slide through A0 or B0, the directions of their lines from that of
+    AB [rad]. ``at``: a row for each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
     each position in it. ``curve``: the points of P on the branch of the first position.
 
     Mechanisms of other kinds have a ``skeleton``: their rows are x, y of all its points, which are
@@ -115,9 +114,9 @@ class DesignFound:
 
     design: DesignShown
     skeleton: SkeletonShown | None
-    fixed: tuple[Point, ...]
+    fixed: tuple[tuple[Point, ...], ...]
     guided: str
-    line: float | None
+    lines: tuple[float | None, float | None]
     at: tuple[tuple[float, ...], ...]
     rows: tuple[tuple[float, ...], ...]
     marks: tuple[float, ...]

@@ -61,7 +61,7 @@ def mechanism_found(
         skeleton=None,
         fixed=(),
         guided="",
-        line=None,
+        lines=(None, None),
         at=(),
         rows=(),
         marks=(),
