@@ -191,7 +191,7 @@ export class TaskPage {
     this.player.show(null);
     this.describe();
     this.stale(false);
-    const lines = event.problems.map(({ line, key, message }) => [line === null ? "" : `line ${line}, `, key, " ", message].join(""));
+    const lines = event.problems.map(({ line, key, message }) => [[line === null ? "" : `line ${line}`, key].filter(Boolean).join(", "), message].filter(Boolean).join(": "));
     const text = [event.message, ...lines.slice(0, 3)].join(" ");
     const choices: [string, string, () => void][] = event.ended ? [["Solve", "Search for designs again", () => this.ask({ kind: "solve_task" })]] : [];
     this.shell.notices.open(text, choices);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from linkwork.viewer.live.answers import GivenUpError, Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.opened_file import NoSign
+from linkwork.viewer.live.session import Desk
 from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template, template_names
@@ -269,6 +271,48 @@ def test_wishes_are_written_in_one_line_and_removed(tmp_path: Path) -> None:
     assert found.sound == 0
     assert (found.costliest, found.costs) == ("the least transmission angle", 3)
     assert solved(bench.handle(do.SetTaskEntry(key="wanted.transmission.least"))).sound > 0
+
+
+def test_ends_of_ranges_and_coordinates_are_typed_one_by_one(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "function")
+    for k in (0, 1):
+        bench.handle(do.SetTaskEntry(key=f"function.input.{k}", value=None))
+    assert "input" not in bench.text
+    bench.handle(do.SetTaskEntry(key="function.input.0", value=30))
+    bench.handle(do.SetTaskEntry(key="function.input.1", value=90))
+    task = lw.Task.loads(bench.text).described
+    assert task.function is not None
+    assert task.function.input == (30, 90)
+    poses = opened(tmp_path, "five-poses")
+    before = poses.text
+    (refused,) = poses.handle(do.SetTaskEntry(key="positions.1.point.0", value=None))
+    assert isinstance(refused, tell.Refused)
+    assert "type a number" in refused.message
+    assert poses.text == before
+
+
+def test_a_page_that_connects_during_a_search_shows_the_task_at_once(tmp_path: Path) -> None:
+    begun, finish = threading.Event(), threading.Event()
+    kinds: list[type] = []
+
+    def solve(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+        begun.set()
+        assert finish.wait(60)
+        return solve_task(task, progress=progress)
+
+    def told(events: list[tell.Event], number: int | None) -> None:
+        kinds.extend(map(type, events))
+
+    desk = Desk(opened(tmp_path, "five-poses", solve), told)
+    try:
+        desk.prepare()
+        assert begun.wait(60)
+        desk.open()
+        assert kinds.count(tell.TaskState) == 2
+        assert tell.TaskSolved not in kinds
+    finally:
+        finish.set()
+        desk.close(60)
 
 
 def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:
