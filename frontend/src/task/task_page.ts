@@ -137,7 +137,7 @@ export class TaskPage {
   }
 
   private state(task: TaskState): void {
-    if (this.task?.file !== task.file) this.another();
+    if (this.task?.file !== task.file) this.another(task);
     declareKeys("Task", this.commands);
     this.task = task;
     this.shell.bar.show(task);
@@ -149,8 +149,11 @@ export class TaskPage {
     this.count();
   }
 
-  private another(): void {
+  private another(task: TaskState): void {
     this.solved = this.design = null;
+    this.table.show(task, null);
+    this.pareto.show(task, []);
+    this.describe();
     this.canvas.solve(null);
     this.player.show(null);
     this.cognates.show(null);
@@ -249,8 +252,9 @@ export class TaskPage {
   }
 
   private count(): void {
-    const { task, solved } = this;
+    const { task } = this;
     if (!task) return;
+    const solved = this.root.classList.contains("lw-t-stale") ? null : this.solved;
     const word = KINDS[task.task];
     const count = task.positions.length;
     const given = task.task === "improve" && !count ? "goals of a mechanism" : word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";
