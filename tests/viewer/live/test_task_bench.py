@@ -282,7 +282,7 @@ def test_ends_of_ranges_and_coordinates_are_typed_one_by_one(tmp_path: Path) -> 
     bench.handle(do.SetTaskEntry(key="function.input.1", value=90))
     task = lw.Task.loads(bench.text).described
     assert task.function is not None
-    assert task.function.input == (30, 90)
+    assert task.function.input == pytest.approx((30, 90))
     poses = opened(tmp_path, "five-poses")
     before = poses.text
     (refused,) = poses.handle(do.SetTaskEntry(key="positions.1.point.0", value=None))

@@ -105,8 +105,9 @@ class DesignFound:
 
     ``fixed``: of A and of B the fixed pivot, or two points of the line on which it slides.
     ``lines``: of couplers that slide through A0 or B0, the directions of their lines from that of
-    AB [rad]. ``at``: a row for each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
-    each position in it. ``curve``: the points of P on the branch of the first position.
+    AB [rad]. ``at``: a row for each position. ``rows``: the driven range, empty for a refused
+    design. ``marks``: the row of each position in it. ``curve``: the points of P on the branch of
+    the first position.
 
     Mechanisms of other kinds have a ``skeleton``: their rows are x, y of all its points, which are
     not told ``at`` the positions.
