@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from linkwork.design.synthesis.curve_synthesis import usual_longest
+from linkwork.design.synthesis.kinship import are_cognates, are_images, groups_among
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
@@ -13,6 +15,7 @@ __all__ = ["advice_of", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
+_AT_BOUND = 0.999  # of the longest link
 _MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
@@ -37,6 +40,14 @@ def _remarks(found: Synthesis) -> Iterator[str]:
                 f"{task.angle.value}: {few}. [wanted] transmission = {{ least = {least:.4g} }} "
                 "refuses them."
             )
+    longest = usual_longest(task) if task.kind == "path" and task.is_approximate else math.inf
+    few = sum(design.size > _AT_BOUND * longest for design in designs)
+    if few:
+        yield (
+            f"Delivered designs that end at the usual bound of lengths, {longest:.4g} "
+            f"{task.length}: {few}. [wanted] lengths = {{ most = … }} moves it."
+        )
+    yield from _kin(found)
     if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
         few = sum(design.size > _MOST_RATIO * design.shortest for design in designs)
         if few:
@@ -44,6 +55,22 @@ def _remarks(found: Synthesis) -> Iterator[str]:
                 f"Delivered designs with a longest link over {_MOST_RATIO:g} times the shortest: "
                 f"{few}. [wanted] lengths = {{ ratio = {_MOST_RATIO:g} }} refuses them."
             )
+
+
+def _kin(found: Synthesis) -> Iterator[str]:
+    """Delivered designs that are alike."""
+    if found.task.kind in ("path", "mixed"):
+        yield from _listed(
+            "Cognates draw one curve with different links", groups_among(found, are_cognates)
+        )
+    if found.starts:
+        yield from _listed("The same links in different places", groups_among(found, are_images))
+
+
+def _listed(told: str, groups: list[list[int]]) -> Iterator[str]:
+    if groups:
+        shown = ["designs " + " and ".join(map(str, group)) for group in groups]
+        yield f"{told}: {'; '.join(shown)}."
 
 
 def advice_of(found: Synthesis) -> str:

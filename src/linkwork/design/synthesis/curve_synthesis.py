@@ -18,6 +18,7 @@ from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import LENGTHS
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
@@ -29,6 +30,7 @@ from linkwork.foundation.sharing import cores
 __all__ = ["curve_goal_of", "solve_curve"]
 
 _STARTS = 1000
+_USUAL = 12.0  # largest distances of a point from their mean: how long links may be without a wish
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
 _ROUNDINGS = 16.0  # of a pivot from lengths and angles
 _SAFETY = 4.0  # more than the first order of the error of an intersection of circles
@@ -74,6 +76,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
+        + _bound(task, goal, wishes)
         + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
         starts=sum(part.starts for part in fitted),
@@ -100,7 +103,7 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         transmission=wishes.transmission,
         bounds=dict(_bounds(task, wishes)),
         shortest=wishes.shortest,
-        longest=wishes.longest,
+        longest=min(wishes.longest, usual_longest(task)),
         ratio=wishes.ratio,
         reach=wishes.reach if wishes.reach.any() else None,
     )
@@ -110,6 +113,24 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         problem = Problem(key=("improve", "bounds", INPUT), message=told)
         raise MechanismError([problem], f'task "{task.name}"')
     return goal
+
+
+def usual_longest(task: Task) -> float:
+    """The bound of lengths of a fit whose task has no wish for them, but counts size [length]."""
+    wanted, given = task.wanted, task.given
+    if task.rank.size == 0.0 or not math.isinf(wanted.longest) or not math.isinf(wanted.ratio):
+        return math.inf
+    points = np.array([position.point for position in task.positions])
+    middle = points.mean(axis=0)
+    away = np.array([*points, *given.fixed_pivots, *wanted.region]) - middle
+    far, asked = np.hypot(*away.T).max(), list(given.lengths.values())
+    for name, (low, high) in (task.improvement.bounds if task.improvement else {}).items():
+        if name in LENGTHS:
+            asked.append(high)
+        elif name != INPUT:
+            place = middle["xy".index(name[-1])]
+            far = max(far, low - place, place - high)
+    return float(max(_USUAL * far, *asked, 0.0))
 
 
 def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
@@ -169,6 +190,13 @@ def _message(goal: CurveGoal, fitted: list[FittedCurves], seed: int) -> str:
     if not all(part.finished for part in fitted):
         told = f"interrupted: the best so far of {starts} starts with seed {seed}"
     return f"{told}; {kind}, {timing}"
+
+
+def _bound(task: Task, goal: CurveGoal, wishes: Wishes) -> str:
+    """The bound of lengths that no wish sets."""
+    if goal.longest == wishes.longest:
+        return ""
+    return f"; lengths up to {goal.longest:.4g} {task.length}, since [wanted] has none"
 
 
 def _candidates(goal: CurveGoal, fitted: FittedCurves) -> Candidates:
