@@ -298,4 +298,4 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
     # the curve of each passes all points of the other's, and the pivots are two of three
     away = np.abs(curves[0][:, None] - curves[1]).min(axis=1)
     assert away.max() < 5.0
-    assert len({complex(*np.round(p[name])) for p in places for name in ("A0", "B0")}) == 3
+    assert len({np.round(complex(*p[name])) for p in places for name in ("A0", "B0")}) == 3

@@ -10,10 +10,13 @@ from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
 from linkwork.design.synthesis.function_synthesis import freudenstein
+from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.structural_error import (
     rocker_errors,
     slider_errors,
 )
+from linkwork.design.synthesis.travel import Range
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
 
@@ -345,3 +348,48 @@ def test_given_pivots_set_the_scale() -> None:
     assert position.links is not None
     radius = np.hypot(position.points["A"][0] - 10, position.points["A"][1] - 20)
     assert radius == pytest.approx(65.2585741, abs=1e-7)
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+@pytest.mark.parametrize(
+    ("mechanism", "wanted"),
+    [
+        ("four-bar", {"transmission": {"least": 40.0}}),
+        ("four-bar", {"lengths": {"least": 0.9, "most": 1.3, "ratio": 1.4}}),
+        # beyond the range of the formula, where the best fit has a dead point
+        ("four-bar", {"input": {"from": 30.0, "to": 125.0}}),
+        ("slider-crank", {"transmission": {"least": 45.0}}),
+    ],
+)
+def test_fits_hold_the_wishes_that_the_best_fit_breaks(
+    mechanism: str, wanted: dict[str, Any], fit: str
+) -> None:
+    task = {**_LOGARITHM, "mechanism": mechanism, "fit": fit}
+    free = lw.Task.function("log10(x)", **task).solve()
+    found = lw.Task.function("log10(x)", wanted=wanted, **task).solve()
+    (design,) = found.delivered
+    assert free.delivered[0].error < design.error < 2.6 * free.delivered[0].error
+    assert design.transmission >= wanted.get("transmission", {}).get("least", 0.0)
+
+
+def test_a_wanted_range_is_measured_like_the_input_of_a_crank_that_points_back() -> None:
+    wanted = {"input": {"from": -40.0, "to": 65.0}}
+    task = {"x": (0, 1), "input": (-32, 60), "output": (200, 260), "mechanism": "four-bar"}
+    (design,) = _designs(lw.Task.function("x^2", wanted=wanted, **task))
+    assert design.sweep().inputs["crank"][[0, -1]] == pytest.approx([-40.0, 65.0])
+
+
+@pytest.mark.parametrize("slides", [False, True])
+@pytest.mark.parametrize("asked", [None, Range(start=0.5, stop=1.5), Range(turn=True)])
+def test_wishes_of_fits_have_the_derivatives_of_their_differences(
+    slides: bool, asked: Range | None
+) -> None:
+    wishes = Wishes(range=asked, transmission=1.5, shortest=4.0, longest=0.1, ratio=1.01)
+    held = FunctionWishes(wishes, np.array([0.0, 1.0]), 1, 1.3, slides=slides)
+    x, lane = np.array([[-0.9, -0.4, 1.7, 0.3, 0.2]]), np.zeros(1, dtype=np.intp)
+    h, by_x = held.broken(x, lane)
+    assert (h > 0.0).sum() > 4
+    for k in range(5):
+        step = 1e-6 * np.eye(5)[k]
+        difference = (held.broken(x + step, lane)[0] - held.broken(x - step, lane)[0]) / 2e-6
+        assert by_x[:, :, k] == pytest.approx(difference, abs=1e-7)

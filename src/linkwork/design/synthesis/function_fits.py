@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.design.improvement.largest_miss import POWERS, largest_misses, powered
+from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.structural_error import (
     levelled,
     levels_minimise,
@@ -22,17 +23,27 @@ from linkwork.design.synthesis.structural_error import (
 )
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.numerics.lane_least_squares import Box, Residuals, minimise, starts_of
+from linkwork.numerics.lane_least_squares import (
+    Box,
+    LaneFit,
+    Residuals,
+    minimise,
+    starts_of,
+)
 
 __all__ = ["FunctionFits", "fit_functions"]
 
 _STEPS, _POWER_STEPS = 150, 40
+_WEIGHTS = (10.0, 30.0, 30.0, 100.0, 100.0)  # of wishes, in rounds
 _LANES = 120  # of the starts, those with the smallest sums of squares
 _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
 _LEVEL = 1e-9  # relative: by which equal errors may exceed those before, to rounding
 _HARDLY = 0.01  # the sine of the least transmission angle
 _ALIKE = 1e-4  # relative: lanes that end at one fit
+
+#: The wishes of so many lanes.
+Held = Callable[[int], FunctionWishes]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,8 +73,11 @@ class FunctionFits:
 class _Lanes:
     """Structural errors of lanes."""
 
-    def __init__(self, u: Array, v: Array, slides: bool, side: Array) -> None:
-        self.u, self.v, self.side = u, v, side
+    def __init__(
+        self, u: Array, v: Array, slides: bool, side: Array, held: Held | None = None
+    ) -> None:
+        self.u, self.v, self.side, self.held = u, v, side, held
+        self.wishes = None if held is None else held(len(side))
         self.make = slider_errors if slides else rocker_errors
 
     def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
@@ -76,10 +90,29 @@ class _Lanes:
     def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
         """Errors as rows of one number."""
         wrong, by_x = self.errors(x, lanes)
-        none = np.zeros((len(x), 0))
-        return Residuals(
-            wrong[:, :, None], by_x[:, :, None], None, none, np.zeros((*none.shape, 5))
-        )
+        broken = np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
+        if self.wishes is not None:
+            broken = self.wishes.broken(x, lanes)
+        return Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
+
+    def minimised(self, fit: LaneFit, box: Box) -> LaneFit:
+        """Lanes at the least sum of squares near them, with their wishes."""
+        fit = minimise(self.residuals, fit, box, _STEPS)
+        for weight in _WEIGHTS if self.wishes is not None else ():
+            self.update(fit, weight)
+            fit = minimise(self.residuals, fit, box, _POWER_STEPS)
+        return fit
+
+    def update(self, fit: LaneFit, weight: float) -> None:
+        """New multipliers of the wishes, and their next weight."""
+        if self.wishes is not None:
+            self.wishes.update(fit.x, np.arange(len(fit)), weight)
+
+    def are_broken(self, x: Array) -> bool:
+        """Whether a lane at x (5,) breaks a wish."""
+        if self.held is None:
+            return False
+        return bool(self.held(1).broken(x[None], np.zeros(1, dtype=np.intp))[0].any())
 
 
 def fit_functions(
@@ -90,11 +123,13 @@ def fit_functions(
     slides: bool,
     minimax: bool,
     first: tuple[float, float] | None,
+    held: Held | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> FunctionFits:
     """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
 
     ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
+    ``held``: the wishes that so many lanes hold.
     Fits whose loops hardly close are left out but for the best one: most are no local minima, and
     end where errors would fall on beyond the last loop that closes.
     """
@@ -104,24 +139,25 @@ def fit_functions(
     if first is not None and np.isfinite(sum(first)):
         # whole turns that bring starts nearest to their bounds
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
-    lanes = _Lanes(u, v, slides, side)
-    x = box.inside(x)
+    lanes, x = _Lanes(u, v, slides, side, held), box.inside(x)
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     if not np.isfinite(wrong).all(axis=1).any():
         none = np.zeros(0, dtype=bool)
         return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
     total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
-    lanes, side = _Lanes(u, v, slides, side[some]), side[some]
-    fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
+    lanes, side = _Lanes(u, v, slides, side[some], held), side[some]
+    fit = lanes.minimised(starts_of(x[some], np.zeros((len(some), 0))), box)
     order = _different(fit.x, fit.total)[:_KEPT]
-    lanes, fit, side = _Lanes(u, v, slides, side[order]), fit.take(order), side[order]
+    lanes, fit, side = _Lanes(u, v, slides, side[order], held), fit.take(order), side[order]
     if minimax:
-        none = np.zeros(0, dtype=bool)
-        for k, power in enumerate(POWERS):
+        every = np.arange(len(fit))
+        none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
+        powers = POWERS if held is None else (*POWERS, *POWERS[-1:] * len(_WEIGHTS))
+        for k, power in enumerate(powers):
             if progress is not None:
-                progress(k / len(POWERS))
-            largest = largest_misses(lanes.residuals(fit.x, fit.t, np.arange(len(fit))), none)
+                progress(k / len(powers))
+            largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
 
             def raised(
                 x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
@@ -130,9 +166,12 @@ def fit_functions(
                 return powered(found, power, np.maximum(scale[which], 1e-300), none)
 
             fit = minimise(raised, fit, box, _POWER_STEPS)
+            lanes.update(fit, _WEIGHTS[-1])
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
     for k in range(len(fit)) if minimax else ():
-        x[k], minimal[k] = _sharpened(lanes, x[k], k, box)
+        sharp, least = _sharpened(lanes, x[k], k, box)
+        if not lanes.are_broken(sharp):
+            x[k], minimal[k] = sharp, least
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
     index = _different(x, measure)

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
@@ -46,7 +46,7 @@ SOLVERS: dict[str, Solver] = {
         task, wishes, progress
     ),
     "mixed": solve_path,
-    "function": lambda task, wishes, progress: solve_function(task, progress),
+    "function": solve_function,
 }
 _RIGHT = math.pi / 2.0
 _Alone = TypeVar("_Alone", bound=JudgedDesign)
@@ -71,7 +71,7 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            wishes=(wishes := wishes_of(task, drive)),
+            wishes=(wishes := _measured(wishes_of(task, drive), part, drive, found.zero)),
             verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
@@ -94,6 +94,19 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         starts=found.starts,
         interrupted=found.interrupted,
     )
+
+
+def _measured(
+    wishes: Wishes, part: Candidates, drive: Drive, zero: tuple[float, float] | None
+) -> Wishes:
+    """Wishes with the range of a crank that the task measures from its moving pivot."""
+    asked = wishes.range
+    if asked is None or asked.turn or zero is None or drive is not Drive.A0:
+        return wishes
+    crank = (part.moving_a[:, 0] - part.fixed_a) * np.exp(-1j * zero[0])
+    if not len(crank) or crank[0].real > 0.0:
+        return wishes
+    return replace(wishes, range=Range(start=asked.start + math.pi, stop=asked.stop + math.pi))
 
 
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
