@@ -17,6 +17,10 @@ __all__ = ["advice_of", "remarks_on"]
 _LEAST_TRANSMISSION = 30.0  # [deg]
 _AT_BOUND = 0.999  # of the longest link
 _MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
+_RELATED = {
+    "Cognates draw one curve with different links": are_cognates,
+    "The same links in different places": are_images,
+}
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
 
@@ -59,18 +63,11 @@ def _remarks(found: Synthesis) -> Iterator[str]:
 
 def _kin(found: Synthesis) -> Iterator[str]:
     """Delivered designs that are alike."""
-    if found.task.kind in ("path", "mixed"):
-        yield from _listed(
-            "Cognates draw one curve with different links", groups_among(found, are_cognates)
-        )
-    if found.starts:
-        yield from _listed("The same links in different places", groups_among(found, are_images))
-
-
-def _listed(told: str, groups: list[list[int]]) -> Iterator[str]:
-    if groups:
-        shown = ["designs " + " and ".join(map(str, group)) for group in groups]
-        yield f"{told}: {'; '.join(shown)}."
+    for told, related in _RELATED.items():
+        groups = groups_among(found, related)
+        if groups:
+            shown = ["designs " + " and ".join(map(str, group)) for group in groups]
+            yield f"{told}: {'; '.join(shown)}."
 
 
 def advice_of(found: Synthesis) -> str:

@@ -18,7 +18,6 @@ from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import LENGTHS
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
@@ -68,7 +67,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         fitted.append(fit_curve(kind, goal, starts, rng, tell, cores()))
         if not fitted[-1].finished:
             break
-    count = sum(map(len, fitted))
+    count, usual = sum(map(len, fitted)), usual_longest(task)
     return Found(
         candidates=tuple(_candidates(goal, part) for part in fitted if len(part)),
         complex=count,
@@ -76,7 +75,8 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
-        + _bound(task, goal, wishes)
+        + f"; lengths up to {usual:.4g} {task.length}, since [wanted] has none"
+        * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
         starts=sum(part.starts for part in fitted),
@@ -116,21 +116,14 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
 
 
 def usual_longest(task: Task) -> float:
-    """The bound of lengths of a fit whose task has no wish for them, but counts size [length]."""
+    """The longest link of a fit whose task bounds no dimensions, but counts size [length]."""
     wanted, given = task.wanted, task.given
-    if task.rank.size == 0.0 or not math.isinf(wanted.longest) or not math.isinf(wanted.ratio):
+    bounded = task.improvement is not None and {*task.improvement.bounds} - {INPUT}
+    if bounded or not task.rank.size or min(wanted.longest, wanted.ratio) < math.inf:
         return math.inf
     points = np.array([position.point for position in task.positions])
-    middle = points.mean(axis=0)
-    away = np.array([*points, *given.fixed_pivots, *wanted.region]) - middle
-    far, asked = np.hypot(*away.T).max(), list(given.lengths.values())
-    for name, (low, high) in (task.improvement.bounds if task.improvement else {}).items():
-        if name in LENGTHS:
-            asked.append(high)
-        elif name != INPUT:
-            place = middle["xy".index(name[-1])]
-            far = max(far, low - place, place - high)
-    return float(max(_USUAL * far, *asked, 0.0))
+    away = np.array([*points, *given.fixed_pivots, *wanted.region]) - points.mean(axis=0)
+    return float(max(_USUAL * np.hypot(*away.T).max(), *given.lengths.values(), 0.0))
 
 
 def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
@@ -190,13 +183,6 @@ def _message(goal: CurveGoal, fitted: list[FittedCurves], seed: int) -> str:
     if not all(part.finished for part in fitted):
         told = f"interrupted: the best so far of {starts} starts with seed {seed}"
     return f"{told}; {kind}, {timing}"
-
-
-def _bound(task: Task, goal: CurveGoal, wishes: Wishes) -> str:
-    """The bound of lengths that no wish sets."""
-    if goal.longest == wishes.longest:
-        return ""
-    return f"; lengths up to {goal.longest:.4g} {task.length}, since [wanted] has none"
 
 
 def _candidates(goal: CurveGoal, fitted: FittedCurves) -> Candidates:

@@ -40,7 +40,7 @@ _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
 _LEVEL = 1e-9  # relative: by which equal errors may exceed those before, to rounding
 _HARDLY = 0.01  # the sine of the least transmission angle
-_ALIKE = 1e-4  # relative: lanes that end at one fit
+_ALIKE = 0.02  # relative: lanes that end at one fit, or in one valley
 
 #: The wishes of so many lanes.
 Held = Callable[[int], FunctionWishes]

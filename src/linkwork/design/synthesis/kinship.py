@@ -51,4 +51,5 @@ def are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
 def are_images(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
     """Whether designs have the same links, by their longest, their shortest and their angle."""
     first, second = ((d.size, d.shortest, d.transmission) for d in (one, other))
-    return one.mechanism == other.mechanism and np.allclose(first, second, rtol=_SAME, atol=0.0)
+    alike = one.mechanism == other.mechanism and one.drive is other.drive
+    return alike and np.allclose(first, second, rtol=_SAME, atol=0.0)

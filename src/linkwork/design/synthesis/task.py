@@ -271,7 +271,7 @@ class Task:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
         timed = [p.input for p in self.positions if p.input is not None]
         if self.function is not None and not self.is_six_bar and not self.function.starts_fixed:
-            timed = [one for one, _ in self.function.pairs]
+            timed = [one for one, _ in self.function.pairs] or [*(self.function.input or ())]
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
             _, span = least_arc(np.array(timed, dtype=float), self.angle.turn)
