@@ -385,7 +385,7 @@ def test_wishes_of_fits_have_the_derivatives_of_their_differences(
     slides: bool, asked: Range | None
 ) -> None:
     wishes = Wishes(range=asked, transmission=1.5, shortest=4.0, longest=0.1, ratio=1.01)
-    held = FunctionWishes(wishes, np.array([0.0, 1.0]), 1, 1.3, slides=slides)
+    held = FunctionWishes(wishes, np.array([0.0, 1.0]), 1.3, slides, 1)
     x, lane = np.array([[-0.9, -0.4, 1.7, 0.3, 0.2]]), np.zeros(1, dtype=np.intp)
     h, by_x = held.broken(x, lane)
     assert (h > 0.0).sum() > 4

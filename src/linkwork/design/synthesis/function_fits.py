@@ -23,18 +23,11 @@ from linkwork.design.synthesis.structural_error import (
 )
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.numerics.lane_least_squares import (
-    Box,
-    LaneFit,
-    Residuals,
-    minimise,
-    starts_of,
-)
+from linkwork.numerics.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
 
 __all__ = ["FunctionFits", "fit_functions"]
 
 _STEPS, _POWER_STEPS = 150, 40
-_WEIGHTS = (10.0, 30.0, 30.0, 100.0, 100.0)  # of wishes, in rounds
 _LANES = 120  # of the starts, those with the smallest sums of squares
 _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
@@ -73,46 +66,22 @@ class FunctionFits:
 class _Lanes:
     """Structural errors of lanes."""
 
-    def __init__(
-        self, u: Array, v: Array, slides: bool, side: Array, held: Held | None = None
-    ) -> None:
-        self.u, self.v, self.side, self.held = u, v, side, held
-        self.wishes = None if held is None else held(len(side))
+    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held) -> None:
+        self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
         self.make = slider_errors if slides else rocker_errors
 
     def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """Errors (D, N) and their derivatives (D, N, 5)."""
         u, v = self.u + x[:, 3:4], self.v + x[:, 4:5]
-        made = self.make(u, v, self.side[lanes, None], by_input=True)
+        made = self.make(u, v, self.side[lanes, None])
         wrong, by_x = made(x[:, :3].T[:, :, None])
         return wrong, np.concatenate([by_x, np.full((*wrong.shape, 1), -1.0)], axis=2)
 
     def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
         """Errors as rows of one number."""
         wrong, by_x = self.errors(x, lanes)
-        broken = np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
-        if self.wishes is not None:
-            broken = self.wishes.broken(x, lanes)
+        broken = self.wishes.broken(x, lanes)
         return Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
-
-    def minimised(self, fit: LaneFit, box: Box) -> LaneFit:
-        """Lanes at the least sum of squares near them, with their wishes."""
-        fit = minimise(self.residuals, fit, box, _STEPS)
-        for weight in _WEIGHTS if self.wishes is not None else ():
-            self.update(fit, weight)
-            fit = minimise(self.residuals, fit, box, _POWER_STEPS)
-        return fit
-
-    def update(self, fit: LaneFit, weight: float) -> None:
-        """New multipliers of the wishes, and their next weight."""
-        if self.wishes is not None:
-            self.wishes.update(fit.x, np.arange(len(fit)), weight)
-
-    def are_broken(self, x: Array) -> bool:
-        """Whether a lane at x (5,) breaks a wish."""
-        if self.held is None:
-            return False
-        return bool(self.held(1).broken(x[None], np.zeros(1, dtype=np.intp))[0].any())
 
 
 def fit_functions(
@@ -123,7 +92,7 @@ def fit_functions(
     slides: bool,
     minimax: bool,
     first: tuple[float, float] | None,
-    held: Held | None = None,
+    held: Held,
     progress: Callable[[float], None] | None = None,
 ) -> FunctionFits:
     """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
@@ -147,30 +116,18 @@ def fit_functions(
     total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
     lanes, side = _Lanes(u, v, slides, side[some], held), side[some]
-    fit = lanes.minimised(starts_of(x[some], np.zeros((len(some), 0))), box)
+    fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
+    for weight in lanes.wishes.weights:
+        lanes.wishes.update(fit.x, weight)
+        fit = minimise(lanes.residuals, fit, box, _POWER_STEPS)
     order = _different(fit.x, fit.total)[:_KEPT]
     lanes, fit, side = _Lanes(u, v, slides, side[order], held), fit.take(order), side[order]
     if minimax:
-        every = np.arange(len(fit))
-        none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
-        powers = POWERS if held is None else (*POWERS, *POWERS[-1:] * len(_WEIGHTS))
-        for k, power in enumerate(powers):
-            if progress is not None:
-                progress(k / len(powers))
-            largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
-
-            def raised(
-                x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
-            ) -> Residuals:
-                found = lanes.residuals(x, t, which)
-                return powered(found, power, np.maximum(scale[which], 1e-300), none)
-
-            fit = minimise(raised, fit, box, _POWER_STEPS)
-            lanes.update(fit, _WEIGHTS[-1])
+        fit = _level(lanes, fit, box, progress)
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
     for k in range(len(fit)) if minimax else ():
         sharp, least = _sharpened(lanes, x[k], k, box)
-        if not lanes.are_broken(sharp):
+        if not held(1).broken(sharp[None], np.zeros(1, dtype=np.intp))[0].any():
             x[k], minimal[k] = sharp, least
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
@@ -181,6 +138,30 @@ def fit_functions(
         x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
         minimal=minimal[index],
     )  # fmt: skip
+
+
+def _level(
+    lanes: _Lanes, fit: LaneFit, box: Box, progress: Callable[[float], None] | None
+) -> LaneFit:
+    """Lanes with small largest errors, by growing powers."""
+    every = np.arange(len(fit))
+    none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
+    powers = (*POWERS, *POWERS[-1:] * len(lanes.wishes.weights))
+    for k, power in enumerate(powers):
+        if progress is not None:
+            progress(k / len(powers))
+        largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
+
+        def raised(
+            x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
+        ) -> Residuals:
+            found = lanes.residuals(x, t, which)
+            return powered(found, power, np.maximum(scale[which], 1e-300), none)
+
+        fit = minimise(raised, fit, box, _POWER_STEPS)
+        for weight in lanes.wishes.weights[-1:]:
+            lanes.wishes.update(fit.x, weight)
+    return fit
 
 
 def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -19,7 +20,6 @@ from linkwork.design.synthesis.function_fits import fit_functions
 from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import Wanted
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness
@@ -228,14 +228,9 @@ def _fitted(
     ]
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
-    ground = 1.0
-    if len(task.given.fixed_pivots) > 1 and not slides:
-        ground = math.dist(*task.given.fixed_pivots)
-
-    def held(lanes: int) -> FunctionWishes:
-        size = float(np.ptp(v)) if slides else ground
-        return FunctionWishes(wishes, u, lanes, size, slides=slides)
-
+    size, pivots = float(np.ptp(v)), task.given.fixed_pivots
+    if not slides:
+        size = math.dist(*pivots) if len(pivots) > 1 else 1.0
     fits = fit_functions(
         u,
         v,
@@ -243,7 +238,7 @@ def _fitted(
         slides=slides,
         minimax=goal.fit == "minimax",
         first=first,
-        held=None if task.wanted == Wanted() else held,
+        held=partial(FunctionWishes, wishes, u, size, slides),
         progress=progress,
     )
     made: list[Candidates] = []

@@ -19,10 +19,11 @@ _MARGIN = 1e-4  # of the transmission angle [rad] and, relatively, lengths: what
 class FunctionWishes:
     """The constraints of D lanes, which have crank, rocker or offset, coupler, and both starts.
 
-    ``u`` (N,): inputs [rad]; ``size``: of lengths, the ground of a four-bar.
+    ``u`` (N,): inputs [rad]; ``size``: of lengths, the ground of a four-bar; ``weights``: those of
+    rounds, none without wishes.
     """
 
-    def __init__(self, wishes: Wishes, u: Array, lanes: int, size: float, *, slides: bool) -> None:
+    def __init__(self, wishes: Wishes, u: Array, size: float, slides: bool, lanes: int) -> None:
         unit = 1.0 if slides else size
         asked = wishes.range
         #: The driven range, unless it is that of the inputs, and moves with their start.
@@ -40,42 +41,43 @@ class FunctionWishes:
             ratio=wishes.ratio * (1.0 - _MARGIN),
         )
         self.constraints = CurveConstraints(self.kind, goal, lanes)
+        wanted = asked or goal.transmission or goal.shortest
+        wanted = wanted or min(goal.longest, goal.ratio) < np.inf
+        self.weights = (10.0, 30.0, 30.0, 100.0, 100.0) if wanted else ()
 
     def _loops(self, x: Array) -> tuple[Array, Array, Array]:
         """Dimensions (D, P) of the same loops as curves, signs of theirs here, and the angles of
         the crank where transmission angles may be least.
         """
         signs = np.where(x[:, :3] < 0.0, -1.0, 1.0)
-        if self.kind is SliderCrankCurves:
-            signs[:, 1] = 1.0  # of an offset
         loops = np.zeros((len(x), len(self.kind.names)))
-        loops[:, self.columns] = signs * x[:, :3]
         if self.kind is FourBarCurves:
             loops[:, 2] = 1.0
-        turned = np.where(signs[:, :1] < 0.0, 0.5 * FULL_TURN, 0.0)
-        turned = turned if self.range else turned + x[:, 3:4]
+        else:
+            signs[:, 1] = 1.0  # of an offset
+        loops[:, self.columns] = signs * x[:, :3]
+        turned = 0.25 * FULL_TURN * (1.0 - signs[:, :1]) + (0.0 if self.range else x[:, 3:4])
         middle, half = turned + 0.5 * sum(self.ends), 0.5 * (self.ends[1] - self.ends[0])
-        curves = self.kind(np.ones(1))
-        away = curves.extreme(loops)[:, None] + [0.0, 0.5 * FULL_TURN] - middle
-        away -= FULL_TURN * np.round(away / FULL_TURN)
+        extreme = self.kind(np.ones(1)).extreme(loops)[:, None] + [0.0, 0.5 * FULL_TURN]
+        away = (extreme - middle + 0.5 * FULL_TURN) % FULL_TURN - 0.5 * FULL_TURN
         return loops, signs, middle + np.clip(away, -half, half)
 
     def broken(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """How far wishes are broken, (D, K), and by the parameters, (D, K, 5)."""
+        if not self.weights:
+            return np.zeros((len(x), 0)), np.zeros((len(x), 0, 5))
         loops, signs, angles = self._loops(x)
         h, slope = self.constraints.residuals(loops, lanes)
-        by_x = np.zeros((*h.shape, 5))
-        by_x[:, :, :3] = slope[:, :, self.columns] * signs[:, None]
+        by_start = np.zeros_like(h)
         found = self.constraints.at_points(loops, angles, lanes)
-        if found is None:
-            return h, by_x
-        more = np.zeros((*found[0].shape, 5))
-        more[:, :, :3] = found[1][:, :, self.columns] * signs[:, None]
-        more[:, :, 3] = 0.0 if self.range else found[2]
-        return np.concatenate([h, found[0]], axis=1), np.concatenate([by_x, more], axis=1)
+        if found is not None:
+            h, slope = np.append(h, found[0], axis=1), np.append(slope, found[1], axis=1)
+            by_start = np.append(by_start, 0.0 * found[2] if self.range else found[2], axis=1)
+        by_x = slope[:, :, self.columns] * signs[:, None]
+        return h, np.concatenate([by_x, by_start[:, :, None], 0.0 * h[:, :, None]], axis=2)
 
-    def update(self, x: Array, lanes: IndexArray, weight: float) -> None:
-        """New multipliers for lanes at x, and the next weight."""
+    def update(self, x: Array, weight: float) -> None:
+        """New multipliers for all lanes at x, and the next weight."""
         loops, _, angles = self._loops(x)
-        self.constraints.update(loops, angles, np.zeros(2, dtype=complex), lanes)
+        self.constraints.update(loops, angles, np.zeros(2, dtype=complex), np.arange(len(x)))
         self.constraints.weigh(weight)

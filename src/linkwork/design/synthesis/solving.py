@@ -71,7 +71,7 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            wishes=(wishes := _measured(wishes_of(task, drive), part, drive, found.zero)),
+            wishes=(wishes := _measured(wishes_of(task, drive), part, found.zero)),
             verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
@@ -96,17 +96,15 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
     )
 
 
-def _measured(
-    wishes: Wishes, part: Candidates, drive: Drive, zero: tuple[float, float] | None
-) -> Wishes:
+def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
     """Wishes with the range of a crank that the task measures from its moving pivot."""
     asked = wishes.range
-    if asked is None or asked.turn or zero is None or drive is not Drive.A0:
+    crank = (part.moving_a[:1, 0] - part.fixed_a[:1]) * np.exp(-1j * (zero or (0.0, 0.0))[0])
+    if asked is None or zero is None or (crank.real > 0.0).all():
         return wishes
-    crank = (part.moving_a[:, 0] - part.fixed_a) * np.exp(-1j * zero[0])
-    if not len(crank) or crank[0].real > 0.0:
-        return wishes
-    return replace(wishes, range=Range(start=asked.start + math.pi, stop=asked.stop + math.pi))
+    return replace(
+        wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
+    )
 
 
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
