@@ -425,13 +425,24 @@ def test_a_formula_whose_ranges_begin_anywhere_is_met_at_five_points(mechanism: 
             {"input": 60, "output": 90, "wanted": {"input": {"from": 0, "to": 50}}},
             "spans 50, but the given inputs span 60",
         ),
+        (
+            {**_LOGARITHM, "fit": "minimax", "wanted": {"input": {"from": 50, "to": 100}}},
+            "spans 50, but the given inputs span 60",
+        ),
+        ({**_LOGARITHM, "input": (0, 400)}, "input  spans inputs of more than a turn, 360"),
+        ({**_LOGARITHM, "wanted": {"lengths": {"least": 50}}}, "exclude the ground, which is 1 l"),
     ],
 )
-def test_ranges_that_cannot_begin_anywhere_are_refused(
+def test_ranges_and_wishes_that_no_loop_has_are_refused(
     tables: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(MechanismError, match=message):
         lw.Task.function("log10(x)", **{"x": (1, 2), "mechanism": "four-bar", **tables})
+
+
+def test_a_function_with_a_pole_in_its_range_is_refused() -> None:
+    with pytest.raises(MechanismError, match=r"of  jumps by 943.5 near x = 1.567"):
+        lw.Task.function("tan(x)", **{**_LOGARITHM, "x": (1, 2)})
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import LENGTHS
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
@@ -162,12 +163,15 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
             if entry:
                 told = 'belongs to task = "improve": leave it out'
                 raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
+    placed = ("A0.x", "A0.y", "B0.x", "B0.y")[: 2 * len(task.given.fixed_pivots)]
     for name, (low, high) in given.items():
         told = ""
         if name not in _BOUNDED:
             told = "is no dimension: these are " + ", ".join(f'"{own}"' for own in _BOUNDED)
-        elif name in task.given.lengths:
-            told = "is given in [given] lengths already: leave one out"
+        elif name in (*task.given.lengths, *placed):
+            told = "is given in [given] already: leave one out"
+        elif name in LENGTHS and high <= 0.0:
+            told = f"must allow lengths above 0, got {low:g} to {high:g}"
         if told:
             problem = Problem(key=("improve", "bounds", name), message=told)
             raise MechanismError([problem], f'task "{task.name}"')

@@ -21,6 +21,7 @@ __all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 
 _VARIABLE = "x"
 _ANGLES = ("rocker",)  # outputs that are angles
+_LARGEST_STEP = 0.5  # of all values: between neighbours it is a pole
 _DENSE = 181  # points over the range for fits and structural errors
 
 Pair = tuple[float, float]
@@ -127,8 +128,7 @@ class FunctionGoal:
             return
         try:
             ends = [self._evaluated(number) for number in self.x or ()]
-            for number in self._x(_DENSE):
-                self._evaluated(number)
+            values = [self._evaluated(number) for number in self._x(_DENSE)]
         except ExpressionError as error:
             yield ("function", "of"), str(error)
             return
@@ -136,6 +136,13 @@ class FunctionGoal:
             yield (
                 ("function", "of"),
                 f"has the value {ends[0]:g} at both ends, so that the output has no range",
+            )
+        steps = np.abs(np.diff(values))
+        if steps.max() > _LARGEST_STEP * np.ptp(values) > 0.0:
+            place = self._x(_DENSE)[steps.argmax()]
+            yield (
+                ("function", "of"),
+                f"jumps by {steps.max():.4g} near x = {place:.4g}: give a range without this place",
             )
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
