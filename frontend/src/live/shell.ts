@@ -43,6 +43,7 @@ export class Shell {
 
   /** Send a request of the visitor, who has read the messages before. */
   ask(request: LiveRequest): void {
+    if (this.gone) return; // the message that says so stays
     this.latest.clear();
     this.notices.clear();
     this.background(request);

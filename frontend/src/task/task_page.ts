@@ -137,7 +137,7 @@ export class TaskPage {
   }
 
   private state(task: TaskState): void {
-    if (this.task?.file !== task.file) this.another();
+    if (this.task?.file !== task.file) this.another(task);
     declareKeys("Task", this.commands);
     this.task = task;
     this.shell.bar.show(task);
@@ -149,8 +149,11 @@ export class TaskPage {
     this.count();
   }
 
-  private another(): void {
+  private another(task: TaskState): void {
     this.solved = this.design = null;
+    this.table.show(task, null);
+    this.pareto.show(task, []);
+    this.describe();
     this.canvas.solve(null);
     this.player.show(null);
     this.cognates.show(null);
@@ -191,7 +194,7 @@ export class TaskPage {
     this.player.show(null);
     this.describe();
     this.stale(false);
-    const lines = event.problems.map(({ line, key, message }) => [line === null ? "" : `line ${line}, `, key, " ", message].join(""));
+    const lines = event.problems.map(({ line, key, message }) => [[line === null ? "" : `line ${line}`, key].filter(Boolean).join(", "), message].filter(Boolean).join(": "));
     const text = [event.message, ...lines.slice(0, 3)].join(" ");
     const choices: [string, string, () => void][] = event.ended ? [["Solve", "Search for designs again", () => this.ask({ kind: "solve_task" })]] : [];
     this.shell.notices.open(text, choices);
@@ -242,14 +245,16 @@ export class TaskPage {
     const design = this.design?.design;
     this.chosen.hidden = !design;
     if (!design) return;
-    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : ""}`);
+    const doubt = design.reason ? `${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : design.remark;
+    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${doubt && `. ${doubt}`}`);
     this.chosen.classList.toggle("lw-t-refused", !design.sound);
     this.improve.hidden = !PATHS.includes(this.task!.task);
   }
 
   private count(): void {
-    const { task, solved } = this;
+    const { task } = this;
     if (!task) return;
+    const solved = this.root.classList.contains("lw-t-stale") ? null : this.solved;
     const word = KINDS[task.task];
     const count = task.positions.length;
     const given = task.task === "improve" && !count ? "goals of a mechanism" : word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";

@@ -292,11 +292,11 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
     ]
     found = lw.Task.path(points, mechanism="four-bar", improve={"starts": 60}).solve()
     ending = sum(design.size > 0.999 * 2040.0 for design in found.delivered)
-    first, kin = remarks_on(found)[1:3]
+    *_, first, kin, _ = remarks_on(found)
     assert ending
     assert first == (
-        f"Delivered designs that end at the usual bound of lengths, 2040 mm: {ending}. [wanted] "
-        "lengths = { most = … } moves it."
+        f"Delivered designs with a longest link at the usual bound, 2040 mm: {ending}. [wanted] "
+        "lengths = { most = … } refuses them."
     )
     assert kin.startswith("Cognates draw one curve with different links: designs 1 and 2")
     one, other = (

@@ -149,6 +149,17 @@ def test_a_task_that_improves_shows_its_mechanism_before_the_search_ends(tmp_pat
     assert np.ptp(motion["d"]) == pytest.approx(70, abs=0.01)  # of the rows; turning points between
 
 
+def test_a_point_that_the_mechanism_does_not_have_is_told_and_can_be_corrected(
+    tmp_path: Path,
+) -> None:
+    goals = IMPROVE.index("[[improve.goals]]")
+    bench = opened(tmp_path, IMPROVE[:goals] + 'point = "Q"\n\n' + IMPROVE[goals:], solve_task)
+    unsolved = next(event for event in bench.opened() if isinstance(event, tell.TaskUnsolved))
+    assert [problem.key for problem in unsolved.problems] == ["improve.point"]
+    events = bench.handle(do.SetTaskEntry(key="improve.point", value="B"))
+    assert suggested(events).designs[0].origin == "as given"
+
+
 def test_wrong_questions_are_refused_and_change_nothing(tmp_path: Path) -> None:
     bench = opened(tmp_path, CURVE)
     bench.opened()

@@ -6,12 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from linkwork.design.precision.cognates import cognates, exchange_legs
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 
 __all__ = ["are_cognates", "are_images", "groups_among"]
 
 _ALIKE = 0.01  # of the longest link: fits of one minimum, reached from several starts
 _EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
+
+_LEGS = ("A", "A0", "B", "B0")
 
 Relation = Callable[[SynthesizedDesign, SynthesizedDesign], bool]
 
@@ -29,16 +32,15 @@ def groups_among(found: Synthesis, related: Relation) -> list[list[int]]:
 
 def are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
     """Whether four-bars have P in one place, and the other is a cognate of the first."""
-    if not one.points.keys() == other.points.keys() == {"A0", "B0", "A", "B", "P"}:
+    if not one.points.keys() == other.points.keys() == {*_LEGS, "P"}:
         return False
-    a0, b0, a, b, p = (one.points[name] for name in ("A0", "B0", "A", "B", "P"))
-    c0 = a0 + (p - a) / (b - a) * (b0 - a0)
-    cranks = np.array([other.points[name] for name in ("A0", "A", "B0", "B")]).reshape(2, 2)
-    # a crank of the other is a side of a parallelogram at A0 or B0
-    own = np.array([(a0, a0 + p - a), (b0, b0 + p - b)])
-    shared = np.abs(cranks[:, None] - own).max(axis=2).min()
-    away = max(shared, np.abs(cranks[:, 0] - c0).min(), abs(other.points["P"] - p))
-    return bool(away <= _ALIKE * max(one.size, other.size))
+    p = one.points["P"]
+    legs = np.array([[d.points[name] - p for name in _LEGS] for d in (one, other)])
+    linkages = np.stack([legs, legs.conj()], axis=2).reshape(2, 8)
+    wanted = np.array([linkages[1], *exchange_legs(linkages[1:])])
+    away = np.abs([found - wanted for found in cognates(linkages[:1])]).max(axis=2).min()
+    most = max(float(away), abs(other.points["P"] - p))
+    return most <= _ALIKE * max(one.size, other.size)
 
 
 def are_images(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:

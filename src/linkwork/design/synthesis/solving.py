@@ -42,10 +42,14 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
-    "path": lambda task, wishes, progress: (solve_curve if task.is_approximate else solve_path)(
-        task, wishes, progress
+    "path": lambda task, wishes, progress: (
+        solve_curve(task, wishes, progress)
+        if task.is_approximate
+        else solve_path(task, wishes, progress, _sound_designs(task))
     ),
-    "mixed": solve_path,
+    "mixed": lambda task, wishes, progress: solve_path(
+        task, wishes, progress, _sound_designs(task)
+    ),
     "function": solve_function,
 }
 _RIGHT = math.pi / 2.0
@@ -105,6 +109,16 @@ def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None
     return replace(
         wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
     )
+
+
+def _sound_designs(task: Task) -> Callable[[Candidates], int]:
+    """What counts the sound designs of candidates, with any link driven."""
+
+    def number(part: Candidates) -> int:
+        verdicts = (judge(part, drive, wishes_of(task, drive)) for drive in part.drives)
+        return sum(int(found.sound.sum()) for found in verdicts)
+
+    return number
 
 
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
