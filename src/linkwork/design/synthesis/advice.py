@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from linkwork.design.synthesis.curve_synthesis import usual_longest
 from linkwork.design.synthesis.judged_design import JudgedDesign
-from linkwork.design.synthesis.kinship import are_cognates, are_images, groups_among
+from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind
@@ -20,10 +20,6 @@ __all__ = ["advice_of", "remark_on", "remarks_on"]
 _LEAST_TRANSMISSION = 30.0  # [deg]
 _AT_BOUND = 0.999  # of the longest link
 _MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
-_RELATED = {
-    "Cognates draw one curve with different links": are_cognates,
-    "The same links in different places": are_images,
-}
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
 
@@ -38,16 +34,7 @@ def remarks_on(found: Synthesis) -> tuple[str, ...]:
         for count, doubt in counts
         if count
     )
-    return (*doubts, *_kin(found))
-
-
-def _kin(found: Synthesis) -> Iterator[str]:
-    """Delivered designs that are alike."""
-    for told, related in _RELATED.items():
-        groups = groups_among(found, related)
-        if groups:
-            shown = ["designs " + " and ".join(map(str, group)) for group in groups]
-            yield f"{told}: {'; '.join(shown)}."
+    return (*doubts, *alike_among(found))
 
 
 def remark_on(design: JudgedDesign) -> str:

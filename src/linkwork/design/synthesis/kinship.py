@@ -2,35 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from itertools import combinations
 
 import numpy as np
 
 from linkwork.design.precision.cognates import cognates, exchange_legs
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 
-__all__ = ["are_cognates", "are_images", "groups_among"]
+__all__ = ["alike_among"]
 
 _ALIKE = 0.01  # of the longest link: fits of one minimum, reached from several starts
 _EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
 
 _LEGS = ("A", "A0", "B", "B0")
 
-Relation = Callable[[SynthesizedDesign, SynthesizedDesign], bool]
+
+def alike_among(found: Synthesis) -> Iterator[str]:
+    """The pairs of delivered loops that are alike, in words."""
+    loops = [design for design in found.of_loops if design.delivered]
+    for told, related in (
+        ("Cognates draw one curve with different links", _are_cognates),
+        ("The same links in different places", _are_images),
+    ):
+        pairs = ((one, other) for one, other in combinations(loops, 2) if related(one, other))
+        shown = [f"designs {one.number} and {other.number}" for one, other in pairs]
+        if shown:
+            yield f"{told}: {'; '.join(shown)}."
 
 
-def groups_among(found: Synthesis, related: Relation) -> list[list[int]]:
-    """The numbers of delivered loops that are related to the first one of their group."""
-    groups: list[list[SynthesizedDesign]] = []
-    for design in (own for own in found.of_loops if own.delivered):
-        group = next((group for group in groups if related(group[0], design)), None)
-        if group is None:
-            groups.append(group := [])
-        group.append(design)
-    return [[design.number for design in group] for group in groups if len(group) > 1]
-
-
-def are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
+def _are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
     """Whether four-bars have P in one place, and the other is a cognate of the first."""
     if not one.points.keys() == other.points.keys() == {*_LEGS, "P"}:
         return False
@@ -43,7 +44,7 @@ def are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
     return most <= _ALIKE * max(one.size, other.size)
 
 
-def are_images(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
+def _are_images(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
     """Whether designs have the same links, by their longest, their shortest and their angle."""
     first, second = ((d.size, d.shortest, d.transmission) for d in (one, other))
     alike = one.mechanism == other.mechanism and one.drive is other.drive
