@@ -11,6 +11,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.design.synthesis.advice import remarks_on
 
 _PROBLEM_3 = [
     (0.25, 0.0), (0.52, 0.10), (0.80, 0.70), (1.20, 1.00), (1.40, 1.30), (1.10, 1.48),
@@ -34,6 +35,7 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
     assert sorted(map(str, pivots)) == sorted(
         map(str, ({expected[0], expected[1]}, {expected[2], expected[1]}))
     )
+    assert remarks_on(found)[-1].startswith("Cognates draw one curve with different links: desig")
 
 
 def test_five_points_with_given_pivots_are_solved_and_judged() -> None:

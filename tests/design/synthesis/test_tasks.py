@@ -80,7 +80,7 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_FUNCTION + "of = 'x'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\npositions = 5\n", 8,
          "function.positions", "5 precision points leave no four-bar with given start angles"),
         (_FUNCTION + "of = 'x'\nx = [0, 1]\ninput = [0, 60]\noutput = [0, 60]\npositions = 5\n", 8,
-         "function.positions", "free start angles meet 5: give pairs, without input and output"),
+         "function.positions", "free start angles meet 5: input = 60 is a range that begins"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [10, 9]]\n", 4, "function.pairs[3]",
          "has the input 10 of pair 2"),
         (_FUNCTION + "pairs = [[0, 0], [10, 5]]\n", 4, "function.pairs", "needs at least three"),

@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from linkwork.design.synthesis.curve_synthesis import usual_longest
 from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind
@@ -16,6 +18,7 @@ __all__ = ["advice_of", "remark_on", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
+_AT_BOUND = 0.999  # of the longest link
 _MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
@@ -26,11 +29,12 @@ def remarks_on(found: Synthesis) -> tuple[str, ...]:
     A task that states a wish gets no remark about it.
     """
     counts = [(sum(map(doubt.concerns, found.delivered)), doubt) for doubt in _doubts(found.task)]
-    return tuple(
+    doubts = (
         f"Delivered designs with {doubt.what}: {count}. {doubt.wish} refuses them."
         for count, doubt in counts
         if count
     )
+    return (*doubts, *alike_among(found))
 
 
 def remark_on(design: JudgedDesign) -> str:
@@ -61,6 +65,13 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
             f"a longest link over {_MOST_RATIO:g} times the shortest",
             f"[wanted] lengths = {{ ratio = {_MOST_RATIO:g} }}",
             lambda design: design.size > _MOST_RATIO * design.shortest,
+        )
+    longest = usual_longest(task) if task.kind == "path" and task.is_approximate else math.inf
+    if longest < math.inf:
+        yield _Doubt(
+            f"a longest link at the usual bound, {longest:.4g} {task.length}",
+            "[wanted] lengths = { most = … }",
+            lambda design: design.size > _AT_BOUND * longest,
         )
 
 

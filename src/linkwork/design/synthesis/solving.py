@@ -50,7 +50,7 @@ SOLVERS: dict[str, Solver] = {
     "mixed": lambda task, wishes, progress: solve_path(
         task, wishes, progress, _sound_designs(task)
     ),
-    "function": lambda task, wishes, progress: solve_function(task, progress),
+    "function": solve_function,
 }
 _RIGHT = math.pi / 2.0
 _Alone = TypeVar("_Alone", bound=JudgedDesign)
@@ -75,7 +75,7 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            wishes=(wishes := wishes_of(task, drive)),
+            wishes=(wishes := _measured(wishes_of(task, drive), part, found.zero)),
             verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
@@ -97,6 +97,17 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         designs=tuple(_ranked(task, judged)),
         starts=found.starts,
         interrupted=found.interrupted,
+    )
+
+
+def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
+    """Wishes with the range of a crank that the task measures from its moving pivot."""
+    asked = wishes.range
+    crank = (part.moving_a[:1, 0] - part.fixed_a[:1]) * np.exp(-1j * (zero or (0.0, 0.0))[0])
+    if asked is None or zero is None or (crank.real > 0.0).all():
+        return wishes
+    return replace(
+        wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
     )
 
 

@@ -202,9 +202,11 @@ def _given(table: dict[str, Any]) -> Given:
 def _function(table: dict[str, Any], mechanism: Any) -> FunctionGoal:
     exact = WATT_PAIRS if WATT_II in mechanism else LOOP_PAIRS
     listed = {key: tuple(v) for key, v in table.items() if isinstance(v, list)}
+    free = [key for key in ("input", "output") if isinstance(table.get(key), int | float)]
+    listed |= {key: (0.0, float(table[key])) for key in free}
     if "pairs" in table:
         listed["pairs"] = _points(table["pairs"])
-    return FunctionGoal(**{**table, **listed}, exact=exact)
+    return FunctionGoal(**{**table, **listed}, free=tuple(free), exact=exact)
 
 
 def _improvement(table: dict[str, Any]) -> Improvement:
