@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from typing import Any
 
@@ -170,6 +171,20 @@ def test_many_points_are_met_within_their_tolerance_or_refused() -> None:
     assert refused
     assert "tolerance 0.9 mm" in refused[0].defects[0].message
     assert bound.costliest == ("the tolerances", len(refused))
+
+
+def test_samples_are_drawn_until_enough_designs_are_sound() -> None:
+    points = [(250.0, 0.0), (520.0, 100.0), (800.0, 700.0), (1200.0, 1000.0), (1400.0, 1300.0)]
+    first = lw.Task.path(points, order="as given", rank={"deliver": 1}).solve()
+    assert "8 tasks" in first.message
+    more = lw.Task.path(points, order="as given", rank={"deliver": 4}).solve()
+    assert len(first.delivered) == 1 < len(more.delivered) == 4
+    assert re.search(r"(16|24|32|40|48|56|64) tasks", more.message)
+    # none turns fully with so good a transmission angle: all samples are drawn, and no more
+    wanted = {"order": "as given", "input": "turns fully", "transmission": {"least": 80}}
+    none = lw.Task.path(points, wanted=wanted).solve()
+    assert not none.delivered
+    assert re.search(r"(16|64) tasks", none.message)  # 16 without Numba
 
 
 @pytest.mark.extended

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
@@ -42,10 +42,14 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
-    "path": lambda task, wishes, progress: (solve_curve if task.is_approximate else solve_path)(
-        task, wishes, progress
+    "path": lambda task, wishes, progress: (
+        solve_curve(task, wishes, progress)
+        if task.is_approximate
+        else solve_path(task, wishes, progress, _sound_designs(task))
     ),
-    "mixed": solve_path,
+    "mixed": lambda task, wishes, progress: solve_path(
+        task, wishes, progress, _sound_designs(task)
+    ),
     "function": lambda task, wishes, progress: solve_function(task, progress),
 }
 _RIGHT = math.pi / 2.0
@@ -94,6 +98,16 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         starts=found.starts,
         interrupted=found.interrupted,
     )
+
+
+def _sound_designs(task: Task) -> Callable[[Candidates], int]:
+    """What counts the sound designs of candidates, with any link driven."""
+
+    def number(part: Candidates) -> int:
+        verdicts = (judge(part, drive, wishes_of(task, drive)) for drive in part.drives)
+        return sum(int(found.sound.sum()) for found in verdicts)
+
+    return number
 
 
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:
