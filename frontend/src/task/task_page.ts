@@ -35,6 +35,8 @@ export class TaskPage {
   private readonly improve: HTMLButtonElement;
   private readonly line: HTMLElement;
   private doing: keyof typeof DOING = "search";
+  /** Long work that was asked for, which may wait for the end of a search. */
+  private asked: { readonly id: number; readonly doing: keyof typeof DOING } | null = null;
   private readonly waiting = html("div", { class: "lw-t-waiting", role: "status", hidden: "" });
   private readonly table: DesignsTable;
   private readonly pareto: Pareto;
@@ -108,12 +110,11 @@ export class TaskPage {
         this.cognates.show(event);
         break;
       case "working":
-        this.working(event.fraction);
+        this.working(event.fraction, event.answers);
         break;
     }
     if (event.kind !== "working" && event.answers !== null) {
       this.waiting.hidden = true;
-      this.doing = "search";
     }
     this.shell.told(event);
   }
@@ -127,9 +128,8 @@ export class TaskPage {
   /** Ask for long work. */
   private work(doing: keyof typeof DOING, request: LiveRequest | null): void {
     if (!request) return;
-    this.ask(request);
-    this.doing = doing;
-    this.working(0);
+    this.asked = { id: this.shell.ask(request), doing };
+    if (this.waiting.hidden) this.working(0, this.asked.id);
   }
 
   private ask(request: LiveRequest): void {
@@ -207,8 +207,10 @@ export class TaskPage {
   }
 
   /** A search that takes long has a button to end it. */
-  private working(fraction: number): void {
-    if (this.waiting.hidden) {
+  private working(fraction: number, answers: number | null): void {
+    const doing = this.asked?.id === answers ? this.asked.doing : "search";
+    if (this.waiting.hidden || doing !== this.doing) {
+      this.doing = doing;
       this.waiting.replaceChildren();
       html("span", {}, this.waiting);
       const { task } = this;

@@ -120,6 +120,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
         (_MOTION + "[rank]\nby = { size = -1, error = 1 }\n", 19, "rank.by.size",
          "must not be negative, got -1"),
         (_MOTION + "[rank]\nby = { size = 0 }\n", 19, "rank.by", "has no weight above 0"),
+        ("format = 1\ntask = 'path'\n[curve]\nfile = 'no.csv'\n", 4, "curve.file",
+         '"no.csv": there is no such file'),
         (_MOTION + "[curve]\nfile = 'foot.csv'\n", 18, "curve",
          'has no effect on task = "motion"'),
         (_FUNCTION + "pairs = [[0, 0], [10, 5], [20, 9]]\n[given]\nfixed_pivots = [[0, 0]]\n", 6,

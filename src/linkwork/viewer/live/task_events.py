@@ -81,7 +81,7 @@ class DesignShown:
     error: float | None
     score: float | None
     reason: str
-    remark: str
+    remark: str  # noqa: V107
 
 
 @dataclass(frozen=True, kw_only=True)
