@@ -32,7 +32,7 @@ __all__ = ["solve_path"]
 
 _SAMPLES = 8  # tasks at once, where conditions are missing,
 _MOST = 64  # and at most so many while fewer designs are sound than are to be delivered
-_PATHS = 4000 if find_spec("numba") else 500  # followed before the last ones: about a second
+_PATHS, _SLOW_PATHS = 4000, 500  # followed before the last ones, with Numba and without: a second
 _NEAR = 16  # tasks within tolerances
 _SEED = 1
 
@@ -113,9 +113,10 @@ def _solve_further(
 ) -> None:
     """Solve further tasks with drawn conditions until enough designs are sound, within a bound."""
     wanted = task.rank.deliver - sum(map(sound, _candidates(points, near.solved)))
+    most = _PATHS if find_spec("numba") else _SLOW_PATHS
     while (
         wanted > 0
-        and sum(found.roots.paths for found in near.solved) < _PATHS
+        and sum(found.roots.paths for found in near.solved) < most
         and (tasks := tuple(islice(near.further, _SAMPLES)))
     ):
         left = _MOST - len(near.solved)
