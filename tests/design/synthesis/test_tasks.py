@@ -9,8 +9,7 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis import by_circuits
-from linkwork.design.synthesis import task as task_module
+from linkwork.design.synthesis import by_circuits, task as task_module
 from linkwork.design.synthesis.task_file import read_task_text
 from linkwork.design.synthesis.task_keys import TASK
 from linkwork.textfile.schema import schema_of

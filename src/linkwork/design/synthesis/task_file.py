@@ -100,12 +100,7 @@ def _plain(given: Any) -> Any:
             return given
 
 
-def _task(
-    content: Mapping[str, Any],
-    source: str | Mapping[str, Any],
-    stem: str,
-    folder: Path | None = None,
-) -> Task:
+def _task(content: Mapping[str, Any], source: Any, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
     angle = AngleUnit(content.get("angle", "deg"))

@@ -173,19 +173,6 @@ def _judge(w: Array, at: Layout, lanes: PathLanes, i: int, care: Care, ends: Pat
 
 
 @compiled
-def _care_of(lanes: PathLanes, i: int, care: Care, more: Care) -> Care:
-    """The care with which a lane's path is followed."""
-    return more if lanes.again[i] else care
-
-
-@compiled
-def _is_lost_once(lanes: PathLanes, i: int, care: Care, more: Care, ends: PathEnds) -> bool:
-    """Whether a lane's path, which has ended, is worth following with more care."""
-    lost = ends.state[lanes.task[i]] == _LOST
-    return bool(lost and not lanes.again[i] and more.error < care.error)
-
-
-@compiled
 def _has_ended(lanes: PathLanes, i: int, care: Care, ends: PathEnds) -> bool:
     """Whether a lane's path has ended; its end is stored then."""
     sigma, task = lanes.sigma[i], lanes.task[i]
@@ -260,12 +247,13 @@ def follow_paths(
         for i in range(width):
             if lanes.task[i] == _NO_PATH:
                 continue
-            own = _care_of(lanes, i, care, more)
+            own = more if lanes.again[i] else care
             _judge(w, at, lanes, i, own, ends)
             lanes.tried[i] += 1
             if _has_ended(lanes, i, own, ends):
-                if _is_lost_once(lanes, i, care, more, ends):
-                    # at once: alone in its lanes it would take as long as all others
+                lost = ends.state[lanes.task[i]] == _LOST
+                if lost and not lanes.again[i] and more.error < care.error:
+                    # at once: later, few paths in many lanes would take long
                     _take_path(lanes, i, lanes.task[i], start, 1)
                 elif following < start.shape[1]:
                     _take_path(lanes, i, following, start, 0)
