@@ -161,7 +161,14 @@ def _ranked_alone(
 
     ``in_order``: sound ones in their own order, all of them delivered.
     """
-    measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
+    measured = [
+        (
+            task.in_radians(d.transmission),
+            d.size,
+            task.in_radians(d.error) if d.error_unit == task.angle.value else d.error,
+        )
+        for d in designs
+    ]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
     entries = sorted(
         (bool(d.kinds), 0.0 if d.kinds or in_order else -scores[k], k)
