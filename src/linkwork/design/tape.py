@@ -31,7 +31,7 @@ from linkwork.foundation.rounding import RANK_TOLERANCE
 __all__ = ["Tape", "TapedNumber"]
 
 _OF_TWO: dict[Callable[..., Any], Any] = {least: np.minimum, most: np.maximum}
-_NEUTRAL = {np.add: 0.0, np.subtract: 0.0, np.multiply: 1.0}
+_NEUTRAL: dict[object, float] = {np.add: 0.0, np.subtract: 0.0, np.multiply: 1.0}
 _ZERO = np.zeros(())
 _STEADY = 1e-9  # relative: a number whose derivatives are below is one that cannot vary
 

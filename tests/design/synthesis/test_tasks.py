@@ -213,7 +213,12 @@ def test_a_task_of_tables_is_written_when_its_text_is_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     written = list[str]()
-    monkeypatch.setattr(task_module, "write_tables", lambda tables: written.append("x") or "x")
+
+    def write(tables: object) -> str:
+        written.append("x")
+        return "x"
+
+    monkeypatch.setattr(task_module, "write_tables", write)
     task = lw.Task.path([(0, 0), (1, 1), (2, 0)])
     assert not written
     assert (task.described.text, task.described.text, written) == ("x", "x", ["x"])
