@@ -132,7 +132,7 @@ def _row(circuit: Circuit, branch: str, rng: np.random.Generator) -> int:
     return int(rows[np.abs(along[rows] - value).argmin()])
 
 
-def _place(circuit: Circuit, point: str) -> tuple[Array, Array]:
+def _place(circuit: Circuit, point: str) -> tuple[ComplexArray, ComplexArray]:
     """A point along a circuit and its derivative by the input in radians or lengths."""
     x, y = (circuit.motion.series(f"{point}.{axis}") for axis in "xy")
     return x.value + 1j * y.value, x.first + 1j * y.first
@@ -182,10 +182,10 @@ def _misses(
     begin, end = along[:-1], along[1:]
     passing = np.flatnonzero((branch[:-1] == branch[1:]) & (begin != end))
     begin, end = begin[passing], end[passing]
-    shift = np.round((0.5 * (begin + end) - value) / turn) * turn if turn else 0.0
+    shift = np.round((0.5 * (begin + end) - value) / (turn or np.inf)) * turn
     t = (value + shift - begin) / (end - begin)
     inside = (t >= -_BEYOND) & (t <= 1.0 + _BEYOND)
-    passing, at = passing[inside], (value + shift)[inside] if turn else np.full(inside.sum(), value)
+    passing, at = passing[inside], (value + shift)[inside]
     missed, way = np.zeros(len(passing)), 0.0
     for point, place in places.items():
         z, slope = _place(circuit, point)

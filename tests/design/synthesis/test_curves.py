@@ -274,7 +274,7 @@ def test_links_of_a_fit_have_a_usual_bound_until_the_task_has_its_own() -> None:
     usual = _arch()
     bound = 12.0 * 260.7  # largest distance from the mean point
     assert 1000.0 < max(design.size for design in usual.designs) <= bound
-    assert "lengths up to 3128 mm, since [wanted] has none" in usual.message
+    assert "lengths up to 3128 mm unless [wanted] bounds them" in usual.message
     for tables in (
         {"rank": {"by": {"error": 1}}},
         {"wanted": {"lengths": {"most": 8000.0}}},

@@ -76,7 +76,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
-        + f"; lengths up to {usual:.4g} {task.length}, since [wanted] has none"
+        + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
         * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
@@ -124,7 +124,9 @@ def usual_longest(task: Task) -> float:
         return math.inf
     points = np.array([position.point for position in task.positions])
     away = np.array([*points, *given.fixed_pivots, *wanted.region]) - points.mean(axis=0)
-    return float(max(_USUAL * np.hypot(*away.T).max(), *given.lengths.values(), 0.0))
+    return float(
+        max(_USUAL * np.hypot(*away.T).max(), *given.lengths.values(), 2.0 * wanted.shortest)
+    )
 
 
 def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:

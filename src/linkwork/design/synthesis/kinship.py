@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import combinations
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -16,36 +15,42 @@ _ALIKE = 0.01  # of the longest link: fits of one minimum, reached from several 
 _EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
 
 _LEGS = ("A", "A0", "B", "B0")
+_Pair = tuple[SynthesizedDesign, SynthesizedDesign]
 
 
 def alike_among(found: Synthesis) -> Iterator[str]:
     """The pairs of delivered loops that are alike, in words."""
     loops = [design for design in found.of_loops if design.delivered]
-    for told, related in (
-        ("Cognates draw one curve with different links", _are_cognates),
-        ("The same links in different places", _are_images),
+    for told, pairs in (
+        ("Cognates draw one curve with different links", _cognates(loops)),
+        ("The same links in different places", _images(loops)),
     ):
-        pairs = ((one, other) for one, other in combinations(loops, 2) if related(one, other))
         shown = [f"designs {one.number} and {other.number}" for one, other in pairs]
         if shown:
             yield f"{told}: {'; '.join(shown)}."
 
 
-def _are_cognates(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
-    """Whether four-bars have P in one place, and the other is a cognate of the first."""
-    if not one.points.keys() == other.points.keys() == {*_LEGS, "P"}:
-        return False
-    p = one.points["P"]
-    legs = np.array([[d.points[name] - p for name in _LEGS] for d in (one, other)])
-    linkages = np.stack([legs, legs.conj()], axis=2).reshape(2, 8)
-    wanted = np.array([linkages[1], *exchange_legs(linkages[1:])])
-    away = np.abs([found - wanted for found in cognates(linkages[:1])]).max(axis=2).min()
-    most = max(float(away), abs(other.points["P"] - p))
-    return most <= _ALIKE * max(one.size, other.size)
+def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
+    """Four-bars with P in one place, the second of which is a cognate of the first."""
+    loops = [design for design in loops if design.points.keys() == {*_LEGS, "P"}]
+    places = np.array([[d.points[name] for name in (*_LEGS, "P")] for d in loops]).reshape(-1, 5)
+    legs, sizes = places[:, :4] - places[:, 4:], np.array([design.size for design in loops])
+    linkages = np.stack([legs, legs.conj()], axis=2).reshape(-1, 8)
+    for k, one in enumerate(loops):
+        rest = slice(k + 1, None)
+        wanted = np.array([linkages[rest], exchange_legs(linkages[rest])])
+        own = np.array(cognates(linkages[k : k + 1]))[:, None]
+        away = np.abs(own - wanted).max(axis=3).min(axis=(0, 1))
+        away = np.maximum(away, np.abs(places[rest, 4] - places[k, 4]))
+        near = away <= _ALIKE * np.maximum(sizes[rest], sizes[k])
+        yield from ((one, loops[k + 1 + int(i)]) for i in np.flatnonzero(near))
 
 
-def _are_images(one: SynthesizedDesign, other: SynthesizedDesign) -> bool:
-    """Whether designs have the same links, by their longest, their shortest and their angle."""
-    first, second = ((d.size, d.shortest, d.transmission) for d in (one, other))
-    alike = one.mechanism == other.mechanism and one.drive is other.drive
-    return alike and np.allclose(first, second, rtol=_EQUAL_NUMBERS, atol=0.0)
+def _images(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
+    """Designs with the same links, by their longest, their shortest and their angle."""
+    numbers = np.array([(d.size, d.shortest, d.transmission) for d in loops]).reshape(-1, 3)
+    for k, one in enumerate(loops):
+        alike = np.isclose(numbers[k + 1 :], numbers[k], rtol=_EQUAL_NUMBERS, atol=0.0)
+        for other in (loops[k + 1 + int(i)] for i in np.flatnonzero(alike.all(axis=1))):
+            if one.mechanism == other.mechanism and one.drive is other.drive:
+                yield one, other
