@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis import by_circuits, task as task_module
+from linkwork.design.synthesis import by_circuits
 from linkwork.design.synthesis.task_file import read_task_text
 from linkwork.design.synthesis.task_keys import TASK
 from linkwork.textfile.schema import schema_of
@@ -207,18 +207,3 @@ def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
     places = [legs.solve(at=angle).points[point] for angle in inputs]
     monkeypatch.setattr(by_circuits, "FollowedCircuit", lambda *_: pytest.fail("not needed"))
     assert lw.Task.path(places).defects_of(legs, inputs, point=point) == ()
-
-
-def test_a_task_of_tables_is_written_when_its_text_is_read(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    written = list[str]()
-
-    def write(tables: object) -> str:
-        written.append("x")
-        return "x"
-
-    monkeypatch.setattr(task_module, "write_tables", write)
-    task = lw.Task.path([(0, 0), (1, 1), (2, 0)])
-    assert not written
-    assert (task.described.text, task.described.text, written) == ("x", "x", ["x"])

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations, pairwise
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -36,7 +36,6 @@ from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
-from linkwork.textfile.writer import write_tables
 
 __all__ = ["MECHANISMS", "Task"]
 
@@ -77,8 +76,8 @@ class Task:
         How dimensions are improved; of a path task, that points are met approximately.
     folder : Path, optional
         Where files are that the task names.
-    source : str or dict
-        The text of the file that the task was read from, or tables with the keys of a file.
+    text : str
+        The text of the file that the task was read from.
 
     Raises
     ------
@@ -99,7 +98,7 @@ class Task:
     curve: Curve | None = None
     improvement: Improvement | None = None
     folder: Path | None = None
-    source: str | Mapping[str, Any] = ""
+    text: str = ""
 
     def __post_init__(self) -> None:
         if self.curve is not None:
@@ -110,11 +109,6 @@ class Task:
         found = [Problem(key=key, message=message) for key, message in self._problems()]
         if found:
             raise MechanismError(found, f'task "{self.name}"')
-
-    @cached_property
-    def text(self) -> str:
-        """The text of the task's file."""
-        return self.source if isinstance(self.source, str) else write_tables(self.source)
 
     def _problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         if self.kind not in KINDS:

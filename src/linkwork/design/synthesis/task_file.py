@@ -27,6 +27,7 @@ from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import check_format, located_error
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
+from linkwork.textfile.writer import write_tables
 
 __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
 
@@ -84,7 +85,7 @@ def task_of_tables(tables: Mapping[str, Any]) -> Task:
     structure = Structure(data, TASK)
     if structure.problems:
         raise MechanismError(structure.problems, "the task")
-    return _task(structure.content, data, data.get("name", Task.name))
+    return _task(structure.content, write_tables(data), data.get("name", Task.name))
 
 
 def _plain(given: Any) -> Any:
@@ -112,7 +113,7 @@ def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
         raise MechanismError([problem], "the task") from None
 
 
-def _task(content: Mapping[str, Any], source: Any, stem: str, folder: Path | None = None) -> Task:
+def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
     angle = AngleUnit(content.get("angle", "deg"))
@@ -132,7 +133,7 @@ def _task(content: Mapping[str, Any], source: Any, stem: str, folder: Path | Non
         curve=curve,
         improvement=_improvement(content["improve"]) if "improve" in content else None,
         folder=folder,
-        source=source,
+        text=text,
     )
 
 
