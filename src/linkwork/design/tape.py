@@ -176,14 +176,12 @@ class Tape(Consensus):
         given = [self.operand(number) for number in numbers]
         neutral = _NEUTRAL.get(function)
         if neutral is not None:
-            x, y = given
             # rates of what does not move are plain zeros: of a sum or product they need no node
-            if _is_plain(y, neutral):
-                return x
-            if function is not np.subtract and _is_plain(x, neutral):
-                return y
-            if function is np.multiply and (_is_plain(x, 0.0) or _is_plain(y, 0.0)):
-                return _ZERO
+            for x, y in (given, given[::-1])[: 1 if function is np.subtract else 2]:
+                if _is_plain(y, neutral):
+                    return x
+                if function is np.multiply and _is_plain(y, 0.0):
+                    return _ZERO
         if function in _OF_TWO:
             return reduce(partial(self.apply, _OF_TWO[function]), given)
         bare = [x.values if isinstance(x, TapedNumber) else x for x in given]

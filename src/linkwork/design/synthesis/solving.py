@@ -186,12 +186,10 @@ def _ranked_alone(
 
     ``in_order``: sound ones in their own order, all of them delivered.
     """
+    # an angle in radians, as those of four-bars are
+    unit = {task.angle.value: task.angle.radians}
     measured = [
-        (
-            task.in_radians(d.transmission),
-            d.size,
-            task.in_radians(d.error) if d.error_unit == task.angle.value else d.error,
-        )
+        (task.in_radians(d.transmission), d.size, d.error * unit.get(d.error_unit, 1.0))
         for d in designs
     ]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
