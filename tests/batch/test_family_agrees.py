@@ -13,7 +13,7 @@ import pytest
 from flint import arb
 
 import linkwork as lw
-from linkwork.batch import Family
+from linkwork.batch import Family, design_sweep, open_loops
 from linkwork.batch.family_motion import FamilyMotion
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.status import Status
@@ -405,3 +405,36 @@ def test_a_family_of_one_link_is_moved_without_a_kernel() -> None:
     height = lamps.sweep()["P.y"]
     angles = np.radians(np.ravel(lamps.sweep().inputs))
     np.testing.assert_allclose(height, np.outer([300.0, 310.0], np.sin(angles)), atol=1e-9)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_designs_that_cannot_close_are_left_out_without_being_built(
+    monkeypatch: pytest.MonkeyPatch, certify: bool
+) -> None:
+    """Their rows are those that a sweep of their own finds."""
+    bar = lw.example("four-bar")
+    short = np.array([1e-3, 0.2, 1.0, 0.3])
+    family = bar.family({"A B": 120.0 * short, "O4 B": 80.0 * short})
+    monkeypatch.setattr(design_sweep, "stay_open", lambda designs: np.zeros(4, dtype=bool))
+    alone = family.sweep(certify=certify)
+    monkeypatch.undo()
+    monkeypatch.setattr(design_sweep, "sweep_single", lambda *given: pytest.fail("it was built"))
+    together = family.sweep(certify=certify)
+    no_start = together.status[:, 0] == Status.NO_START.code
+    assert no_start.tolist() == [True, True, False, True]
+    for name in ("status", "certification", "v", "radius", "limits", "alone"):
+        one, other = (np.asarray(getattr(found.rows, name)) for found in (alone, together))
+        assert np.array_equal(one, other, equal_nan=name in ("v", "radius", "limits")), name
+    assert np.isnan(together.series("B.x").value[0]).all()
+    assert together.message(0) == alone.message(0)
+
+
+def test_a_loop_of_a_sliding_length_or_nearly_closed_is_tried() -> None:
+    slider = lw.example("slider-crank")
+    assert not open_loops.stay_open(slider.family({"A B": [1.0, 50.0]}).designs).any()
+    bar = lw.example("four-bar")
+    position = bar.solve()
+    reach = math.dist(position.points["A"], (100.0, 0.0))
+    coupler = np.array([1 - 1e-3, 1 - 1e-9, 1.0, 1 + 1e-9]) * abs(reach - 80.0)
+    found = open_loops.stay_open(bar.family({"A B": coupler}).designs)
+    assert found.tolist() == [True, False, False, False]

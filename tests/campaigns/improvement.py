@@ -62,7 +62,7 @@ CURVES = (
     Curve(name="12 free", points=printed.KRILL_TWELVE, best=7.60894e-5),
     Curve(name="12 timed", points=printed.KRILL_TWELVE, best=0.0221133, step=30.0),
     Curve(name="25 free, any order", points=printed.KRILL_TWENTY_FIVE, best=0.0349689,
-          ordered=False, seconds=30.0, starts=3000),
+          ordered=False, seconds=30.0, starts=5000),
     Curve(name="25 free", points=printed.KRILL_TWENTY_FIVE, best=0.770565, seconds=30.0),
     Curve(name="25 timed", points=printed.KRILL_TWENTY_FIVE, best=1.31652, step=15.0,
           seconds=30.0),

@@ -14,6 +14,7 @@ import pytest
 import linkwork as lw
 from linkwork.design.differentiable_numbers import chosen_numbers
 from linkwork.design.differentiated_forces import LoadedRows
+from linkwork.design.tape import Tape, TapedNumber
 from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.campaigns.gradients import gradient_campaign
 from tests.design.extrapolated import changed_by, extrapolated
@@ -282,3 +283,15 @@ def test_wrong_names_are_refused(of: str, by: list[str] | None, message: str) ->
 def test_a_motion_without_dead_point_has_no_limit_to_differentiate() -> None:
     with pytest.raises(InputError, match="no dead point above its start"):
         read_example("slider-crank").sensitivity("limit.upper")
+
+
+def test_a_plain_zero_or_one_leaves_a_taped_number_as_it_is() -> None:
+    tape = Tape()
+    x: Any = tape.number(2.0)
+    zero = np.zeros(())
+    assert all(same is x for same in (x * 1.0, 1.0 * x, x + zero, zero + x, x - 0.0))
+    for nothing in (x * zero, 0.0 * x):
+        assert not isinstance(nothing, TapedNumber)
+        assert nothing == 0.0
+    (slope,) = tape.forward([zero - x])
+    assert slope == -1.0

@@ -64,6 +64,17 @@ def test_paths_without_attempts_are_lost() -> None:
     assert (state == LOST).all()
 
 
+def test_lost_paths_are_followed_again_with_more_care() -> None:
+    hasty, careful = PathOptions(attempts=3), PathOptions(error=1e-3)
+    ends, starts = np.array([1.0 + 0j, -8.0j]), ROOTS.astype(complex)
+    kernel = PathKernel(StraightHomotopy(Cubic()))
+    w, _, state, _ = kernel.follow(ends, starts, hasty, more=careful)
+    assert (state == ARRIVED).all()
+    assert np.array_equal(w, kernel.follow(ends, starts, careful)[0])
+    # with no more care the same would be lost again
+    assert (kernel.follow(ends, starts, hasty, more=hasty)[2] == LOST).all()
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_lanes_and_batches_follow_the_same_paths(threads: int) -> None:
     """More paths than lanes, so that lanes take a second one."""

@@ -51,3 +51,21 @@ def test_variables_in_order_leave_room_for_each_other() -> None:
     assert t[0] == pytest.approx([0.0, 0.1, 0.2, 0.3], abs=1e-15)
     t = own.inside(np.array([[0.9, 0.95, 3.0, 4.0]]))
     assert t[0] == pytest.approx([0.7, 0.8, 0.9, 1.0], abs=1e-15)
+
+
+def test_few_steps_fail_along_a_bent_valley() -> None:
+    """Rosenbrock's, a hundred times narrower: a damping that has failed is not tried again."""
+    tried = list[float]()
+
+    def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
+        rows = np.stack([1000.0 * (x[:, 1] - x[:, 0] ** 2), 1.0 - x[:, 0]], axis=1)
+        slopes = np.zeros((len(x), 2, 2))
+        slopes[:, 0, 0], slopes[:, 0, 1], slopes[:, 1, 0] = -2000.0 * x[:, 0], 1000.0, -1.0
+        found = Residuals(np.zeros((1, 0, 2)), np.zeros((1, 0, 2, 2)), None, rows, slopes)
+        tried.append(float(found.total[0]))
+        return found
+
+    box = Box(least=np.full(2, -np.inf), most=np.full(2, np.inf))
+    start = starts_of(np.array([[-1.2, 1.0]]), np.zeros((1, 0)))
+    assert minimise(evaluate, start, box, 2000).total[0] < 1e-20
+    assert len(tried) < 500

@@ -176,3 +176,23 @@ def test_polishing_tells_simple_from_double_solutions_and_from_none() -> None:
         ends = polish_ends(path, start)
     assert ends.regular.tolist() == [False, True, False]
     assert ends.multiple.tolist() == [True, False, False]
+
+
+class CountedQuintic(Quintic):
+    """Counts the points at which it is evaluated."""
+
+    points = 0
+
+    def equations(self, z: Any, c: Any, rate: Any) -> Any:
+        self.points += len(z[0])
+        return super().equations(z, c, rate)
+
+
+def test_solutions_that_have_settled_are_polished_no_more() -> None:
+    goal = np.array([1.5, -2.5], dtype=complex)
+    system = CountedQuintic()
+    # one simple solution, and a start from which the double one takes every step
+    start = np.array([[-0.7]] * 50 + [[1.0 + 1e-4]], dtype=complex)
+    ends = polish_ends(ParameterPath(system=system, start=goal, goal=goal), start)
+    assert ends.regular[:50].all()
+    assert system.points < 5 * len(start)

@@ -9,9 +9,10 @@ import numpy as np
 from linkwork.batch.coefficients import loop_coefficients, zero_coefficients
 from linkwork.batch.designs import Designs
 from linkwork.batch.limits import LIMIT_KINDS
+from linkwork.batch.open_loops import stay_open
 from linkwork.batch.path_entry import lead_to_rows
 from linkwork.batch.rows import DesignRows
-from linkwork.batch.single_sweep import sweep_single
+from linkwork.batch.single_sweep import leave_open, sweep_single
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.certification import Certification
@@ -57,6 +58,10 @@ def design_rows(
         found.clear(np.ones(found.status.shape, dtype=bool), certify)
     else:
         left &= ~path.fill(designs, found, certify, threads, execution or Execution())
+        # most of those without a start need not be built to be tried
+        open_ones = left & stay_open(designs)
+        leave_open(designs, np.flatnonzero(open_ones), found)
+        left &= ~open_ones
     for k in np.flatnonzero(left):
         sweep_single(designs, int(k), found, certify)
     return found.freeze()

@@ -10,6 +10,7 @@ from linkwork.batch.designs import Designs
 from linkwork.batch.limits import ends_as_limits
 from linkwork.batch.rows import DesignRows
 from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.arrays import IndexArray
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.status import Status
@@ -20,7 +21,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep_rows
 from linkwork.numerics.rows import SolvedRows
 
-__all__ = ["message_single", "sweep_single"]
+__all__ = ["leave_open", "message_single", "sweep_single"]
 
 
 def _at_shared_inputs(designs: Designs, k: int) -> Model:
@@ -40,6 +41,19 @@ def _with_plain_range(base: Model, which: Input) -> Input:
         for value in (which.start, which.stop, which.step)
     )
     return replace(which, start=start, stop=stop, step=step)
+
+
+def leave_open(designs: Designs, which: IndexArray, found: DesignRows) -> None:
+    """The rows of designs (W,) that have no position at the start, as their sweeps leave them."""
+    base = designs.base
+    rows = SolvedRows.blank(
+        base.rows_in_file_units, base.compiled.solver.variables, Status.NO_START
+    )
+    found.alone[which] = True
+    found.v[:, :, which] = found.radius[:, which] = np.nan
+    found.status[:, which] = Status.NO_START.code
+    found.certification[:, which] = Certification.NO_POSITION.code
+    found.own.update(dict.fromkeys(which.tolist(), rows))
 
 
 def sweep_single(designs: Designs, k: int, found: DesignRows, certify: bool) -> None:

@@ -31,6 +31,8 @@ from linkwork.foundation.rounding import RANK_TOLERANCE
 __all__ = ["Tape", "TapedNumber"]
 
 _OF_TWO: dict[Callable[..., Any], Any] = {least: np.minimum, most: np.maximum}
+_NEUTRAL: dict[object, float] = {np.add: 0.0, np.subtract: 0.0, np.multiply: 1.0}
+_ZERO = np.zeros(())
 _STEADY = 1e-9  # relative: a number whose derivatives are below is one that cannot vary
 
 
@@ -172,6 +174,14 @@ class Tape(Consensus):
     def apply(self, function: Callable[..., Any], *numbers: object) -> Any:
         """A function of NumPy; those without derivatives give plain arrays."""
         given = [self.operand(number) for number in numbers]
+        neutral = _NEUTRAL.get(function)
+        if neutral is not None:
+            # rates of what does not move are plain zeros: of a sum or product they need no node
+            for x, y in (given, given[::-1])[: 1 if function is np.subtract else 2]:
+                if _is_plain(y, neutral):
+                    return x
+                if function is np.multiply and _is_plain(y, 0.0):
+                    return _ZERO
         if function in _OF_TWO:
             return reduce(partial(self.apply, _OF_TWO[function]), given)
         bare = [x.values if isinstance(x, TapedNumber) else x for x in given]
@@ -279,6 +289,11 @@ class Tape(Consensus):
                 for parent in self._parents[node]:
                     wanted[parent] = 1
         return [node for node, used in enumerate(wanted) if used]
+
+
+def _is_plain(x: Any, value: float) -> bool:
+    """Whether something is this number, not taped."""
+    return not isinstance(x, TapedNumber) and np.ndim(x) == 0 and x == value
 
 
 def _product(factor: Any, rate: Any) -> Any:

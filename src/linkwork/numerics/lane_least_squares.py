@@ -25,6 +25,7 @@ from linkwork.foundation.rounding import EPSILON
 __all__ = ["Box", "LaneFit", "OwnVariables", "Residuals", "minimise", "starts_of"]
 
 _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
+_AFTER_MORE = 0.8  # less at the first step that gains: what has just failed would fail again
 _LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
 _IDLE = 1e-13  # relative decrease of the sum of squares: rounding
 _MOST_IDLE = 3  # steps in a row
@@ -175,6 +176,8 @@ class LaneFit:
     total : (D,)
         The sum of squares; infinite where residuals do not exist.
     damping : (D,)
+    failed : (D,) bool
+        Whether the last step gained nothing.
     idle : (D,)
         The number of steps in a row that gained nothing.
     interrupted : bool
@@ -185,6 +188,7 @@ class LaneFit:
     t: Array
     total: Array
     damping: Array
+    failed: BoolArray
     idle: IndexArray
     interrupted: bool = False
 
@@ -204,6 +208,11 @@ class LaneFit:
     def take(self, index: IndexArray | BoolArray) -> LaneFit:
         """Some of the lanes, in the order of ``index``."""
         return replace(self, **{name: getattr(self, name)[index] for name in _ARRAYS})
+
+    def put(self, index: IndexArray, part: LaneFit) -> None:
+        """Replace some of the lanes."""
+        for name in _ARRAYS:
+            getattr(self, name)[index] = getattr(part, name)
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
@@ -225,6 +234,7 @@ def starts_of(x: Array, t: Array) -> LaneFit:
         t=t,
         total=np.full(count, np.inf),
         damping=np.full(count, _FIRST_DAMPING),
+        failed=np.zeros(count, dtype=bool),
         idle=np.zeros(count, dtype=np.intp),
     )
 
@@ -256,8 +266,8 @@ def minimise(
     -----
     An interruption (Ctrl-C) ends the steps; the lanes stay where they are then.
     """
-    kept = [np.array(getattr(fit, name)) for name in _ARRAYS]
     lanes = np.arange(len(fit))
+    found = fit.take(lanes)
     x = box.inside(fit.x)
     t = own.inside(fit.t)
     now = evaluate(x, t, lanes)
@@ -270,7 +280,7 @@ def minimise(
         for _ in range(steps):
             done = work.done
             if done.any():
-                _keep(kept, lanes, work)
+                found.put(lanes, work)
                 left = ~done
                 lanes, work, now = lanes[left], work.take(left), now.take(left)
             if not len(lanes):
@@ -278,15 +288,8 @@ def minimise(
             work, now = _step(evaluate, work, now, lanes, box, own)
     except KeyboardInterrupt:
         interrupted = True
-    _keep(kept, lanes, work)
-    columns: dict[str, Any] = dict(zip(_ARRAYS, kept, strict=True))
-    found = LaneFit(**columns)
+    found.put(lanes, work)
     return replace(found, interrupted=interrupted or fit.interrupted)
-
-
-def _keep(kept: list[Array], lanes: IndexArray, work: LaneFit) -> None:
-    for whole, name in zip(kept, _ARRAYS, strict=True):
-        whole[lanes] = getattr(work, name)
 
 
 def _step(
@@ -308,8 +311,9 @@ def _step(
     # a step that changes the sum by rounding alone gains nothing, in whichever direction
     still = (change <= _IDLE * work.total) | _unmoved(work.x, x) & _unmoved(work.t, t)
     idle = np.where(still, work.idle + 1, np.where(better, 0, work.idle))
+    less = np.where(work.failed, _AFTER_MORE, _LESS)
     damping = np.where(
-        better, np.maximum(work.damping * _LESS, _SMALLEST_DAMPING), work.damping * _MORE
+        better, np.maximum(work.damping * less, _SMALLEST_DAMPING), work.damping * _MORE
     )
     return (
         replace(
@@ -318,6 +322,7 @@ def _step(
             t=_either(better, t, work.t),
             total=np.where(better, total, work.total),
             damping=damping,
+            failed=~better,
             idle=idle,
         ),
         now.replaced(better, there),

@@ -17,6 +17,7 @@ from linkwork.design.precision.path_tracking import (
     compiled_pays,
 )
 from linkwork.design.precision.problem import PrecisionProblem
+from linkwork.design.precision.product_sums import ProductSums
 from linkwork.design.precision.sampling import positions_with_samples
 from linkwork.design.precision.solving import PrecisionFourBars, four_bars_through
 from linkwork.marching.solution_path import LOST
@@ -121,6 +122,21 @@ def test_a_task_without_real_solutions_has_an_empty_list(monkeypatch: pytest.Mon
     assert (len(found), found.real, found.roots.complete) == (0, 0, True)
     assert found.moving_a.shape == found.guided.shape == (0, 5)
     assert found.lengths.shape == (0, 4)
+
+
+def test_one_exact_residual_proves_an_accurate_four_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact, seen = ProductSums.exact_residual, list[int]()
+
+    def counted(sums: ProductSums, v: Any) -> list[int]:
+        seen.append(1)
+        return exact(sums, v)
+
+    monkeypatch.setattr(ProductSums, "exact_residual", counted)
+    found = four_bars_through(positions(*mixed([0, 1, 2, 3], [4, 5])[1:]))
+    assert 0 < len(found) <= len(seen) < 1.5 * len(found)
+    assert found.proved.all()
+    assert holds_original(found, CRANK)
+    assert (found.error < 1e-14 * np.abs(found.guided).max()).all()
 
 
 def test_freedoms_that_positions_leave_are_drawn() -> None:

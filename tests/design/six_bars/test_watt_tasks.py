@@ -180,3 +180,12 @@ def test_pairs_are_counted_and_must_differ() -> None:
         lw.Task.function(pairs[:9], mechanism="watt-ii").solve()
     with pytest.raises(lw.MechanismError, match="is made for functions only"):
         lw.Task.path([(0, 0), (1, 1)], mechanism="watt-ii")
+
+
+@pytest.mark.usefixtures("one_path")
+def test_the_score_counts_an_angle_in_radians_like_that_of_a_four_bar() -> None:
+    task = logarithm(rank={"by": {"error": 1}})
+    (design,) = task.solve().delivered
+    size = 1.0  # of a function
+    assert design.score == pytest.approx(1.0 / (1.0 + np.radians(design.error) / size))
+    assert design.error > 0.01

@@ -268,18 +268,15 @@ class FitProblem:
             self.stopped = True
         self.done += steps
         own = replace(LaneFit.joined(found), interrupted=self.stopped)
-        every = {
-            name: np.array(getattr(fit, name)) for name in ("x", "t", "total", "damping", "idle")
-        }
-        for name, whole in every.items():
-            whole[keep] = getattr(own, name)
+        every = fit.take(np.arange(len(fit)))
+        every.put(keep, own)
         if self.has_bounds and not own.interrupted:
             self.evaluate(own.x, own.t, keep)
             for shift, new in zip(self.shifts, self.new_shifts, strict=True):
                 shift[:, keep] = new[:, keep]
             if self.trade is not None:
                 self.trade.update(keep)
-        return LaneFit(**every, interrupted=own.interrupted)
+        return replace(every, interrupted=own.interrupted)
 
     def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
         """All misses of designs (D, P); NaN where a design cannot be built like the others."""

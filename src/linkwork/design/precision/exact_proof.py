@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.design.precision.product_sums import ProductSums
-from linkwork.foundation.arrays import Array, BoolArray
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.numerics.proof.kantorovich import radii
@@ -53,31 +53,31 @@ def prove_numbers(
 
     ``given``: the other numbers, as whole ones in units of 2^-bits; ``size``: of the task.
     """
-    data = list(given)
-    whole = [[whole_number(z, bits) for z in row] + data for row in guess.tolist()]
     count, n, unit = len(guess), equations.unknowns, 0.5**bits
+    whole = np.empty((count, equations.size), dtype=object)
+    whole[:, :n], whole[:, n:] = _whole_numbers(guess, bits), given
     v, f = np.empty((count, equations.size)), np.empty((count, n))
-    jacobian, inverse = (np.empty((count, n, n)) for _ in range(2))
+    holds, error = np.zeros(count, dtype=bool), np.full(count, np.inf)
     live = np.arange(count)
     with np.errstate(all="ignore"):
         for _ in range(_ROUNDS if count else 0):
-            v[live] = [[float(z) * unit for z in whole[k]] for k in live]
-            f[live] = [_rounded(equations.exact_residual(whole[k]), bits) for k in live]
-            jacobian[live] = equations.jacobian(v[live])
-            inverse[live] = _inverses(jacobian[live])
-            correction = matrix_vector(inverse[live], f[live])
+            v[live] = whole[live].astype(float) * unit
+            residual = np.array([equations.exact_residual(row) for row in whole[live].tolist()])
+            f[live] = np.ldexp(residual.astype(float), -2 * bits)
+            jacobian = equations.jacobian(v[live])
+            inverse = _inverses(jacobian)
+            correction = matrix_vector(inverse, f[live])
             scale = _LEAST_WEIGHT * size + np.abs(v[live, :n])
+            holds[live], error[live] = _prove(equations, v[live], jacobian, inverse, f[live], scale)
             largest = (np.abs(correction) / scale).max(axis=1)
+            rounding = 3.0 * UNIT_ROUNDOFF * np.abs(v[live]).max(axis=1)
             # what is as large as the numbers themselves leads elsewhere
-            moving = (largest > _EXACT) & (largest < 1.0)
+            moving = (error[live] > rounding) & (largest > _EXACT) & (largest < 1.0)
+            v[live, :n] -= correction
             live, correction = live[moving], correction[moving]
             if not len(live):
                 break
-            for k, step in zip(live, correction.tolist(), strict=True):
-                for i, change in enumerate(step):
-                    whole[k][i] -= whole_number(change, bits)
-        scale = _LEAST_WEIGHT * size + np.abs(v[:, :n])
-        holds, error = _prove(equations, v, jacobian, inverse, f, scale)
+            whole[live, :n] -= _whole_numbers(correction, bits)
     return ProvedNumbers(v=v, holds=holds, error=np.where(holds, error, np.inf))
 
 
@@ -89,7 +89,9 @@ def _prove(
     f: Array,
     scale: Array,
 ) -> tuple[BoolArray, Array]:
-    """Whether the theorem holds in the largest norm with weights, (B,), and the radius."""
+    """Whether the theorem holds in the largest norm with weights, (B,), and a bound of the error
+    after the correction that belongs to F.
+    """
     n, own = equations.unknowns, np.abs(inverse)
     inside = np.where(np.isfinite(own).all(axis=(1, 2)), 1.0, np.inf)
     # rounding: v to floats, sums of products, and the products of matrices
@@ -109,7 +111,10 @@ def _prove(
     omega = (matrix_vector(own, equations.curvature(w)) / w).max(axis=1) * inside
     slack = PROOF_SLACK
     holds, radius, _, _ = radii(y * slack, z * slack, omega * slack, np.zeros_like(omega))
-    return holds, (radius[:, None] * w).max(axis=1) + 2.0 * UNIT_ROUNDOFF * np.abs(v).max(axis=1)
+    # eq. (29), and the rounding of the correction
+    left = np.minimum((z + 0.5 * omega * radius) * radius * slack, radius)
+    left += (n + 4.0) * UNIT_ROUNDOFF * y
+    return holds, (left[:, None] * w).max(axis=1) + 2.0 * UNIT_ROUNDOFF * np.abs(v).max(axis=1)
 
 
 def exact_turn(angle: float, bits: int) -> list[int]:
@@ -127,16 +132,15 @@ def exact_turn(angle: float, bits: int) -> list[int]:
 
 def whole_number(x: float, bits: int) -> int:
     """x in units of 2^-bits; exactly, unless it is smaller than the last of them."""
-    if not math.isfinite(x):
-        return 0
-    part, exponent = math.frexp(x)
-    number, shift = int(part * 2.0**53), exponent - 53 + bits
-    return number << shift if shift >= 0 else number >> -shift
+    return int(_whole_numbers(np.array([x]), bits)[0])
 
 
-def _rounded(f: list[int], bits: int) -> list[float]:
-    """Residuals in units of 2^-2bits as floats."""
-    return [math.ldexp(float(z), -2 * bits) for z in f]
+def _whole_numbers(x: Array, bits: int) -> AnyArray:
+    """The same for an array."""
+    part, exponent = np.frexp(np.where(np.isfinite(x), x, 0.0))
+    number, shift = (part * 2.0**53).astype(np.int64).astype(object), exponent + (bits - 53)
+    left, right = (np.maximum(z, 0).astype(object) for z in (shift, -shift))
+    return np.asarray(number << left >> right, dtype=object)
 
 
 def _inverses(matrices: Array) -> Array:

@@ -18,6 +18,8 @@ from linkwork.kernels import paths
 from linkwork.kernels.program.kernel_cache import PATH_LOOP, is_compiled, is_loaded
 from linkwork.marching.solution_path import PathOptions
 from linkwork.numerics.homotopy.parameter_path import (
+    QUICK,
+    SURE,
     ParameterPath,
     ParametrizedSystem,
     StraightHomotopy,
@@ -47,7 +49,8 @@ class CompiledTracker:
         kernel = _KERNELS.get(path.system)
         if kernel is None:
             kernel = _KERNELS[path.system] = paths.PathKernel(StraightHomotopy(path.system))
-        w, near, state, attempts = kernel.follow(path.ends, start, options, self.threads)
+        more = SURE if options is QUICK else None
+        w, near, state, attempts = kernel.follow(path.ends, start, options, self.threads, more)
         return Paths(w=w, near=near, state=state, steps=int(attempts.max(initial=0)))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -38,25 +39,31 @@ class ProductSums:
     def exact_residual(self, v: Sequence[int]) -> list[int]:
         """F of whole numbers v, without rounding, in the square of their unit."""
         found = [0] * self.unknowns
-        terms = (x.tolist() for x in (self.row, self.factor, self.one, self.other))
-        for row, factor, i, j in zip(*terms, strict=True):
+        for row, factor, i, j in self._terms:
             found[row] += factor * v[i] * v[j]
         return found
 
+    @cached_property
+    def _terms(self) -> list[tuple[int, int, int, int]]:
+        """The equation of every product, k, i and j, as plain numbers."""
+        columns = (x.tolist() for x in (self.row, self.factor, self.one, self.other))
+        return list(zip(*columns, strict=True))
+
     def jacobian(self, v: Array) -> Array:
         """∂F/∂v by the unknowns (B, n, n) at v (B, V)."""
-        return self._slopes(v, self.factor)
+        return self._slopes(v, 1)
 
     def jacobian_size(self, v: Array) -> Array:
         """The same with all terms positive, for |v| (B, V)."""
-        return self._slopes(v, np.abs(self.factor))
+        return self._slopes(v, -1)
 
-    def _slopes(self, v: Array, factors: IndexArray) -> Array:
+    def _slopes(self, v: Array, negative: int) -> Array:
+        """``negative``: -1 turns negative factors."""
         wide = np.zeros((self.unknowns, self.size, len(v)))
-        terms = (x.tolist() for x in (self.row, factors, self.one, self.other))
-        for row, factor, i, j in zip(*terms, strict=True):
-            wide[row, i] += factor * v[:, j]
-            wide[row, j] += factor * v[:, i]
+        for row, factor, i, j in self._terms:
+            own = factor if factor > 0 else negative * factor
+            wide[row, i] += own * v[:, j]
+            wide[row, j] += own * v[:, i]
         return np.ascontiguousarray(wide[:, : self.unknowns].transpose(2, 0, 1))
 
     def curvature(self, weights: Array) -> Array:

@@ -186,7 +186,12 @@ def _ranked_alone(
 
     ``in_order``: sound ones in their own order, all of them delivered.
     """
-    measured = [(task.in_radians(d.transmission), d.size, d.error) for d in designs]
+    # an angle in radians, as those of four-bars are
+    unit = {task.angle.value: task.angle.radians}
+    measured = [
+        (task.in_radians(d.transmission), d.size, d.error * unit.get(d.error_unit, 1.0))
+        for d in designs
+    ]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
     entries = sorted(
         (bool(d.kinds), 0.0 if d.kinds or in_order else -scores[k], k)

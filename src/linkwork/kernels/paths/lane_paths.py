@@ -40,7 +40,8 @@ class PathLanes(NamedTuple):
 
     ``path`` (4, 2n, LANES): here, slope, the point before, slope there. (LANES,): ``step``, the
     next one; ``gone``, the last one; ``sigma`` here; ``error`` of an attempt; ``task``, the path's
-    number; ``tried``, attempts; ``best``, ``row``: for the elimination.
+    number; ``tried``, attempts; ``again``, whether the path was lost once; ``best``, ``row``: for
+    the elimination.
     """
 
     path: Array
@@ -50,6 +51,7 @@ class PathLanes(NamedTuple):
     error: Array
     task: IndexArray
     tried: CountArray
+    again: CountArray
     best: Array
     row: IndexArray
 
@@ -82,9 +84,9 @@ _ENDS = named_tuple([_TABLE, _TABLE, types.Array(types.int8, 1, "C"), _WHOLE], P
 
 
 @compiled
-def _take_path(lanes: PathLanes, i: int, task: int, start: Array) -> None:
+def _take_path(lanes: PathLanes, i: int, task: int, start: Array, again: int) -> None:
     """Give a lane a path; its first attempt, without a step, finds the slope."""
-    lanes.task[i], lanes.tried[i] = task, 0
+    lanes.task[i], lanes.tried[i], lanes.again[i] = task, 0, again
     lanes.sigma[i], lanes.step[i], lanes.gone[i] = 1.0, 0.0, 0.0
     for k in range(start.shape[0]):
         lanes.path[0, k, i] = start[k, task]
@@ -196,6 +198,7 @@ def _close_ranks(lanes: PathLanes, width: int) -> int:
             continue
         if i != first:
             lanes.task[first], lanes.tried[first] = task, lanes.tried[i]
+            lanes.again[first] = lanes.again[i]
             lanes.sigma[first], lanes.step[first] = lanes.sigma[i], lanes.step[i]
             lanes.gone[first] = lanes.gone[i]
             for j in range(4):
@@ -209,27 +212,28 @@ def _close_ranks(lanes: PathLanes, width: int) -> int:
 
 @compiled_for(
     types.void(
-        types.Array(types.uint32, 2, "C"), _LAYOUT, _TABLE, _TABLE, _CARE, _ENDS,
+        types.Array(types.uint32, 2, "C"), _LAYOUT, _TABLE, _TABLE, _CARE, _CARE, _ENDS,
     )
 )  # fmt: skip
 def follow_paths(
-    code: Code, at: Layout, w: Array, start: Array, care: Care, ends: PathEnds
+    code: Code, at: Layout, w: Array, start: Array, care: Care, more: Care, ends: PathEnds
 ) -> None:
     """Follow all paths from their ``start`` (2n, B) at σ = 1 to σ = 0.
 
-    ``w`` (R, LANES): a workspace with constants and parameters in place.
+    ``w`` (R, LANES): a workspace with constants and parameters in place; ``more``: for paths that
+    are lost with ``care``.
     """
     lanes = PathLanes(
         np.zeros((4, 2 * at.unknowns, LANES)),
         np.zeros(LANES), np.zeros(LANES), np.ones(LANES), np.zeros(LANES),
-        np.full(LANES, _NO_PATH), np.zeros(LANES, np.int64),
+        np.full(LANES, _NO_PATH), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64),
         np.zeros(LANES), np.zeros(LANES, np.int64),
     )  # fmt: skip
     following, busy = int(np.int64(0)), int(np.int64(0))
     width = min(LANES, _VECTOR * ((start.shape[1] + _VECTOR - 1) // _VECTOR))
     for i in range(width):
         # idle lanes compute with the first path
-        _take_path(lanes, i, min(following, start.shape[1] - 1), start)
+        _take_path(lanes, i, min(following, start.shape[1] - 1), start, 0)
         if following < start.shape[1]:
             following, busy = following + 1, busy + 1
         else:
@@ -243,11 +247,16 @@ def follow_paths(
         for i in range(width):
             if lanes.task[i] == _NO_PATH:
                 continue
-            _judge(w, at, lanes, i, care, ends)
+            own = more if lanes.again[i] else care
+            _judge(w, at, lanes, i, own, ends)
             lanes.tried[i] += 1
-            if _has_ended(lanes, i, care, ends):
-                if following < start.shape[1]:
-                    _take_path(lanes, i, following, start)
+            if _has_ended(lanes, i, own, ends):
+                lost = ends.state[lanes.task[i]] == _LOST
+                if lost and not lanes.again[i] and more.error < care.error:
+                    # at once: later, few paths in many lanes would take long
+                    _take_path(lanes, i, lanes.task[i], start, 1)
+                elif following < start.shape[1]:
+                    _take_path(lanes, i, following, start, 0)
                     following += 1
                 else:
                     lanes.task[i], busy = _NO_PATH, busy - 1

@@ -29,7 +29,12 @@ class PathKernel:
         self.recorded = record_homotopy(homotopy)
 
     def follow(
-        self, parameters: ComplexArray, start: ComplexArray, options: PathOptions, threads: int = 1
+        self,
+        parameters: ComplexArray,
+        start: ComplexArray,
+        options: PathOptions,
+        threads: int = 1,
+        more: PathOptions | None = None,
     ) -> tuple[ComplexArray, ComplexArray, StatusArray, CountArray]:
         """Follow every start (B, n), a solution at σ = 1, to σ = 0.
 
@@ -37,6 +42,8 @@ class PathKernel:
         ----------
         parameters : (P,)
             The numbers that all paths share.
+        more : PathOptions, optional
+            For paths that are lost with ``options``.
 
         Returns
         -------
@@ -45,7 +52,8 @@ class PathKernel:
         state, attempts : (B,)
             ARRIVED, SINGULAR or LOST, and the steps that were tried.
         """
-        count, care = len(start), Care(*(float(x) for x in astuple(options)))
+        count = len(start)
+        care, second = (Care(*map(float, astuple(given))) for given in (options, more or options))
         w, near = (np.zeros_like(start, dtype=complex) for _ in range(2))
         state, attempts = np.full(count, LOST, dtype=np.int8), np.zeros(count, dtype=np.int64)
         recorded = self.recorded
@@ -57,7 +65,7 @@ class PathKernel:
                 np.full(given.shape[1], LOST, dtype=np.int8), np.zeros(given.shape[1], np.int64),
             )  # fmt: skip
             space = self._workspace(parameters)
-            follow_paths(recorded.program.code, recorded.layout, space, given, care, ends)
+            follow_paths(recorded.program.code, recorded.layout, space, given, care, second, ends)
             w[part], near[part] = _as_complex(ends.w), _as_complex(ends.near)
             state[part], attempts[part] = ends.state, ends.attempts
 

@@ -42,7 +42,7 @@ SURE = PathOptions(
     error=1e-3, contraction=0.05, rounding=1e-6, floor=0.1, attempts=5000, smallest=1e-11
 )
 _POLISH = 8  # steps of Newton's method
-_NOISE = 1e-10  # relative: smaller corrections may be rounding
+_NOISE = 1e-10  # relative: the correction after one so small is rounding
 _LINEAR, _SLOW = 0.2, 4  # steps between 0.3 and 0.7 of the one before, so many: no quadratic method
 _SETTLED = 1e-6  # relative: the last correction of a solution, also of a nearly singular one
 
@@ -153,17 +153,19 @@ def track_in_batches(path: ParameterPath, start: ComplexArray, options: PathOpti
 
 def polish_ends(path: ParameterPath, x: ComplexArray) -> PolishedEnds:
     """Newton's method at the goal from x (B, n), until rounding is all that is left."""
+    x, live = x.copy(), np.arange(len(x))
     last, slow = np.full(len(x), np.inf), np.zeros(len(x), dtype=np.int64)
     for _ in range(_POLISH):
-        f, jacobian = path.residual_and_jacobian(x)
+        here, before = x[live], last[live]
+        f, jacobian = path.residual_and_jacobian(here)
         change = solve_linear(jacobian, f[:, :, None])[:, :, 0]
-        size = relative_size(change, x, QUICK.floor)
-        better = size < last
-        if not better.any():
-            break
+        size = relative_size(change, here, QUICK.floor)
+        better, rounded = size < before, size <= _NOISE
         # a double solution halves the distance at every step
-        slow += better & (size > _NOISE) & (np.abs(size - 0.5 * last) < _LINEAR * last)
-        x = np.where(better[:, None], x - change, x)
-        last = np.where(better, size, last)
+        slow[live] += better & ~rounded & (np.abs(size - 0.5 * before) < _LINEAR * before)
+        x[live[better]], last[live[better]] = (here - change)[better], size[better]
+        live = live[better & ~rounded]
+        if not len(live):
+            break
     multiple = slow >= _SLOW
     return PolishedEnds(x=x, regular=(last < _SETTLED) & ~multiple, multiple=multiple)
