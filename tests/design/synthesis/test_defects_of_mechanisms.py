@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.motion.circuit.followed_circuit import FollowedCircuit, straight_way
+from linkwork.motion.circuit.followed_circuit import FollowedCircuit, explorer_of, straight_way
 from linkwork.motion.curve_branches import TracedCurve, trace_boldly
 from linkwork.motion.drive import Drive
 from tests.campaigns import library_defects
@@ -101,7 +101,8 @@ def test_the_straight_way_ends_at_a_dead_point() -> None:
 
 def test_branches_behind_change_points_are_followed_when_they_are_asked_for() -> None:
     model = lw.example("galloway").model
-    circuit = FollowedCircuit(Drive.of_circuits(model), model.equations.start)
+    explorer = explorer_of(Drive.of_circuits(model))
+    circuit = FollowedCircuit(explorer, model.equations.start)
     first = next(circuit.branches())
     assert len(circuit.arcs) == 1
     assert len(list(circuit.branches())) == 5

@@ -38,6 +38,10 @@ __all__ = [
 
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
+_RISEN = 100.0  # condition from which on a singular position may be ahead
+_ONWARD = 0.8  # of the estimated distance to it: the largest step,
+_LAST = 0.7  # up to this part of the largest condition; beyond half of it the track may end
+_HOPELESS = 0.1  # of that distance: where a step so short is refused, shorter ones are, too
 _OTHER_RATES = 30.0  # times the correction: rates so far from those predicted are another branch's,
 _LEVEL_RATES = 1e-3  # unless they differ by no more than this over the step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -242,12 +246,32 @@ class _Trial:
         self.solver, self.path, self.options = solver, path, options
         # a prediction that needs more steps was too far: halving costs less
         self.quick = unlimited(solver.options, 6, _NODE_TOLERANCE)
+        self.before: Node | None = None
 
     def room(self, here: Node, sign: float) -> float:
-        """How far a step may go towards a dead point, where rates grow like 1/√distance.
+        """How far a step may go towards a singular position.
 
-        There x'/2x'' of the fastest variable is the distance; elsewhere it is no limit.
+        At a dead point rates grow like 1/√distance: there x'/2x'' of the fastest variable is the
+        distance. At a change point the condition grows like 1/distance. Elsewhere there is no limit.
         """
+        away, last = self._singular_ahead(here), _LAST * self.options.largest_condition
+        if here.nearness < 0.5 * self.options.largest_condition:
+            away *= min(_ONWARD, 1.0 - here.nearness / last)
+        return min(away, self._dead_point_ahead(here, sign))
+
+    def _singular_ahead(self, here: Node) -> float:
+        """How far it is to where 1/condition is zero, extrapolated from the last step."""
+        before = self.before
+        if here.condition < _RISEN:
+            return math.inf
+        if before is None:
+            return self.path.size / here.condition
+        if here.condition <= before.condition:
+            return math.inf
+        return abs(here.t - before.t) * before.condition / (here.condition - before.condition)
+
+    def _dead_point_ahead(self, here: Node, sign: float) -> float:
+        """How far a step may go towards a dead point."""
         speed = np.abs(here.first) / self.solver.variable_scale
         k = int(np.argmax(speed))
         # rates that shrink lead away from a dead point
@@ -256,6 +280,16 @@ class _Trial:
         return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))  # eq. (24)
 
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
+        """A step, or that no shorter one is possible either."""
+        found = self._try(here, t)
+        if found.node is not None:
+            self.before = here
+        elif here.nearness > 0.5 * self.options.largest_condition:
+            if abs(t - here.t) <= _HOPELESS * self._singular_ahead(here):
+                return Attempt(None, 0.0)
+        return found
+
+    def _try(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct and judge."""
         solver, path, opt, h = self.solver, self.path, self.options, t - here.t
         guess = predict(here, t)
