@@ -201,24 +201,28 @@ class _Search:
         Two circuits are one where their arcs meet at a change point, and they are two as soon as
         one of them is whole without the other's position.
         """
-        others: list[FollowedCircuit] = []
         if any(mine.has(v) for v in near):
             return True
+        others: list[FollowedCircuit] = []
         for v in () if mine.is_whole else near:
-            others.append(FollowedCircuit(self.explorer, v))
-            mine.join_arcs()
-            if mine.meets(others[-1]):
-                return True
-        while not mine.is_whole and any(not other.is_whole for other in others):
-            following = next((one for one in (mine, *others) if not one.ended), None)
-            if following is None:
-                return None
-            following.follow_next()
+            other = FollowedCircuit(self.explorer, v)
+            if not any(other.meets(one) for one in others):
+                others.append(other)
+        while True:
             for one in (mine, *others):
                 one.join_arcs()
             if any(mine.meets(other) for other in others):
                 return True
-        return False
+            others = [other for other in others if not other.is_whole]
+            if mine.is_whole or not others:
+                return False
+            ahead = [one for one in (mine, *others) if not one.ended]
+            if not ahead:
+                return None
+            # from both sides, about as many arcs from each
+            most = sum(len(other.arcs) for other in others)
+            first = ahead[0] is mine and len(mine.arcs) <= most
+            (mine if first else min(ahead, key=lambda one: len(one.arcs))).follow_next()
 
     def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
         """Whether a position is at an end of a branch, to the rounding of its input."""

@@ -124,7 +124,7 @@ class Explorer:
         return None
 
     def branch_off(self, number: int) -> bool:
-        """Follow the next half-branch of a crossing that no arc came along; false if none is left."""
+        """Follow a half-branch of a crossing that no arc came along; false if none is left."""
         crossing = self.crossings[number]
         for k, sign in self.half_branches(number):
             self._covered.add((number, k, sign))

@@ -92,7 +92,9 @@ class FollowedCircuit:
         while joined:
             joined = False
             for number, arc in enumerate(self._explorer.arcs):
-                meets = number == self._first or not self._crossings.keys().isdisjoint(arc.crossings)
+                meets = number == self._first or not self._crossings.keys().isdisjoint(
+                    arc.crossings
+                )
                 if meets and number not in self._seen:
                     self._seen.add(number)
                     if self._explorer.fits(arc):

@@ -40,8 +40,8 @@ _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be a
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
 _RISEN = 100.0  # condition from which on a singular position may be ahead
 _ONWARD = 0.8  # of the estimated distance to it: the largest step,
-_LAST = 0.7  # up to this part of the largest condition; beyond half of it the track may end
-_HOPELESS = 0.1  # of that distance: where a step so short is refused, shorter ones are, too
+_LAST = 0.7  # up to this part of the largest condition
+_END = 0.5  # of that condition, and of the distance: behind such a step it would be too large
 _OTHER_RATES = 30.0  # times the correction: rates so far from those predicted are another branch's,
 _LEVEL_RATES = 1e-3  # unless they differ by no more than this over the step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
@@ -251,19 +251,24 @@ class _Trial:
     def room(self, here: Node, sign: float) -> float:
         """How far a step may go towards a singular position.
 
-        At a dead point rates grow like 1/√distance: there x'/2x'' of the fastest variable is the
-        distance. At a change point the condition grows like 1/distance. Elsewhere there is no limit.
+        Rates grow like 1/√distance from a dead point: there x'/2x'' of the fastest variable is the
+        distance. The condition grows like 1/distance from a change point. Elsewhere there is no
+        limit.
         """
-        away, last = self._singular_ahead(here), _LAST * self.options.largest_condition
-        if here.nearness < 0.5 * self.options.largest_condition:
-            away *= min(_ONWARD, 1.0 - here.nearness / last)
-        return min(away, self._dead_point_ahead(here, sign))
+        dead = self._dead_point_ahead(here, sign)
+        if here.condition < _RISEN:
+            return dead
+        last = _LAST * self.options.largest_condition
+        part = _END if self._is_last(here) else min(_ONWARD, 1.0 - here.nearness / last)
+        return min(dead, part * self._singular_ahead(here))
+
+    def _is_last(self, here: Node) -> bool:
+        """Whether a track that goes on towards a singular position ends at a node."""
+        return here.nearness > _END * self.options.largest_condition
 
     def _singular_ahead(self, here: Node) -> float:
         """How far it is to where 1/condition is zero, extrapolated from the last step."""
         before = self.before
-        if here.condition < _RISEN:
-            return math.inf
         if before is None:
             return self.path.size / here.condition
         if here.condition <= before.condition:
@@ -280,13 +285,16 @@ class _Trial:
         return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))  # eq. (24)
 
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
-        """A step, or that no shorter one is possible either."""
-        found = self._try(here, t)
+        """A step; where it is refused, how far a shorter one may go."""
+        found, away, h = self._try(here, t), self._singular_ahead(here), abs(t - here.t)
         if found.node is not None:
             self.before = here
-        elif here.nearness > 0.5 * self.options.largest_condition:
-            if abs(t - here.t) <= _HOPELESS * self._singular_ahead(here):
+        elif self._is_last(here) and self.before is not None and away < math.inf:
+            # halved down to rounding in front of a dead point, which may not be located otherwise
+            if self._dead_point_ahead(here, math.copysign(1.0, t - here.t)) == math.inf:
                 return Attempt(None, 0.0)
+        elif found.factor is None and away < h:
+            return Attempt(None, _ONWARD * away / h)
         return found
 
     def _try(self, here: Node, t: float) -> Attempt[Node]:
