@@ -19,6 +19,7 @@ from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.input_path import InputPath, quintic
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.single_rows import SingleSolution, rates_of_row, solve_row
@@ -45,23 +46,6 @@ _END = 0.5  # of that condition, and of the distance: behind such a step it woul
 _OTHER_RATES = 30.0  # times the correction: rates so far from those predicted are another branch's,
 _LEVEL_RATES = 1e-3  # unless they differ by no more than this over the step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
-
-
-@dataclass(frozen=True, kw_only=True)
-class InputPath:
-    """Inputs as u(t) = origin + t · rate, both (p,).
-
-    ``size``: natural size of t, one radian for an angle, a length of the mechanism for a length.
-    """
-
-    origin: Array
-    rate: Array
-    size: float = 1.0
-
-    def at(self, t: float | Array) -> Array:
-        """u(t), (p,) or (B, p)."""
-        inputs: Array = self.origin + np.multiply.outer(np.asarray(t), self.rate)
-        return inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -408,16 +392,3 @@ def interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     h = (times[left + 1] - times[left])[:, None]
     s = (t[:, None] - times[left][:, None]) / h
     return quintic(s, h, nodes.take(left), nodes.take(left + 1)), left
-
-
-def quintic(s: Array, h: Array, left: SolvedRows, right: SolvedRows) -> Array:
-    """The polynomials through both ends of steps of length h (B or 1, 1), at the fractions s."""
-    v0, v1 = left.v, right.v
-    a1, b1 = left.first * h, right.first * h
-    a2, b2 = left.second * h * h, right.second * h * h
-    rise = v1 - v0
-    c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2  # eq. (20)
-    c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
-    c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
-    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
-    return value
