@@ -691,6 +691,7 @@ export interface TaskSolved {
   defects: Record<string, number>;
   costliest: string;
   costs: number;
+  advice: string;
   designs: readonly (DesignShown)[];
   left_out: number;
   dyads: readonly (DyadShown)[];
@@ -713,9 +714,9 @@ export interface DesignFound {
   answers: number | null;
   design: DesignShown;
   skeleton: SkeletonShown | null;
-  fixed: readonly (readonly [number, number])[];
+  fixed: readonly (readonly (readonly [number, number])[])[];
   guided: string;
-  line: number | null;
+  lines: readonly [number | null, number | null];
   at: readonly (readonly (number)[])[];
   rows: readonly (readonly (number)[])[];
   marks: readonly (number)[];
@@ -950,6 +951,7 @@ export interface DesignShown {
   error: number | null;
   score: number | null;
   reason: string;
+  remark: string;
 }
 
 export interface DyadShown {

@@ -1,4 +1,6 @@
 import { describe, expect, it } from "vitest";
+import type { TaskSolved } from "../src/messages";
+import { verdict } from "../src/task/designs_table";
 import { goalsOf } from "../src/task/task_form";
 import { distance, front, resampled, roundedTo, type Place } from "../src/task/geometry";
 
@@ -39,5 +41,17 @@ describe("the goals of an improvement", () => {
     const entries = { "improve.goals.0.of": "stroke(d)", "improve.goals.0.target": 70, "improve.goals.1.of": "B.y", "improve.goals.1.values.0": 1, "improve.goals.1.values.1": 2, "improve.goals.1.at.0": 10, "improve.goals.1.at.1": 20, "improve.vary": "O2 A, A B" };
     expect(goalsOf({ entries })).toEqual(["Goal: stroke(d) = 70", "Goal: B.y = 1, 2 at 10, 20", "Varied: O2 A, A B"]);
     expect(goalsOf({ entries: {} })).toEqual([]);
+    const pairs = { "function.pairs.0.0": 0, "function.pairs.0.1": 0, "function.pairs.1.0": 20, "function.pairs.1.1": 10.5 };
+    expect(goalsOf({ entries: pairs })).toEqual(["Pairs of input and output: 0 → 0, 20 → 10.5"]);
+  });
+});
+
+describe("the verdict on a task without a sound design", () => {
+  const solved = (about: Partial<TaskSolved>): TaskSolved => ({ count: 3, sound: 0, interrupted: false, costliest: "", costs: 0, advice: "", ...about }) as TaskSolved;
+  it("names the wish to blame, else what to change", () => {
+    expect(verdict(solved({ costliest: "the driven range", costs: 2 }), "motion")).toMatch(/The wish that costs most is the driven range: without it 2/);
+    expect(verdict(solved({ advice: "Try to move a position." }), "motion")).toBe("No design is free of defects (3 designs). Try to move a position.");
+    expect(verdict(solved({ count: 0, advice: "Start nearer." }), "improve")).toBe("No start leads to a design. Start nearer.");
+    expect(verdict(solved({ count: 0 }), "motion")).toBe("No mechanism of the wanted kinds solves the task.");
   });
 });

@@ -11,6 +11,7 @@ it, in Python, or says why it is not run::
 from __future__ import annotations
 
 import re
+import shutil
 import signal
 import tempfile
 import tomllib
@@ -40,6 +41,7 @@ _FENCED = re.compile(r"^```(?P<language>[^\n]*)\n.*?^```$", re.DOTALL | re.MULTI
 _EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 _LONGEST = 300  # seconds that a block may take; the first one of an installation compiles kernels
 _INSTALLS = ("pip ", "pipx ", "uvx ", "uv ", "python3 -m venv", "scripts/", "eval ")
+_MAY_BE_MISSING = ("octave",)  # programs too large to ask for where pages are checked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,6 +124,10 @@ def _run(block: re.Match[str], names: dict[str, Any], folder: Path) -> Iterator[
         for command in commands_of(code):
             if command.startswith(_INSTALLS):
                 yield f"{command} (installation)"
+                continue
+            missing = [p for p in _MAY_BE_MISSING if p in command.split() and not shutil.which(p)]
+            if missing:
+                yield f"{command} ({missing[0]} is not installed)"
                 continue
             done = run_command(command, folder)
             if done.code:

@@ -13,7 +13,7 @@ import numpy as np
 
 import linkwork as lw
 from linkwork.design.synthesis.verdicts import DefectKind
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.results.circuits import Circuit, Circuits
 
@@ -132,7 +132,7 @@ def _row(circuit: Circuit, branch: str, rng: np.random.Generator) -> int:
     return int(rows[np.abs(along[rows] - value).argmin()])
 
 
-def _place(circuit: Circuit, point: str) -> tuple[Array, Array]:
+def _place(circuit: Circuit, point: str) -> tuple[ComplexArray, ComplexArray]:
     """A point along a circuit and its derivative by the input in radians or lengths."""
     x, y = (circuit.motion.series(f"{point}.{axis}") for axis in "xy")
     return x.value + 1j * y.value, x.first + 1j * y.first
@@ -182,18 +182,37 @@ def _misses(
     begin, end = along[:-1], along[1:]
     passing = np.flatnonzero((branch[:-1] == branch[1:]) & (begin != end))
     begin, end = begin[passing], end[passing]
-    shift = np.round((0.5 * (begin + end) - value) / turn) * turn if turn else 0.0
+    shift = np.round((0.5 * (begin + end) - value) / (turn or np.inf)) * turn
     t = (value + shift - begin) / (end - begin)
     inside = (t >= -_BEYOND) & (t <= 1.0 + _BEYOND)
-    passing, t, step = passing[inside], t[inside], (end - begin)[inside] * unit
+    passing, at = passing[inside], (value + shift)[inside]
     missed, way = np.zeros(len(passing)), 0.0
     for point, place in places.items():
         z, slope = _place(circuit, point)
-        change = z[passing + 1] - z[passing]
-        # Hermite's cubic; a line where there are no rates, next to a dead point
-        ahead, behind = slope[passing] * step - change, change - slope[passing + 1] * step
-        bend = t * (1.0 - t) * (ahead * (1.0 - t) + behind * t)
-        missed += np.abs(z[passing] + t * change + np.nan_to_num(bend) - place)
+        dead = np.isnan(slope)
+        for k, row in enumerate(passing.tolist()):
+            here = slice(row, row + 2)
+            own = along[dead & (branch == branch[row])]
+            missed[k] += abs(_between(along[here], z[here], unit * slope[here], own, at[k]) - place)
         way += float(np.abs(np.diff(z)).sum())
     for k, row in enumerate(passing.tolist()):
         yield float(missed[k]), way, str(branch[row])
+
+
+def _between(
+    inputs: Array, z: ComplexArray, slope: ComplexArray, singular: Array, at: float
+) -> complex:
+    """A place between two rows by Hermite's cubic, in the square root of the distance from the
+    nearest input without rates, a dead point; a line in it from there on.
+    """
+    w, now, rate = inputs, at, slope
+    origins = singular[(singular - inputs[0]) * (singular - inputs[1]) >= 0.0]
+    if len(origins):
+        origin = origins[np.abs(origins - inputs.mean()).argmin()]
+        w, now = np.sqrt(np.abs(inputs - origin)), np.sqrt(abs(at - origin))
+        rate = slope * 2.0 * w * np.sign(inputs.mean() - origin)
+    change, step = z[1] - z[0], w[1] - w[0]
+    t = (now - w[0]) / step if step else 0.0
+    ahead, behind = rate[0] * step - change, change - rate[1] * step
+    bend = t * (1.0 - t) * (ahead * (1.0 - t) + behind * t)
+    return complex(z[0] + t * change + np.nan_to_num(bend))

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.cli.main import linkwork
-from linkwork.design.synthesis.advice import advice_of, remarks_on
+from linkwork.design.synthesis.advice import advice_of, remark_on, remarks_on
 
 _POSES = """
 [[positions]]
@@ -80,6 +80,10 @@ def test_doubtful_designs_are_counted_with_the_wish_that_refuses_them() -> None:
     first, second = remarks_on(found)
     assert first.startswith(f"Delivered designs with a transmission angle below 30 deg: {slight}.")
     assert f"times the shortest: {uneven}." in second
+    told = [remark_on(design) for design in found.designs]
+    assert sum("below 30 deg: [wanted] transmission" in text for text in told) == slight
+    assert sum("times the shortest: [wanted] lengths" in text for text in told) == uneven
+    assert not any(remark_on(design) for design in found.refused)
     wanted = {"transmission": {"least": 30}, "lengths": {"ratio": 20}}
     strict = lw.Task.motion(poses, wanted=wanted).solve()
     assert remarks_on(strict) == ()

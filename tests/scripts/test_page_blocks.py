@@ -27,6 +27,20 @@ def test_blocks_share_names_and_broken_ones_are_reported(tmp_path: Path) -> None
     assert places == ["page.md:35", "page.md:5", "page.md:9", "page.md:23"]
 
 
+def test_a_command_whose_program_is_missing_is_left_out_by_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    page = tmp_path / "page.md"
+    page.write_text("```sh\ntrue && octave --eval four_bar\nno-such-program\n```\n")
+    checked = check_page(page)
+    assert "'no-such-program' ended with 127" in checked.errors[0]
+    page.write_text("```sh\ntrue && octave --eval four_bar\n```\n")
+    assert check_page(page).left == (
+        "page.md:1: true && octave --eval four_bar (octave is not installed)",
+    )
+
+
 @pytest.mark.extended
 def test_faults_of_a_page_are_found(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text(

@@ -42,10 +42,11 @@ export class Shell {
   }
 
   /** Send a request of the visitor, who has read the messages before. */
-  ask(request: LiveRequest): void {
+  ask(request: LiveRequest): number {
+    if (this.gone) return 0; // the message that says so stays
     this.latest.clear();
     this.notices.clear();
-    this.background(request);
+    return this.background(request);
   }
 
   /** Send one of many requests of a drag: only the latest needs an answer. */

@@ -37,7 +37,7 @@ export class Cognates {
     }
     const at = (name: string): Place => one.points[name]!;
     const row = ["A", "B", "P"].flatMap((name) => [...at(name)]);
-    const design = { fixed: [at("A0"), at("B0")], guided: "P", line: null, design: { drive: one.drive } } as unknown as Parameters<typeof drawLinkage>[1];
+    const design = { fixed: [[at("A0")], [at("B0")]], guided: "P", lines: [null, null], design: { drive: one.drive } } as unknown as Parameters<typeof drawLinkage>[1];
     drawLinkage(picture, design, row, project);
     html("strong", {}, card, ["This design", "First cognate", "Second cognate"][k]!);
     html("span", {}, card, one.sound ? "without defects" : one.reason);

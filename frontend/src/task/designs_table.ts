@@ -20,6 +20,7 @@ const ABOUT: Readonly<Record<Column, string>> = {
   error: "How far positions are missed",
   score: "Score of the ranking, 0 to 1",
 };
+const NAMES: Readonly<Record<string, string>> = { "inverted-slider-crank": "inverted slider-crank", "double-slider": "double slider", "rapson-slide": "Rapson slide", "oldham-coupling": "Oldham coupling", "watt-ii": "Watt II" };
 /** Large values first when a column is chosen. */
 const FALLING: readonly Column[] = ["transmission", "score"];
 
@@ -75,7 +76,7 @@ export class DesignsTable {
   show(task: TaskState, solved: TaskSolved | null, why = ""): void {
     this.task = task;
     this.solved = solved;
-    say(this.lead, solved ? verdict(solved) : why);
+    say(this.lead, solved ? verdict(solved, task.task) : why);
     this.reasons.replaceChildren();
     if (solved && !solved.sound) for (const [defect, count] of Object.entries(solved.defects)) html("li", {}, this.reasons, `${count} × ${defect}`);
     this.fill();
@@ -170,18 +171,19 @@ export class DesignsTable {
 }
 
 /** The counts in one sentence, or why there is no sound design. */
-export function verdict(solved: TaskSolved): string {
+export function verdict(solved: TaskSolved, kind: string): string {
   const designs = `${solved.count} design${solved.count === 1 ? "" : "s"}`;
   const stopped = solved.interrupted ? "Stopped: the best so far. " : "";
-  if (!solved.count) return stopped ? "Stopped before a design was found." : "No mechanism of the wanted kinds solves the task.";
+  const none = kind === "improve" ? "No start leads to a design." : "No mechanism of the wanted kinds solves the task.";
+  if (!solved.count) return stopped ? "Stopped before a design was found." : `${none} ${solved.advice}`.trim();
   if (solved.sound) return `${stopped}${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
-  const cost = solved.costliest ? ` The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : "";
-  return `${stopped}No design is free of defects (${designs}).${cost}`;
+  const cost = solved.costliest ? `The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : solved.advice;
+  return `${stopped}No design is free of defects (${designs}). ${cost}`.trim();
 }
 
 /** A design in one line. */
 export function inOneLine(design: DesignShown, task: TaskState): string {
-  const driven = design.drive === "slider" ? "driven at the slider" : `driven at ${design.drive}`;
+  const driven = design.drive.startsWith("slider") ? `driven at the ${design.drive}` : `driven at ${design.drive}`;
   const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(Number(design.transmission.toPrecision(3)), task.angle_unit)}`;
   const size = design.size === null ? "" : `, longest link ${`${trimmed(shortNumber(design.size, 4))} ${task.length_unit}`}`;
   return `${inWords(design)} ${driven}${angle}${size}`;
@@ -199,5 +201,6 @@ function origin({ origin: from, number }: DesignShown): string {
 }
 
 function inWords({ mechanism }: DesignShown): string {
-  return mechanism.replace("inverted-", "inverted ").replace(/ with a .*$/, ""); // the point is that of the task
+  const known = NAMES[mechanism] ?? mechanism;
+  return known.replace(/ with a .*$/, ""); // the point is that of the task
 }

@@ -12,31 +12,33 @@ export function jointsOf(row: readonly number[]): [Place, Place, Place] {
   return [[row[0]!, row[1]!], [row[2]!, row[3]!], [row[4]!, row[5]!]];
 }
 
+/** The driven parts at A and at B. */
+const DRIVES = [["A0", "slider at A"], ["B0", "slider"]] as const;
+
 /** Draw a design at a row of its points into a group. */
-export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | "design" | "guided" | "line">, row: readonly number[], project: Project, named = false): void {
+export function drawLinkage(group: Element, design: Pick<DesignFound, "fixed" | "design" | "guided" | "lines">, row: readonly number[], project: Project, named = false): void {
   const [a, b, p] = jointsOf(row).map(project) as [Place, Place, Place];
-  const fixed = design.fixed.map((place) => project(place));
-  const slides = fixed.length === 3;
-  const drivesB = design.design.drive === "B0";
-  if (slides) line(group, fixed[1]!, fixed[2]!, "lw-t-rail");
+  const sides = [a, b].map((joint, k) => ({ joint, held: design.fixed[k]!.map(project), turn: design.lines[k]!, driven: (DRIVES[k] as readonly string[]).includes(design.design.drive) }));
+  for (const { held } of sides) if (held.length > 1) line(group, held[0]!, held[1]!, "lw-t-rail");
   plate(group, [a, b, p]);
-  if (slides) block(group, b, fixed[1]!, fixed[2]!, design.design.drive === "slider");
-  else if (design.line !== null) {
-    // a line of the coupler, through B, slides in a block that turns about B0
-    const along = Math.atan2(a[1] - b[1], b[0] - a[0]) + design.line;
-    const [dx, dy] = [26 * Math.cos(along), -26 * Math.sin(along)];
-    const [x, y] = fixed[1]!;
-    const sense = (x - b[0]) * dx + (y - b[1]) * dy < 0 ? -1 : 1;
-    line(group, [b[0] - sense * dx, b[1] - sense * dy], [x + sense * dx, y + sense * dy], "lw-t-rod");
-    block(group, [x, y], [x - dx, y - dy], [x + dx, y + dy], drivesB);
+  const coupler = Math.atan2(a[1] - b[1], b[0] - a[0]);
+  for (const { joint, held, turn, driven } of [...sides].reverse()) {
+    const pivot = held[0]!;
+    if (held.length > 1) block(group, joint, pivot, held[1]!, driven);
+    else if (turn === null) line(group, pivot, joint, `lw-t-bar lw-t-${driven ? "driven" : "rocker"}`);
+    else {
+      // a line of the coupler slides in a block that turns about the pivot
+      const [dx, dy] = [26 * Math.cos(coupler + turn), -26 * Math.sin(coupler + turn)];
+      const sense = (pivot[0] - joint[0]) * dx + (pivot[1] - joint[1]) * dy < 0 ? -1 : 1;
+      line(group, [joint[0] - sense * dx, joint[1] - sense * dy], [pivot[0] + sense * dx, pivot[1] + sense * dy], "lw-t-rod");
+      block(group, pivot, [pivot[0] - dx, pivot[1] - dy], [pivot[0] + dx, pivot[1] + dy], driven);
+    }
   }
-  else line(group, fixed[1]!, b, drivesB ? "lw-t-bar lw-t-driven" : "lw-t-bar lw-t-rocker");
-  line(group, fixed[0]!, a, drivesB || design.design.drive === "slider" ? "lw-t-bar lw-t-rocker" : "lw-t-bar lw-t-driven");
-  for (const place of slides ? fixed.slice(0, 1) : fixed) ground(group, place);
-  for (const [x, y] of [a, b, ...(slides ? fixed.slice(0, 1) : fixed)]) svg("circle", { cx: x, cy: y, r: 4.5, class: "lw-t-pin" }, group);
+  const pivots = sides.flatMap(({ held }) => (held.length > 1 ? [] : held));
+  for (const place of pivots) ground(group, place);
+  for (const [x, y] of [a, b, ...pivots]) svg("circle", { cx: x, cy: y, r: 4.5, class: "lw-t-pin" }, group);
   if (named) {
-    label(group, "A₀", fixed[0]!, a);
-    if (!slides) label(group, "B₀", fixed[1]!, b);
+    sides.forEach(({ joint, held }, k) => held.length > 1 || label(group, ["A₀", "B₀"][k]!, held[0]!, joint));
     label(group, "A", a, b);
     label(group, "B", b, a);
   }
@@ -90,10 +92,12 @@ function line(group: Element, [x1, y1]: Place, [x2, y2]: Place, name: string): v
   svg("line", { x1: x1.toFixed(1), y1: y1.toFixed(1), x2: x2.toFixed(1), y2: y2.toFixed(1), class: name }, group);
 }
 
-/** The name of a joint, away from another place. */
+/** The name of a joint, away from another place, and from the hatching below a fixed pivot. */
 function label(group: Element, name: string, [x, y]: Place, [u, v]: Place): void {
-  const away = Math.hypot(x - u, y - v) || 1;
-  svg("text", { x: (x + (16 * (x - u)) / away).toFixed(1), y: (y + (16 * (y - v)) / away).toFixed(1), "text-anchor": "middle", dy: "0.35em", class: "lw-t-name" }, group).textContent = name;
+  const away = Math.hypot(x - u, y - v);
+  const [dx, dy] = away < 1 ? [-1, 0] : [(x - u) / away, (y - v) / away];
+  const far = name.length > 1 && dy > 0.3 ? 30 : 16;
+  svg("text", { x: (x + far * dx).toFixed(1), y: (y + far * dy).toFixed(1), "text-anchor": "middle", dy: "0.35em", class: "lw-t-name" }, group).textContent = name;
 }
 
 /** A fixed pivot: a triangle on hatching. */

@@ -418,7 +418,7 @@ export class TaskCanvas {
 }
 
 function* placesOf(design: DesignFound): Iterable<Place> {
-  yield* design.fixed.slice(0, 2);
+  yield* design.fixed.flat();
   for (const row of design.rows.length ? design.rows : design.at) yield* pairs(row);
 }
 

@@ -14,6 +14,10 @@ const MECHANISMS: Readonly<Record<string, string>> = {
   "four-bar": "four-bars",
   "slider-crank": "slider-cranks",
   "inverted-slider-crank": "inverted slider-cranks",
+  "double-slider": "double sliders",
+  "rapson-slide": "Rapson slides",
+  "oldham-coupling": "Oldham couplings",
+  "watt-ii": "Watt-II six-bars, of functions",
   given: "as in the text",
 };
 
@@ -48,10 +52,11 @@ export class TaskForm {
   private readonly mechanism = this.choice("Find", MECHANISMS, (value) => value !== "given" && this.set("mechanism", value || null));
   private readonly positions = html("table", { class: "lw-t-positions" }, this.element);
   private readonly functions = html("div", { class: "lw-t-fields" }, this.element);
+  private readonly fit = this.choice("Fit", { "": "exact at precision points", "least squares": "least squares", minimax: "minimax" }, (value) => this.set("function.fit", value || null));
   private readonly improved = html("div", { class: "lw-t-fields" }, this.element);
   private readonly goals = html("ul", { class: "lw-t-goals", "aria-label": "Goals" });
   private readonly order = this.choice("Order of positions", { "as given": "as given", any: "any" }, (value) => this.set("wanted.order", value));
-  private readonly range = this.choice("Driven range", { "": "from the first position to the last", "turns fully": "turns fully", given: "as in the text" }, (value) => value !== "given" && this.set("wanted.input", value || null));
+  private readonly range = this.choice("Driven range", { "": "first to last position", "turns fully": "turns fully", given: "as in the text" }, (value) => value !== "given" && this.set("wanted.input", value || null));
   private readonly wishes = html("div", { class: "lw-t-fields" }, this.element);
   private readonly extra = html("p", { class: "lw-lead" }, this.element);
   private readonly text: HTMLTextAreaElement;
@@ -64,7 +69,7 @@ export class TaskForm {
   ) {
     for (const [key, label, kind] of FUNCTION) this.field(this.functions, key, label, kind);
     for (const [key, label, kind] of IMPROVE) this.field(this.improved, key, label, kind);
-    this.improved.append(this.goals);
+    this.improved.before(this.goals);
     for (const [key, label, kind] of WISHES) this.field(this.wishes, key, label, kind);
     const box = html("details", { class: "lw-group" }, this.element);
     html("summary", {}, box, "Text of the task");
@@ -85,13 +90,15 @@ export class TaskForm {
     this.range.value = ranged ? "given" : String(entries["wanted.input"] ?? "");
     (this.range.querySelector("[value=given]") as HTMLOptionElement).hidden = !ranged;
     const functions = task.task === "function";
-    this.functions.hidden = !functions;
+    this.functions.hidden = this.fit.parentElement!.hidden = !functions;
+    this.fit.value = String(entries["function.fit"] ?? "");
     this.positions.hidden = this.order.parentElement!.hidden = functions;
     this.mechanism.parentElement!.hidden = ["path", "mixed", "improve"].includes(task.task);
     this.improved.hidden = task.task !== "improve";
     this.goals.replaceChildren(...goalsOf(task).map((goal) => html("li", {}, undefined, goal)));
     for (const [key, { input, unit, kind }] of this.fields) {
       const value = entries[key];
+      input.parentElement!.hidden = "function.pairs.0.0" in entries && /^function\.(of|x)/.test(key);
       fill(input, value === undefined ? "" : typeof value === "number" ? plain(value) : value);
       say(unit, kind === "angle" ? (task.angle_unit === "deg" ? "°" : "rad") : kind === "length" ? task.length_unit : "");
     }
@@ -169,8 +176,10 @@ export class TaskForm {
   }
 }
 
-/** The goals of an improvement in words, and what varies. */
+/** The goals of an improvement in words, and what varies; the pairs of a function. */
 export function goalsOf({ entries }: Pick<TaskState, "entries">): string[] {
+  const pairs: string[] = [];
+  for (let k = 0; `function.pairs.${k}.0` in entries; k++) pairs.push(`${entries[`function.pairs.${k}.0`]} → ${entries[`function.pairs.${k}.1`]}`);
   const goals = new Map<string, Record<string, string>>();
   for (const [key, value] of Object.entries(entries)) {
     const found = /^improve\.goals\.(\d+)\.(\w+)(?:\.\d+)?$/.exec(key);
@@ -183,7 +192,7 @@ export function goalsOf({ entries }: Pick<TaskState, "entries">): string[] {
   const words = { target: "=", least: "≥", most: "≤", values: "=", at: "at", weight: "· weight" } as const;
   const lines = [...goals.values()].map((goal) => [goal.of ?? "?", ...Object.entries(words).flatMap(([name, word]) => (goal[name] === undefined ? [] : [`${word} ${goal[name]}`]))].join(" "));
   const varied = entries["improve.vary"];
-  return [...lines.map((line) => `Goal: ${line}`), varied === undefined ? "" : `Varied: ${varied}`].filter(Boolean);
+  return [pairs.length ? `Pairs of input and output: ${pairs.join(", ")}` : "", ...lines.map((line) => `Goal: ${line}`), varied === undefined ? "" : `Varied: ${varied}`].filter(Boolean);
 }
 
 /** What is typed: a number with comma or point, nothing, or a text that the reader refuses with its reason. */

@@ -35,6 +35,8 @@ export class TaskPage {
   private readonly improve: HTMLButtonElement;
   private readonly line: HTMLElement;
   private doing: keyof typeof DOING = "search";
+  /** Long work that was asked for, which may wait for the end of a search. */
+  private asked: { readonly id: number; readonly doing: keyof typeof DOING } | null = null;
   private readonly waiting = html("div", { class: "lw-t-waiting", role: "status", hidden: "" });
   private readonly table: DesignsTable;
   private readonly pareto: Pareto;
@@ -108,12 +110,11 @@ export class TaskPage {
         this.cognates.show(event);
         break;
       case "working":
-        this.working(event.fraction);
+        this.working(event.fraction, event.answers);
         break;
     }
     if (event.kind !== "working" && event.answers !== null) {
       this.waiting.hidden = true;
-      this.doing = "search";
     }
     this.shell.told(event);
   }
@@ -127,9 +128,8 @@ export class TaskPage {
   /** Ask for long work. */
   private work(doing: keyof typeof DOING, request: LiveRequest | null): void {
     if (!request) return;
-    this.ask(request);
-    this.doing = doing;
-    this.working(0);
+    this.asked = { id: this.shell.ask(request), doing };
+    if (this.waiting.hidden) this.working(0, this.asked.id);
   }
 
   private ask(request: LiveRequest): void {
@@ -137,7 +137,7 @@ export class TaskPage {
   }
 
   private state(task: TaskState): void {
-    if (this.task?.file !== task.file) this.another();
+    if (this.task?.file !== task.file) this.another(task);
     declareKeys("Task", this.commands);
     this.task = task;
     this.shell.bar.show(task);
@@ -149,8 +149,11 @@ export class TaskPage {
     this.count();
   }
 
-  private another(): void {
+  private another(task: TaskState): void {
     this.solved = this.design = null;
+    this.table.show(task, null);
+    this.pareto.show(task, []);
+    this.describe();
     this.canvas.solve(null);
     this.player.show(null);
     this.cognates.show(null);
@@ -191,7 +194,7 @@ export class TaskPage {
     this.player.show(null);
     this.describe();
     this.stale(false);
-    const lines = event.problems.map(({ line, key, message }) => [line === null ? "" : `line ${line}, `, key, " ", message].join(""));
+    const lines = event.problems.map(({ line, key, message }) => [[line === null ? "" : `line ${line}`, key].filter(Boolean).join(", "), message].filter(Boolean).join(": "));
     const text = [event.message, ...lines.slice(0, 3)].join(" ");
     const choices: [string, string, () => void][] = event.ended ? [["Solve", "Search for designs again", () => this.ask({ kind: "solve_task" })]] : [];
     this.shell.notices.open(text, choices);
@@ -204,8 +207,10 @@ export class TaskPage {
   }
 
   /** A search that takes long has a button to end it. */
-  private working(fraction: number): void {
-    if (this.waiting.hidden) {
+  private working(fraction: number, answers: number | null): void {
+    const doing = this.asked?.id === answers ? this.asked.doing : "search";
+    if (this.waiting.hidden || doing !== this.doing) {
+      this.doing = doing;
       this.waiting.replaceChildren();
       html("span", {}, this.waiting);
       const { task } = this;
@@ -242,14 +247,16 @@ export class TaskPage {
     const design = this.design?.design;
     this.chosen.hidden = !design;
     if (!design) return;
-    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${design.reason ? `. ${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : ""}`);
+    const doubt = design.reason ? `${design.reason.slice(0, 1).toUpperCase()}${design.reason.slice(1)}` : design.remark;
+    say(this.line, `${called(design)}: ${inOneLine(design, this.task!)}${doubt && `. ${doubt}`}`);
     this.chosen.classList.toggle("lw-t-refused", !design.sound);
     this.improve.hidden = !PATHS.includes(this.task!.task);
   }
 
   private count(): void {
-    const { task, solved } = this;
+    const { task } = this;
     if (!task) return;
+    const solved = this.root.classList.contains("lw-t-stale") ? null : this.solved;
     const word = KINDS[task.task];
     const count = task.positions.length;
     const given = task.task === "improve" && !count ? "goals of a mechanism" : word ? `${count} ${word}${count === 1 ? "" : "s"}` : "function";

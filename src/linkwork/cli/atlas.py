@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import click
 
 from linkwork.api.path_atlas import NearPath, PathAtlas
 from linkwork.cli.options import debug_option, json_option
+from linkwork.cli.output_file import check_outputs
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
 from linkwork.design.synthesis.curve_file import read_curve
@@ -20,14 +22,16 @@ from linkwork.textfile.writer import save
 
 __all__ = ["atlas"]
 
-_SHOWN = 10
+_SHOWN = 20
+_OWN = re.compile(r"near-\d+\.toml")
 
 
 @click.command
 @click.argument("sources", metavar="CURVE", nargs=-1)
 @click.option("-o", "--output", metavar="PATH", help="Folder for mechanisms; with --index a file.")
 @click.option("--atlas", "file", metavar="FILE", help="Another atlas than the shipped one.")
-@click.option("--count", type=int, default=100, show_default=True, help="Mechanisms to find.")
+@click.option("--count", type=int, help="Mechanisms to find. Default: 100.")
+@click.option("--fresh", is_flag=True, help="Replace the mechanisms of an earlier search.")
 @click.option("--index", is_flag=True, help="Make an atlas of the stores of studies.")
 @json_option
 @debug_option
@@ -35,7 +39,8 @@ def atlas(
     sources: tuple[str, ...],
     output: str | None,
     file: str | None,
-    count: int,
+    count: int | None,
+    fresh: bool,
     index: bool,
     as_json: bool,
 ) -> None:
@@ -52,19 +57,23 @@ def atlas(
       linkwork atlas curve.csv --atlas mine.npz
     """
     if index:
+        if fresh or (file, count) != (None, None):
+            raise InputError("--index makes an atlas: leave out --atlas, --count and --fresh")
         _index(sources, output, as_json)
         return
     if len(sources) != 1:
         raise InputError("give one curve:\n    linkwork atlas curve.csv")
     curve = read_curve({"file": sources[0]}, None)
-    if output is not None:
-        _check_new(as_path(output))
+    earlier = [] if output is None else _earlier(as_path(output), fresh)
     with progress("comparing paths"):
         asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
-        found = asked.nearest(curve.points, count)
+        found = asked.nearest(curve.points, 100 if count is None else count)
     files: list[str] = []
     if output is not None:
         files = _write(found, as_path(output))
+        for path in earlier:
+            if str(path) not in files:
+                path.unlink(missing_ok=True)
     if as_json:
         print_json({"paths": len(asked), "nearest": [_data(n, files) for n in found]})
         return
@@ -79,6 +88,7 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
         raise InputError(
             "--index needs stores and a file:\n    linkwork atlas --index four-bar.zarr -o mine.npz"
         )
+    check_outputs("-", output)
     with progress("reading paths") as tell:
         made = PathAtlas.of_stores(stores, tell)
     made.save(output)
@@ -102,10 +112,17 @@ def _write(found: tuple[NearPath, ...], folder: Path) -> list[str]:
     return files
 
 
-def _check_new(folder: Path) -> None:
+def _earlier(folder: Path, fresh: bool) -> list[Path]:
+    """The files of an earlier search that will be replaced."""
     check_place(folder)
-    if folder.exists() and any(folder.iterdir()):
-        raise InputError(f'"{folder}" is not empty: name a new folder')
+    there = sorted(folder.iterdir()) if folder.exists() else []
+    for path in there:
+        if not (fresh and _OWN.fullmatch(path.name) and path.is_file()):
+            raise InputError(
+                f'the folder "{folder}" is not empty: it holds "{path.name}"; name a new folder, '
+                "or replace earlier mechanisms with --fresh"
+            )
+    return there
 
 
 def _data(near: NearPath, files: list[str]) -> dict[str, object]:

@@ -92,10 +92,9 @@ def _design_lines(found: Synthesis) -> list[str]:
         *(column(f"goal {k}", misses) for k, misses in enumerate(front.values(), start=1)),
     ]
     if not front:
-        columns += [
-            Column(header="mechanism", cells=[design.mechanism for design in designs]),
-            Column(header="driven at", cells=[design.driven for design in designs]),
-        ]
+        columns.append(Column(header="mechanism", cells=[d.mechanism for d in designs]))
+        if not found.starts:  # fits are all driven at one link
+            columns.append(Column(header="driven at", cells=[d.driven for d in designs]))
     columns += [
         column(f"transmission [{task.angle.value}]", [design.transmission for design in designs]),
         column(f"size [{task.length}]", [design.size for design in designs]),

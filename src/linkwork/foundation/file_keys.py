@@ -128,9 +128,9 @@ class Several:
 
 @dataclass(frozen=True)
 class Either:
-    """A text, or a list or table; ``wanted`` says so in a message."""
+    """A text or number, or a list or table; ``wanted`` says so in a message."""
 
-    text: Text
+    plain: Text | PlainNumber
     other: ListOf | Table
     wanted: str
 

@@ -106,8 +106,8 @@ def _schema(kind: Kind) -> dict[str, Any]:
             return {"type": "integer", "minimum": least, "maximum": most}
         case Several(values, table):
             return {"anyOf": [{"type": "number"}, _schema(values), _fields(table.keys)]}
-        case Either(text, other):
-            return {"anyOf": [_schema(text), _schema(other)]}
+        case Either(plain, other):
+            return {"anyOf": [_schema(plain), _schema(other)]}
         case Formula(equation):
             return {"$ref": "#/$defs/equation" if equation else "#/$defs/formula"}
         case Speed():

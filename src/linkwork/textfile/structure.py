@@ -148,7 +148,10 @@ class Structure:
         other = dict if isinstance(kind.other, Table) else list
         if isinstance(entry, other):
             return self._value(entry, kind.other, path)
-        if not isinstance(entry, str) or (kind.text.words and entry not in kind.text.words):
+        if isinstance(kind.plain, PlainNumber) and isinstance(entry, int | float):
+            return self._value(entry, kind.plain, path)
+        words = kind.plain.words if isinstance(kind.plain, Text) else None
+        if words is None or not isinstance(entry, str) or (words and entry not in words):
             self._wrong(path, f"must be {kind.wanted}, got {_shown(entry)}")
         return entry
 

@@ -167,7 +167,9 @@ def test_stores_that_are_unfinished_damaged_or_gone_are_named(tmp_path: Path) ->
     assert (len(again.families[0]), again.unfinished) == (whole, ())
     changed = next((store / "P.x").rglob("c/0/*"))
     changed.write_bytes(changed.read_bytes()[:-1])
-    with pytest.raises(lw.InputError, match=r"1 chunks of .* are damaged: repeat the command of"):
+    with pytest.raises(
+        lw.InputError, match=r'damaged chunks of ".*few.zarr": 1; repeat the command of'
+    ):
         atlas_of_stores([store])
     with pytest.raises(lw.InputError, match=r'there is no ".*gone.zarr"'):
         atlas_of_stores([tmp_path / "gone.zarr"])
@@ -190,7 +192,29 @@ def test_the_command_writes_mechanisms_placed_on_the_curve(tmp_path: Path) -> No
         assert np.abs(path[:, None] - z).min(axis=1).max() < 5.0
     again = CliRunner().invoke(linkwork, arguments)
     assert again.exit_code == 2
-    assert "not empty: name a new folder" in again.stderr
+    assert 'it holds "near-1.toml"' in " ".join(again.stderr.split())
+    fewer = [*arguments[:3], "2", *arguments[4:], "--fresh"]
+    assert CliRunner().invoke(linkwork, fewer).exit_code == 0
+    assert sorted(path.name for path in folder.iterdir()) == ["near-1.toml", "near-2.toml"]
+    (folder / "notes.txt").write_text("mine")
+    kept = CliRunner().invoke(linkwork, fewer)
+    assert 'it holds "notes.txt"' in " ".join(kept.stderr.split())
+    shown = CliRunner().invoke(linkwork, ["atlas", str(curve), "--count", "21"])
+    assert "\n  20 " in shown.stdout
+    assert "and 1 more" in shown.stdout
+
+
+@pytest.mark.parametrize(
+    ("more", "told"), [((), "it is a folder"), (("--count", "3"), "leave out --atlas, --count")]
+)
+def test_an_index_is_refused_before_stores_are_read(
+    tmp_path: Path, more: tuple[str, ...], told: str
+) -> None:
+    done = CliRunner().invoke(
+        linkwork, ["atlas", "--index", "gone.zarr", "-o", str(tmp_path), *more]
+    )
+    assert done.exit_code == 2
+    assert told in " ".join(done.stderr.split())
 
 
 def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,9 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.six_bars import watt_six_bars
+from linkwork.design.synthesis.travel import Range
+from linkwork.design.synthesis.watt_design import WattDesign
+from linkwork.design.synthesis.watt_linkage import driven_range
 from linkwork.design.synthesis.watt_synthesis import _nine_pairs
 from linkwork.numerics.homotopy.monodromy import Member
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
@@ -80,6 +84,13 @@ def test_pairs_without_start_angles_have_level_pivots_or_those_given() -> None:
     assert level.points["A0"] == 0
     assert level.points["B0"] == pytest.approx(1.0)
     assert level.points["C0"].imag == pytest.approx(0.0, abs=1e-12)
+    # a whole turn goes the way of the pairs
+    assert isinstance(level, WattDesign)
+    wishes = replace(level.wishes, range=Range(turn=True))
+    for sense in (1.0, -1.0):
+        group = replace(level.group, inputs=sense * level.group.inputs)
+        first, last = driven_range(group, level.index, wishes)
+        assert last - first == pytest.approx(sense * 2.0 * np.pi)
     pivots = [[10.0, 5.0], [70.0, -20.0], [90.0, 60.0]]
     task = lw.Task.function(pairs, mechanism="watt-ii", given={"fixed_pivots": pivots})
     (design,) = task.solve().delivered

@@ -16,6 +16,7 @@ from linkwork.design.improvement.coupler_curves import (
 )
 from linkwork.design.improvement.curve_constraints import CurveConstraints
 from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.design.synthesis.advice import remarks_on
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.curve_synthesis import curve_goal_of
 from linkwork.design.synthesis.solving import wishes_of
@@ -121,6 +122,14 @@ def test_unknown_and_contradicting_settings_are_refused() -> None:
             _timed(improve=own)
     with pytest.raises(MechanismError, match="hold no number"):
         _timed(improve={"bounds": {"A B": [3, 2]}})
+    with pytest.raises(MechanismError, match="must allow lengths above 0, got -3 to -2"):
+        _timed(improve={"bounds": {"A B": [-3, -2]}})
+    with pytest.raises(MechanismError, match=r"A0.x.  is given in .given. already"):
+        _timed(given={"fixed_pivots": [(0, 0)]}, improve={"bounds": {"A0.x": [1, 2]}})
+    with pytest.raises(MechanismError, match=r"^1 problem .*\n.*2\].input  is that of position 1"):
+        lw.Task.path(_EIGHTEEN, inputs=[0.0, 0.0, *range(10, 26)])
+    with pytest.raises(MechanismError, match=r"^1 problem .*\n.*out of reach"):
+        lw.Task.path(_EIGHTEEN, wanted={"lengths": {"most": 0.02}})
 
 
 @pytest.mark.parametrize("kind", [FourBarCurves, SliderCrankCurves])
@@ -251,3 +260,47 @@ def test_a_repeated_first_point_of_a_closed_curve_counts_once(tmp_path: Path, ti
     assert len(solved("0.5,1.1,360", "open").designs[0].inputs) == 19
     if timing == "as given":
         assert len(solved("0.5,1.1,350").designs[0].inputs) == 19
+
+
+def _arch(**tables: Any) -> lw.Synthesis:
+    """Twelve points of an arch, 500 by 120: slender four-bars grow without bound on it."""
+    turn = np.linspace(0.0, np.pi, 12)
+    points = [(250.0 - 250.0 * np.cos(a), 120.0 * np.sin(a) ** 0.8) for a in turn]
+    task = {"mechanism": "four-bar", "improve": {"starts": 200}, "rank": {"deliver": 40}, **tables}
+    return lw.Task.path(points, **task).solve()
+
+
+def test_links_of_a_fit_have_a_usual_bound_until_the_task_has_its_own() -> None:
+    usual = _arch()
+    bound = 12.0 * 260.7  # largest distance from the mean point
+    assert 1000.0 < max(design.size for design in usual.designs) <= bound
+    assert "lengths up to 3128 mm unless [wanted] bounds them" in usual.message
+    for tables in (
+        {"rank": {"by": {"error": 1}}},
+        {"wanted": {"lengths": {"most": 8000.0}}},
+        {"improve": {"starts": 200, "bounds": {"A B": [10.0, 8000.0]}}},
+    ):
+        assert max(design.size for design in _arch(**tables).designs) > 1.5 * bound
+    far = _arch(given={"fixed_pivots": [(6000.0, 0.0)]})
+    assert any(design.size > bound for design in far.designs)
+
+
+def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
+    points = [
+        (150 * np.cos(a) + 20 * np.cos(2 * a), 70 * np.sin(a) + 15 * np.sin(2 * a)) for a in turn
+    ]
+    found = lw.Task.path(points, mechanism="four-bar", improve={"starts": 60}).solve()
+    ending = sum(design.size > 0.999 * 2040.0 for design in found.delivered)
+    *_, first, kin, _ = remarks_on(found)
+    assert ending
+    assert first == (
+        f"Delivered designs with a longest link at the usual bound, 2040 mm: {ending}. [wanted] "
+        "lengths = { most = … } refuses them."
+    )
+    assert kin.startswith("Cognates draw one curve with different links: designs 1 and 2")
+    one, other = (
+        lw.api.Mechanism(design.linkage).sweep(certify=False).trace("P")
+        for design in found.of_loops[:2]
+    )
+    assert np.abs(one[:, None] - other).min(axis=1).max() < 5.0

@@ -10,10 +10,13 @@ from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
 from linkwork.design.synthesis.function_synthesis import freudenstein
+from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.structural_error import (
     rocker_errors,
     slider_errors,
 )
+from linkwork.design.synthesis.travel import Range
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
 
@@ -345,3 +348,117 @@ def test_given_pivots_set_the_scale() -> None:
     assert position.links is not None
     radius = np.hypot(position.points["A"][0] - 10, position.points["A"][1] - 20)
     assert radius == pytest.approx(65.2585741, abs=1e-7)
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+@pytest.mark.parametrize(
+    ("mechanism", "wanted"),
+    [
+        ("four-bar", {"transmission": {"least": 40.0}}),
+        ("four-bar", {"lengths": {"least": 0.75, "most": 1.3, "ratio": 1.6}}),
+        # beyond the range of the formula, where the best fit has a dead point
+        ("four-bar", {"input": {"from": 30.0, "to": 125.0}}),
+        ("slider-crank", {"transmission": {"least": 40.0}}),
+    ],
+)
+def test_fits_hold_the_wishes_that_the_best_fit_breaks(
+    mechanism: str, wanted: dict[str, Any], fit: str
+) -> None:
+    task = {**_LOGARITHM, "mechanism": mechanism, "fit": fit}
+    free = lw.Task.function("log10(x)", **task).solve()
+    found = lw.Task.function("log10(x)", wanted=wanted, **task).solve()
+    (design,) = found.delivered
+    assert free.delivered[0].error < design.error < 6.0 * free.delivered[0].error
+    assert design.transmission >= wanted.get("transmission", {}).get("least", 0.0)
+
+
+def test_a_wanted_range_is_measured_like_the_input_of_a_crank_that_points_back() -> None:
+    wanted = {"input": {"from": -40.0, "to": 65.0}}
+    task = {"x": (0, 1), "input": (-32, 60), "output": (200, 260), "mechanism": "four-bar"}
+    (design,) = _designs(lw.Task.function("x^2", wanted=wanted, **task))
+    assert design.sweep().inputs["crank"][[0, -1]] == pytest.approx([-40.0, 65.0])
+
+
+@pytest.mark.parametrize("slides", [False, True])
+@pytest.mark.parametrize("asked", [None, Range(start=0.5, stop=1.5), Range(turn=True)])
+def test_wishes_of_fits_have_the_derivatives_of_their_differences(
+    slides: bool, asked: Range | None
+) -> None:
+    wishes = Wishes(range=asked, transmission=1.5, shortest=4.0, longest=0.1, ratio=1.01)
+    held = FunctionWishes(wishes, np.array([0.0, 1.0]), 1.3, slides, 1)
+    x, lane = np.array([[-0.9, -0.4, 1.7, 0.3, 0.2]]), np.zeros(1, dtype=np.intp)
+    h, by_x = held.broken(x, lane)
+    assert (h > 0.0).sum() > 4
+    for k in range(5):
+        step = 1e-6 * np.eye(5)[k]
+        difference = (held.broken(x + step, lane)[0] - held.broken(x - step, lane)[0]) / 2e-6
+        assert by_x[:, :, k] == pytest.approx(difference, abs=1e-7)
+
+
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
+def test_a_formula_whose_ranges_begin_anywhere_is_met_at_five_points(mechanism: str) -> None:
+    spans = {"x": (1, 2), "input": 60, "output": 50, "mechanism": mechanism}
+    found = lw.Task.function("log10(x)", **spans).solve()
+    assert (found.complex, found.real) == (3, 1)
+    (design,) = found.delivered
+    share = 0.5 - 0.5 * np.cos((2 * np.arange(1, 6) - 1) * np.pi / 10)
+    bar, output = lw.api.Mechanism(design.linkage), {"four-bar": "rocker", "slider-crank": "slide"}
+    values = np.array([bar.solve(at=float(a))[output[mechanism]] for a in design.inputs])
+    assert np.diff(design.inputs) == pytest.approx(60.0 * np.diff(share), abs=1e-9)
+    assert np.diff(values) == pytest.approx(50.0 * np.diff(np.log2(1.0 + share)), abs=1e-6)
+    fitted = lw.Task.function("log10(x)", fit="minimax", **spans).solve()
+    assert min(d.error for d in fitted.delivered) < 0.01
+    sizes = np.sort([d.size for d in fitted.designs])
+    assert (np.diff(sizes) > 1e-3 * sizes[:-1]).all()  # ends in one valley count once
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        ({"input": 60, "output": (0, 90)}, "has no start, unlike the other one"),
+        ({"input": 60, "output": 90, "mechanism": "watt-ii"}, "must be a range with its start"),
+        (
+            {"input": 60, "output": 90, "positions": 6},
+            "6 precision points leave no four-bar with f",
+        ),
+        (
+            {"input": 60, "output": 90, "wanted": {"input": {"from": 0, "to": 50}}},
+            "spans 50, but the given inputs span 60",
+        ),
+        (
+            {**_LOGARITHM, "fit": "minimax", "wanted": {"input": {"from": 50, "to": 100}}},
+            "spans 50, but the given inputs span 60",
+        ),
+        ({**_LOGARITHM, "input": (0, 400)}, "input  spans inputs of more than a turn, 360"),
+        ({**_LOGARITHM, "wanted": {"lengths": {"least": 50}}}, "exclude the ground, which is 1 l"),
+    ],
+)
+def test_ranges_and_wishes_that_no_loop_has_are_refused(
+    tables: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(MechanismError, match=message):
+        lw.Task.function("log10(x)", **{"x": (1, 2), "mechanism": "four-bar", **tables})
+
+
+def test_a_function_with_a_pole_in_its_range_is_refused() -> None:
+    with pytest.raises(MechanismError, match=r"of  jumps by 943.5 near x = 1.567"):
+        lw.Task.function("tan(x)", **{**_LOGARITHM, "x": (1, 2)})
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "ends", "output"),
+    [
+        ("four-bar", (-32, 60), (200, 260)),
+        ("four-bar", (300, 390), (170, 200)),
+        ("slider-crank", (500, 590), (20, 80)),
+    ],
+)
+def test_the_structural_error_holds_in_whatever_turn_angles_are_counted(
+    mechanism: str, ends: tuple[float, float], output: tuple[float, float]
+) -> None:
+    task = {"x": (0, 1), "input": ends, "output": output, "mechanism": mechanism}
+    found = lw.Task.function("x^2", fit="minimax", **task).solve()
+    motion = lw.api.Mechanism(found.delivered[0].linkage).sweep(certify=False)
+    assert motion.inputs["crank"][[0, -1]] == pytest.approx(ends)
+    error = np.abs(motion["structural_error"]).max()
+    assert error == pytest.approx(found.delivered[0].error, rel=2e-3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.design.synthesis.advice import remarks_on
 
 _PROBLEM_3 = [
     (0.25, 0.0), (0.52, 0.10), (0.80, 0.70), (1.20, 1.00), (1.40, 1.30), (1.10, 1.48),
@@ -33,6 +35,7 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
     assert sorted(map(str, pivots)) == sorted(
         map(str, ({expected[0], expected[1]}, {expected[2], expected[1]}))
     )
+    assert remarks_on(found)[-1].startswith("Cognates draw one curve with different links: desig")
 
 
 def test_five_points_with_given_pivots_are_solved_and_judged() -> None:
@@ -170,6 +173,20 @@ def test_many_points_are_met_within_their_tolerance_or_refused() -> None:
     assert refused
     assert "tolerance 0.9 mm" in refused[0].defects[0].message
     assert bound.costliest == ("the tolerances", len(refused))
+
+
+def test_samples_are_drawn_until_enough_designs_are_sound() -> None:
+    points = [(250.0, 0.0), (520.0, 100.0), (800.0, 700.0), (1200.0, 1000.0), (1400.0, 1300.0)]
+    first = lw.Task.path(points, order="as given", rank={"deliver": 1}).solve()
+    assert "8 tasks" in first.message
+    more = lw.Task.path(points, order="as given", rank={"deliver": 4}).solve()
+    assert len(first.delivered) == 1 < len(more.delivered) == 4
+    assert re.search(r"(16|24|32|40|48|56|64) tasks", more.message)
+    # none turns fully with so good a transmission angle: all samples are drawn, and no more
+    wanted = {"order": "as given", "input": "turns fully", "transmission": {"least": 80}}
+    none = lw.Task.path(points, wanted=wanted).solve()
+    assert not none.delivered
+    assert re.search(r"(16|64) tasks", none.message)  # 16 without Numba
 
 
 @pytest.mark.extended

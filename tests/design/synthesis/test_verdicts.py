@@ -162,6 +162,9 @@ def test_the_driven_range_turns_or_ends_as_wanted() -> None:
     turn = judge(given, Drive.A0, Wishes(range=Range(turn=True)))
     assert turn.sound[0]
     assert turn.travel.last[0] - turn.travel.first[0] == pytest.approx(2.0 * np.pi)
+    # in the direction in which the positions are passed
+    back = judge(_crank_rocker([100.0, 60.0, 10.0]), Drive.A0, Wishes(range=Range(turn=True)))
+    assert back.travel.last[0] - back.travel.first[0] == pytest.approx(-2.0 * np.pi)
     rocker = judge(_crank_rocker([60.0, 90.0, 120.0]), Drive.B0, Wishes(range=Range(turn=True)))
     assert rocker.found[DefectKind.RANGE][0]
     small = judge(given, Drive.A0, Wishes(range=Range(start=0.0, stop=np.radians(80))))

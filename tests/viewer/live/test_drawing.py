@@ -41,18 +41,19 @@ class Sheet:
         before = self.page.evaluate(updates)
         act()
         self.page.wait_for_function(f"before => {updates} !== before", arg=before)
-        self.page.wait_for_timeout(100)  # the last of several answers
+        self.settle()  # after the last of several answers
 
     def settle(self) -> None:
-        """Wait until the drawing has kept its place in the window for a while."""
+        """Wait until nothing was answered and the drawing has kept its place for a while."""
         self.page.evaluate(
             """() => new Promise((resolve) => {
               let [last, frames] = ["", 0];
               const look = () => {
                 const { a, d, e, f } = document.querySelector(".lw-drawing").getScreenCTM();
-                const now = [a, d, e, f].join();
+                const { updates } = document.getElementById("linkwork").dataset;
+                const now = [a, d, e, f, updates].join();
                 [last, frames] = [now, now === last ? frames + 1 : 0];
-                if (frames < 20) requestAnimationFrame(look);
+                if (frames < 12) requestAnimationFrame(look);
                 else resolve();
               };
               look();
@@ -87,6 +88,7 @@ class Sheet:
     def key(self, key: str) -> None:
         self.actions += 1
         self.page.keyboard.press(key)
+        self.settle()  # a longer or shorter hint leaves the drawing another height
 
     @property
     def mechanism(self) -> lw.Mechanism:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -147,6 +148,39 @@ def test_a_task_that_improves_shows_its_mechanism_before_the_search_ends(tmp_pat
     bench.handle(do.OpenDesign(design=0))
     motion = lw.loads(bench.text).sweep()
     assert np.ptp(motion["d"]) == pytest.approx(70, abs=0.01)  # of the rows; turning points between
+
+
+def test_a_point_that_the_mechanism_does_not_have_is_told_and_can_be_corrected(
+    tmp_path: Path,
+) -> None:
+    goals = IMPROVE.index("[[improve.goals]]")
+    bench = opened(tmp_path, IMPROVE[:goals] + 'point = "Q"\n\n' + IMPROVE[goals:], solve_task)
+    unsolved = next(event for event in bench.opened() if isinstance(event, tell.TaskUnsolved))
+    assert [problem.key for problem in unsolved.problems] == ["improve.point"]
+    events = bench.handle(do.SetTaskEntry(key="improve.point", value="B"))
+    assert suggested(events).designs[0].origin == "as given"
+
+
+def test_work_that_waits_for_a_search_is_not_told_as_the_search(
+    tmp_path: Path, serve: Callable[[Bench], LiveServer], watched: Callable[..., Any]
+) -> None:
+    done = threading.Event()
+
+    def solve(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+        assert progress is not None
+        while not done.wait(0.05):
+            progress(0.5)
+        return unsolved(task)
+
+    server = serve(opened(tmp_path, CURVE, solve))
+    page = watched((f"http://127.0.0.1:{server.port}/",))
+    page.goto(server.address)
+    told = page.locator(".lw-t-waiting")
+    told.get_by_text("Searching for designs: 50 %").wait_for()
+    page.get_by_role("button", name="Nearest in the atlas").click()
+    assert told.get_by_text("Searching for designs: 50 %").is_visible()
+    done.set()
+    page.locator(".lw-t-designs tbody tr").first.wait_for()
 
 
 def test_wrong_questions_are_refused_and_change_nothing(tmp_path: Path) -> None:

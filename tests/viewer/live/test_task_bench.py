@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,15 +12,18 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.six_bars import watt_six_bars
+from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.answers import GivenUpError, Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.opened_file import NoSign
+from linkwork.viewer.live.session import Desk
 from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template, template_names
@@ -109,9 +113,10 @@ def test_a_dragged_point_changes_its_numbers_and_is_one_step_of_the_history(tmp_
     assert bench.text == before
 
 
-@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
+@pytest.mark.parametrize("mechanism", [*MECHANISMS, *GUIDED])
 def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanism: str) -> None:
-    bench = opened(tmp_path, "four-poses")
+    bench = opened(tmp_path, "three-poses" if mechanism in GUIDED else "four-poses")
+    bench.handle(do.SetTaskEntry(key="wanted", value=None))
     events = bench.handle(do.SetTaskEntry(key="mechanism", value=mechanism))
     found = solved(events).chosen
     assert found is not None
@@ -124,11 +129,18 @@ def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanis
     passed = (1 - share) * rows[below] + share * rows[below + 1]
     assert np.abs(passed - at).max() < 1e-3 * np.ptp(rows)
     assert np.abs(at[:, 4:] - positions(bench)).max() < 1e-9 * np.ptp(rows)
-    if found.line is not None:  # the line of the coupler passes B0 in every row
-        a, b = rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3]
-        along = (b - a) / abs(b - a) * np.exp(1j * found.line)
-        off = (complex(*found.fixed[1]) - b) * along.conj()
-        assert np.abs(off.imag).max() < 1e-9 * np.ptp(rows)
+    # each joint keeps its distance from a fixed pivot, slides on a fixed line, or a line through
+    # it passes the pivot
+    joints = rows[:, 0:4:2] + 1j * rows[:, 1:4:2]
+    coupler = (joints[:, 1] - joints[:, 0]) / abs(joints[:, 1] - joints[:, 0])
+    for joint, held, line in zip(joints.T, found.fixed, found.lines, strict=True):
+        start, *others = (complex(*place) for place in held)
+        off = np.abs(joint - start) - abs(joint[0] - start)
+        if others:
+            off = ((joint - start) * np.conj(others[0] - start)).imag / abs(others[0] - start)
+        elif line is not None:
+            off = ((start - joint) * (coupler * np.exp(1j * line)).conj()).imag
+        assert np.abs(off).max() < 1e-9 * np.ptp(rows)
 
 
 def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
@@ -142,13 +154,38 @@ def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:
     assert len(shown.at) == 5
 
 
+def test_doubtful_designs_have_a_remark_and_a_task_without_sound_ones_advice(
+    tmp_path: Path,
+) -> None:
+    head = 'format = 1\ntask = "motion"\nmechanism = "four-bar"\n'
+    poses = [(45, 81, 33), (-12, 93, 40.2), (-24, 40, 17.9), (35, 2, -6), (80, 27, 6.8)]
+    row = "[[positions]]\npoint = [{}, {}]\nangle = {}\n"
+    text = head + "".join(row.format(*pose) for pose in poses)
+    bench = opened(tmp_path, "five-poses")
+    found = solved(bench.handle(ask.SetText(text=text)))
+    assert found.advice == ""
+    slight = [design for design in found.designs if "transmission = { least" in design.remark]
+    assert slight
+    assert all(design.transmission < 30 for design in slight if design.transmission)
+    strict = solved(
+        bench.handle(ask.SetText(text=text + "[wanted]\ntransmission = { least = 30 }\n"))
+    )
+    assert not any("transmission" in design.remark for design in strict.designs)
+    poses = [(0, 0, 90), (-400, 1100, 50), (-1300, 1500, 5)]
+    text = head + "".join(row.format(*pose) for pose in poses)
+    text += "[wanted.fixed_pivots]\ninside = [[-1500, 200], [-100, 200], [-100, 1400]]\n"
+    without = solved(bench.handle(ask.SetText(text=text)))
+    assert without.sound == 0
+    assert "enlarge the region of fixed pivots" in without.advice
+
+
 def test_a_pivot_of_four_poses_stays_on_their_curve(tmp_path: Path) -> None:
     bench = opened(tmp_path, "four-poses")
     bench.opened()
     found = solved(bench.handle(do.AddTaskPoint(of="fixed pivot", x=50, y=50)))
     assert found.chosen is not None
     (pivot,) = lw.Task.loads(bench.text).described.given.fixed_pivots
-    ends = [math.dist(pivot, fixed) for fixed in found.chosen.fixed[:2]]
+    ends = [math.dist(pivot, fixed) for (fixed,) in found.chosen.fixed]
     assert min(ends) < 1e-6
     # also when a pose is moved, which moves the curve
     moved = bench.handle(do.MoveTaskPoint(of="position", index=2, x=-112, y=120))
@@ -234,6 +271,48 @@ def test_wishes_are_written_in_one_line_and_removed(tmp_path: Path) -> None:
     assert found.sound == 0
     assert (found.costliest, found.costs) == ("the least transmission angle", 3)
     assert solved(bench.handle(do.SetTaskEntry(key="wanted.transmission.least"))).sound > 0
+
+
+def test_ends_of_ranges_and_coordinates_are_typed_one_by_one(tmp_path: Path) -> None:
+    bench = opened(tmp_path, "function")
+    for k in (0, 1):
+        bench.handle(do.SetTaskEntry(key=f"function.input.{k}", value=None))
+    assert "input" not in bench.text
+    bench.handle(do.SetTaskEntry(key="function.input.0", value=30))
+    bench.handle(do.SetTaskEntry(key="function.input.1", value=90))
+    task = lw.Task.loads(bench.text).described
+    assert task.function is not None
+    assert task.function.input == pytest.approx((30, 90))
+    poses = opened(tmp_path, "five-poses")
+    before = poses.text
+    (refused,) = poses.handle(do.SetTaskEntry(key="positions.1.point.0", value=None))
+    assert isinstance(refused, tell.Refused)
+    assert "type a number" in refused.message
+    assert poses.text == before
+
+
+def test_a_page_that_connects_during_a_search_shows_the_task_at_once(tmp_path: Path) -> None:
+    begun, finish = threading.Event(), threading.Event()
+    kinds: list[type] = []
+
+    def solve(task: Task, *, progress: Callable[[float], None] | None = None) -> Synthesis:
+        begun.set()
+        assert finish.wait(60)
+        return solve_task(task, progress=progress)
+
+    def told(events: list[tell.Event], number: int | None) -> None:
+        kinds.extend(map(type, events))
+
+    desk = Desk(opened(tmp_path, "five-poses", solve), told)
+    try:
+        desk.prepare()
+        assert begun.wait(60)
+        desk.open()
+        assert kinds.count(tell.TaskState) == 2
+        assert tell.TaskSolved not in kinds
+    finally:
+        finish.set()
+        desk.close(60)
 
 
 def test_a_search_ends_for_a_newer_change_and_is_told(tmp_path: Path) -> None:

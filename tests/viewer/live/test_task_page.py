@@ -124,6 +124,7 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     page.get_by_role("tab", name="Designs").click()
     page.get_by_text("The wish that costs most is the least transmission angle").wait_for()
     assert page.locator(".lw-t-designs tbody tr:not(.lw-t-refused)").count() == 0
+    assert_accessible(page)  # a refused design is chosen
     page.get_by_role("tab", name="Task").click()
     for _ in range(4):
         page.get_by_role("button", name="Remove position 2").click()
@@ -132,8 +133,14 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     assert page.locator(".lw-t-position[data-knob=false]").count() == 1
     page.reload()
     page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
+    x, y = page.locator(".lw-t-position[data-knob=false]").evaluate(_CENTRE)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 9, y, steps=2)
     server.stop()
     page.get_by_text("The connection is lost").wait_for()
+    page.mouse.up()  # the end of a drag does not remove the message
+    assert page.get_by_text("The connection is lost").is_visible()
     assert page.locator(".lw-task .lw-save").is_disabled()
 
 

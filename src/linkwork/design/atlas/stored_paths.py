@@ -78,7 +78,7 @@ def _entries(path: Path) -> list[Entry]:
     sound, damaged = read_entries(path)
     if damaged:
         raise InputError(
-            f'{len(damaged)} chunks of "{path}" are damaged: repeat the command of its study, '
+            f'damaged chunks of "{path}": {len(damaged)}; repeat the command of its study, '
             "which computes them again"
         )
     return [entry for _, entry in sorted(sound.items())]

@@ -41,7 +41,7 @@ _STAGES = (
 )
 _FEWEST = 12  # lanes of a stage
 _PART = 128  # lanes of one thread
-_SAME_DIMENSIONS = 0.01  # relative difference of lengths, and of unit vectors
+_SAME_DIMENSIONS = 0.05  # relative difference of lengths, and of unit vectors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.design.atlas.path_atlas import Nearest, read_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
-from linkwork.design.improvement.improving import numbers_to_vary
+from linkwork.design.improvement.improving import numbers_to_vary, point_named
 from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign
@@ -48,17 +48,17 @@ def given(task: Task) -> SuggestedDesign | None:
     ------
     MechanismError
         If the mechanism is not there, or cannot be driven as wanted.
+    UnknownNameError
+        If it does not have the point that follows the positions.
     """
     if task.kind != "improve":
         return None
     description = mechanism_of(task)
     settings = task.improvement or Improvement()
-    return _suggested(
-        Origin.GIVEN,
-        task.mechanisms[0],
-        description,
-        settings.point or next(iter(description.trace), ""),
-    )
+    point = next(iter(description.trace), "")
+    if settings.point:
+        point = point_named(model_of(description), settings.point)
+    return _suggested(Origin.GIVEN, task.mechanisms[0], description, point)
 
 
 def nearest(

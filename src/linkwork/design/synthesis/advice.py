@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
+from linkwork.design.synthesis.curve_synthesis import usual_longest
+from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
+from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
 
-__all__ = ["advice_of", "remarks_on"]
+__all__ = ["advice_of", "remark_on", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
+_AT_BOUND = 0.999  # of the longest link
 _MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
@@ -22,28 +28,51 @@ def remarks_on(found: Synthesis) -> tuple[str, ...]:
 
     A task that states a wish gets no remark about it.
     """
-    return tuple(_remarks(found))
+    counts = [(sum(map(doubt.concerns, found.delivered)), doubt) for doubt in _doubts(found.task)]
+    doubts = (
+        f"Delivered designs with {doubt.what}: {count}. {doubt.wish} refuses them."
+        for count, doubt in counts
+        if count
+    )
+    return (*doubts, *alike_among(found))
 
 
-def _remarks(found: Synthesis) -> Iterator[str]:
-    task, designs = found.task, found.delivered
+def remark_on(design: JudgedDesign) -> str:
+    """What is doubtful about a sound design, and the wish that refuses it; "" if nothing is."""
+    if design.kinds:
+        return ""
+    doubts = (doubt for doubt in _doubts(design.task) if doubt.concerns(design))
+    return " ".join(f"It has {doubt.what}: {doubt.wish} refuses it." for doubt in doubts)
+
+
+class _Doubt(NamedTuple):
+    what: str
+    wish: str
+    concerns: Callable[[JudgedDesign], bool]
+
+
+def _doubts(task: Task) -> Iterator[_Doubt]:
     wanted = task.wanted
     if not wanted.transmission:
         least = _LEAST_TRANSMISSION * task.angle.turn / 360.0
-        few = sum(design.transmission < least for design in designs)
-        if few:
-            yield (
-                f"Delivered designs with a transmission angle below {least:.4g} "
-                f"{task.angle.value}: {few}. [wanted] transmission = {{ least = {least:.4g} }} "
-                "refuses them."
-            )
+        yield _Doubt(
+            f"a transmission angle below {least:.4g} {task.angle.value}",
+            f"[wanted] transmission = {{ least = {least:.4g} }}",
+            lambda design: design.transmission < least,
+        )
     if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
-        few = sum(design.size > _MOST_RATIO * design.shortest for design in designs)
-        if few:
-            yield (
-                f"Delivered designs with a longest link over {_MOST_RATIO:g} times the shortest: "
-                f"{few}. [wanted] lengths = {{ ratio = {_MOST_RATIO:g} }} refuses them."
-            )
+        yield _Doubt(
+            f"a longest link over {_MOST_RATIO:g} times the shortest",
+            f"[wanted] lengths = {{ ratio = {_MOST_RATIO:g} }}",
+            lambda design: design.size > _MOST_RATIO * design.shortest,
+        )
+    longest = usual_longest(task) if task.kind == "path" and task.is_approximate else math.inf
+    if longest < math.inf:
+        yield _Doubt(
+            f"a longest link at the usual bound, {longest:.4g} {task.length}",
+            "[wanted] lengths = { most = … }",
+            lambda design: design.size > _AT_BOUND * longest,
+        )
 
 
 def advice_of(found: Synthesis) -> str:

@@ -18,6 +18,7 @@ from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.task_conditions import LENGTHS
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
@@ -29,6 +30,7 @@ from linkwork.foundation.sharing import cores
 __all__ = ["curve_goal_of", "solve_curve"]
 
 _STARTS = 1000
+_USUAL = 12.0  # largest distances of a point from their mean: how long links may be without a wish
 _CLOSES = 2.0  # largest steps: how near the ends of a closed curve are
 _ROUNDINGS = 16.0  # of a pivot from lengths and angles
 _SAFETY = 4.0  # more than the first order of the error of an intersection of circles
@@ -66,7 +68,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         fitted.append(fit_curve(kind, goal, starts, rng, tell, cores()))
         if not fitted[-1].finished:
             break
-    count = sum(map(len, fitted))
+    count, usual = sum(map(len, fitted)), usual_longest(task)
     return Found(
         candidates=tuple(_candidates(goal, part) for part in fitted if len(part)),
         complex=count,
@@ -74,6 +76,8 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
+        + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
+        * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
         drives=(Drive.A0,),
         starts=sum(part.starts for part in fitted),
@@ -100,7 +104,7 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         transmission=wishes.transmission,
         bounds=dict(_bounds(task, wishes)),
         shortest=wishes.shortest,
-        longest=wishes.longest,
+        longest=min(wishes.longest, usual_longest(task)),
         ratio=wishes.ratio,
         reach=wishes.reach if wishes.reach.any() else None,
     )
@@ -110,6 +114,19 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         problem = Problem(key=("improve", "bounds", INPUT), message=told)
         raise MechanismError([problem], f'task "{task.name}"')
     return goal
+
+
+def usual_longest(task: Task) -> float:
+    """The longest link of a fit whose task bounds no dimensions, but counts size [length]."""
+    wanted, given = task.wanted, task.given
+    bounded = task.improvement is not None and {*task.improvement.bounds} - {INPUT}
+    if bounded or not task.rank.size or min(wanted.longest, wanted.ratio) < math.inf:
+        return math.inf
+    points = np.array([position.point for position in task.positions])
+    away = np.array([*points, *given.fixed_pivots, *wanted.region]) - points.mean(axis=0)
+    return float(
+        max(_USUAL * np.hypot(*away.T).max(), *given.lengths.values(), 2.0 * wanted.shortest)
+    )
 
 
 def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
@@ -148,12 +165,15 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
             if entry:
                 told = 'belongs to task = "improve": leave it out'
                 raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
+    placed = ("A0.x", "A0.y", "B0.x", "B0.y")[: 2 * len(task.given.fixed_pivots)]
     for name, (low, high) in given.items():
         told = ""
         if name not in _BOUNDED:
             told = "is no dimension: these are " + ", ".join(f'"{own}"' for own in _BOUNDED)
-        elif name in task.given.lengths:
-            told = "is given in [given] lengths already: leave one out"
+        elif name in (*task.given.lengths, *placed):
+            told = "is given in [given] already: leave one out"
+        elif name in LENGTHS and high <= 0.0:
+            told = f"must allow lengths above 0, got {low:g} to {high:g}"
         if told:
             problem = Problem(key=("improve", "bounds", name), message=told)
             raise MechanismError([problem], f'task "{task.name}"')

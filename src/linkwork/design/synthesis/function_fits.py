@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwork.design.improvement.largest_miss import POWERS, largest_misses, powered
+from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.structural_error import (
     levelled,
     levels_minimise,
@@ -22,7 +23,7 @@ from linkwork.design.synthesis.structural_error import (
 )
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.numerics.lane_least_squares import Box, Residuals, minimise, starts_of
+from linkwork.numerics.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
 
 __all__ = ["FunctionFits", "fit_functions"]
 
@@ -32,7 +33,10 @@ _KEPT = 24  # lanes that minimise the largest miss
 _FAR = 1e3  # ratios of lengths
 _LEVEL = 1e-9  # relative: by which equal errors may exceed those before, to rounding
 _HARDLY = 0.01  # the sine of the least transmission angle
-_ALIKE = 1e-4  # relative: lanes that end at one fit
+_ALIKE = 0.02  # relative: lanes that end at one fit, or in one valley
+
+#: The wishes of so many lanes.
+Held = Callable[[int], FunctionWishes]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,24 +66,22 @@ class FunctionFits:
 class _Lanes:
     """Structural errors of lanes."""
 
-    def __init__(self, u: Array, v: Array, slides: bool, side: Array) -> None:
-        self.u, self.v, self.side = u, v, side
+    def __init__(self, u: Array, v: Array, slides: bool, side: Array, held: Held) -> None:
+        self.u, self.v, self.side, self.wishes = u, v, side, held(len(side))
         self.make = slider_errors if slides else rocker_errors
 
     def errors(self, x: Array, lanes: IndexArray) -> tuple[Array, Array]:
         """Errors (D, N) and their derivatives (D, N, 5)."""
         u, v = self.u + x[:, 3:4], self.v + x[:, 4:5]
-        made = self.make(u, v, self.side[lanes, None], by_input=True)
+        made = self.make(u, v, self.side[lanes, None])
         wrong, by_x = made(x[:, :3].T[:, :, None])
         return wrong, np.concatenate([by_x, np.full((*wrong.shape, 1), -1.0)], axis=2)
 
     def residuals(self, x: Array, _t: Array, lanes: IndexArray) -> Residuals:
         """Errors as rows of one number."""
         wrong, by_x = self.errors(x, lanes)
-        none = np.zeros((len(x), 0))
-        return Residuals(
-            wrong[:, :, None], by_x[:, :, None], None, none, np.zeros((*none.shape, 5))
-        )
+        broken = self.wishes.broken(x, lanes)
+        return Residuals(wrong[:, :, None], by_x[:, :, None], None, *broken)
 
 
 def fit_functions(
@@ -90,11 +92,13 @@ def fit_functions(
     slides: bool,
     minimax: bool,
     first: tuple[float, float] | None,
+    held: Held,
     progress: Callable[[float], None] | None = None,
 ) -> FunctionFits:
     """Fits of pairs (N,), (N,) from starts (D, 5) with their sides (D,).
 
     ``first``: bounds of the angle that is added to the inputs [rad]; ``None``: starts are given.
+    ``held``: the wishes that so many lanes hold.
     Fits whose loops hardly close are left out but for the best one: most are no local minima, and
     end where errors would fall on beyond the last loop that closes.
     """
@@ -104,35 +108,27 @@ def fit_functions(
     if first is not None and np.isfinite(sum(first)):
         # whole turns that bring starts nearest to their bounds
         x[:, 3] += FULL_TURN * np.round((0.5 * sum(first) - x[:, 3]) / FULL_TURN)
-    lanes = _Lanes(u, v, slides, side)
-    x = box.inside(x)
+    lanes, x = _Lanes(u, v, slides, side, held), box.inside(x)
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     if not np.isfinite(wrong).all(axis=1).any():
         none = np.zeros(0, dtype=bool)
         return FunctionFits(x=x[:0], side=side[:0], wrong=wrong[:0], closes=none, minimal=none)
     total = lanes.residuals(x, x[:, :0], np.arange(len(x))).total
     some = np.argsort(total, kind="stable")[: min(_LANES, int(np.isfinite(total).sum()))]
-    lanes, side = _Lanes(u, v, slides, side[some]), side[some]
+    lanes, side = _Lanes(u, v, slides, side[some], held), side[some]
     fit = minimise(lanes.residuals, starts_of(x[some], np.zeros((len(some), 0))), box, _STEPS)
+    for weight in lanes.wishes.weights:
+        lanes.wishes.update(fit.x, weight)
+        fit = minimise(lanes.residuals, fit, box, _POWER_STEPS)
     order = _different(fit.x, fit.total)[:_KEPT]
-    lanes, fit, side = _Lanes(u, v, slides, side[order]), fit.take(order), side[order]
+    lanes, fit, side = _Lanes(u, v, slides, side[order], held), fit.take(order), side[order]
     if minimax:
-        none = np.zeros(0, dtype=bool)
-        for k, power in enumerate(POWERS):
-            if progress is not None:
-                progress(k / len(POWERS))
-            largest = largest_misses(lanes.residuals(fit.x, fit.t, np.arange(len(fit))), none)
-
-            def raised(
-                x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
-            ) -> Residuals:
-                found = lanes.residuals(x, t, which)
-                return powered(found, power, np.maximum(scale[which], 1e-300), none)
-
-            fit = minimise(raised, fit, box, _POWER_STEPS)
+        fit = _level(lanes, fit, box, progress)
     x, minimal = fit.x.copy(), np.zeros(len(fit), dtype=bool)
     for k in range(len(fit)) if minimax else ():
-        x[k], minimal[k] = _sharpened(lanes, x[k], k, box)
+        sharp, least = _sharpened(lanes, x[k], k, box)
+        if not held(1).broken(sharp[None], np.zeros(1, dtype=np.intp))[0].any():
+            x[k], minimal[k] = sharp, least
     wrong = lanes.errors(x, np.arange(len(x)))[0]
     measure = np.abs(wrong).max(axis=1, initial=0.0) if minimax else (wrong**2).sum(axis=1)
     index = _different(x, measure)
@@ -142,6 +138,30 @@ def fit_functions(
         x=x[index], side=side[index], wrong=wrong[index], closes=closes[index],
         minimal=minimal[index],
     )  # fmt: skip
+
+
+def _level(
+    lanes: _Lanes, fit: LaneFit, box: Box, progress: Callable[[float], None] | None
+) -> LaneFit:
+    """Lanes with small largest errors, by growing powers."""
+    every = np.arange(len(fit))
+    none = np.zeros(lanes.residuals(fit.x, fit.t, every).shared.shape[1], dtype=bool)
+    powers = (*POWERS, *POWERS[-1:] * len(lanes.wishes.weights))
+    for k, power in enumerate(powers):
+        if progress is not None:
+            progress(k / len(powers))
+        largest = largest_misses(lanes.residuals(fit.x, fit.t, every), none)
+
+        def raised(
+            x: Array, t: Array, which: IndexArray, power: int = power, scale: Array = largest
+        ) -> Residuals:
+            found = lanes.residuals(x, t, which)
+            return powered(found, power, np.maximum(scale[which], 1e-300), none)
+
+        fit = minimise(raised, fit, box, _POWER_STEPS)
+        for weight in lanes.wishes.weights[-1:]:
+            lanes.wishes.update(fit.x, weight)
+    return fit
 
 
 def _box(size: float, slides: bool, first: tuple[float, float] | None) -> Box:

@@ -20,6 +20,8 @@ from linkwork.foundation.plain_numbers import as_told
 __all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 
 _VARIABLE = "x"
+_ANGLES = ("rocker",)  # outputs that are angles
+_LARGEST_STEP = 0.5  # of all values: between neighbours it is a pole
 _DENSE = 181  # points over the range for fits and structural errors
 
 Pair = tuple[float, float]
@@ -70,6 +72,8 @@ class FunctionGoal:
     input, output : (float, float), optional
         Input and output at the ends of the range. Without them, the start angles are free and pairs
         count by their differences.
+    free : tuple of str
+        Those of input and output whose range begins anywhere, as if it began at 0.
     positions : int
         Number of precision points of a formula; 0: as many as the mechanism meets.
     spacing : str
@@ -85,6 +89,7 @@ class FunctionGoal:
     pairs: tuple[Pair, ...] = ()
     input: Pair | None = None
     output: Pair | None = None
+    free: tuple[str, ...] = ()
     positions: int = 0
     spacing: str = "chebyshev"
     fit: str = ""
@@ -96,12 +101,20 @@ class FunctionGoal:
             both = "are both given" if self.of else "are both missing"
             yield ("function", "of"), f'formula and pairs {both}: give of = "…" or pairs = [[…]]'
             return
+        if self.free and (self.pairs or not self.exact.fits):
+            yield ("function", self.free[0]), "must be a range with its start: [45, 105]"
+            return
         if self.of:
             yield from self._formula_problems()
         else:
             yield from self._pair_problems()
         if self.fit and not self.exact.fits:
             yield ("function", "fit"), f"has no effect on {self.exact.mechanism}: leave it out"
+        if len(self.free) == 1:
+            yield (
+                ("function", self.free[0]),
+                "has no start, unlike the other one: give both or none",
+            )
         for key in ("input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
@@ -115,8 +128,7 @@ class FunctionGoal:
             return
         try:
             ends = [self._evaluated(number) for number in self.x or ()]
-            for number in self._x(_DENSE):
-                self._evaluated(number)
+            values = [self._evaluated(number) for number in self._x(_DENSE)]
         except ExpressionError as error:
             yield ("function", "of"), str(error)
             return
@@ -125,14 +137,22 @@ class FunctionGoal:
                 ("function", "of"),
                 f"has the value {ends[0]:g} at both ends, so that the output has no range",
             )
+        steps = np.abs(np.diff(values))
+        if steps.max() > _LARGEST_STEP * np.ptp(values) > 0.0:
+            place = self._x(_DENSE)[steps.argmax()]
+            yield (
+                ("function", "of"),
+                f"jumps by {steps.max():.4g} near x = {place:.4g}: give a range without this place",
+            )
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
-        exact, count = self.exact, self._count
-        if count > exact.fixed and not self.fit:
+        exact, count, most = self.exact, self._count, self._most
+        if count > most and not self.fit:
+            given = "free" if self.free else "given"
             yield (
                 ("function", "positions"),
-                f"{count} precision points leave no {exact.mechanism} with given start angles: "
-                f"keep {exact.told(exact.fixed)}" + self._free_starts(count),
+                f"{count} precision points leave no {exact.mechanism} with {given} start angles: "
+                f"keep {exact.told(most)}" + self._free_starts(count),
             )
         elif count < exact.least:
             yield ("function", "positions"), f"{count} given: give {exact.least} or more"
@@ -141,15 +161,14 @@ class FunctionGoal:
         """How so many points could be met."""
         if not self.exact.fixed < count <= self.exact.free:
             return ""
-        return f"; free start angles meet {count}: give pairs, without input and output"
+        return f"; free start angles meet {count}: input = 60 is a range that begins anywhere"
 
     def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         count = len(self.pairs)
         exact = self.exact
         if count < exact.least:
             yield ("function", "pairs"), f"{count} given: give {exact.least} or more"
-        fixed = self.starts_fixed
-        most = exact.fixed if fixed else exact.free
+        fixed, most = self.starts_fixed, self._most
         if count > most and not self.fit:
             yield (
                 ("function", "pairs"),
@@ -177,12 +196,17 @@ class FunctionGoal:
     @property
     def _count(self) -> int:
         """The number of precision points of a formula."""
-        return self.positions or self.exact.fixed
+        return self.positions or self._most
+
+    @property
+    def _most(self) -> int:
+        """The largest number of pairs or points."""
+        return self.exact.fixed if self.starts_fixed else self.exact.free
 
     @property
     def starts_fixed(self) -> bool:
         """Whether the start angles are given."""
-        return self.input is not None or self.output is not None
+        return not self.free and (self.input is not None or self.output is not None)
 
     def precision_points(self) -> tuple[Array, Array]:
         """Inputs and outputs (K,) of the precision points, in order."""
@@ -196,18 +220,23 @@ class FunctionGoal:
 
     def formula(self, link: str, output: str, angle: AngleUnit) -> str:
         """The structural error as a formula of the input and output links, in a file with this
-        unit of angles; "" for pairs.
+        unit of angles; "" for pairs and free starts.
         """
-        if self.pairs or self.x is None or self.input is None or self.output is None:
+        if self.pairs or self.free or self.x is None or self.input is None or self.output is None:
             return ""
         (x0, x1), (u0, u1), (v0, v1) = self.x, self.input, self.output
-        variable = f"({x0!r} + ({link} - {u0!r})*{(x1 - x0) / (u1 - u0)!r})"
+        middle, scale = 0.5 * (u0 + u1), (x1 - x0) / (u1 - u0)
+        away = f"({link} - {middle!r})"
+        if abs(u1 - u0) < angle.turn:
+            away = _within_half_a_turn(away)
+        variable = f"({x0 + (middle - u0) * scale!r} + {away}*{scale!r})"
         shown = text(
             _in_unit(self._tree, angle),
             lambda node: variable if node.name == _VARIABLE else node.name,
         )
         f0, f1 = map(self._evaluated, self.x)
-        return f"{output} - ({v0!r} + ({shown} - {f0!r})*{(v1 - v0) / (f1 - f0)!r})"
+        wrong = f"{output} - ({v0!r} + ({shown} - {f0!r})*{(v1 - v0) / (f1 - f0)!r})"
+        return _within_half_a_turn(wrong) if output in _ANGLES else wrong
 
     def _of_pairs(self) -> tuple[Array, Array]:
         inputs, outputs = np.array(self.pairs, dtype=float).T
@@ -251,6 +280,11 @@ class FunctionGoal:
     def _evaluated(self, x: float) -> float:
         # functions of x are those of mathematics: radians
         return value(self._tree, {_VARIABLE: float(x)}, AngleUnit.RADIAN, self.of)
+
+
+def _within_half_a_turn(angle: str) -> str:
+    """A formula of an angle that a motion may count in another turn."""
+    return f"atan2(sin({angle}), cos({angle}))"
 
 
 def _in_unit(node: Node, angle: AngleUnit) -> Node:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -15,8 +17,10 @@ from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
 from linkwork.design.synthesis.dyads import solve_five_poses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_fits import fit_functions
+from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
+from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
@@ -33,7 +37,9 @@ _SHARES = (0.067, 0.15, 0.25, 0.0)  # of the range, before the first point of a 
 _FIRSTS, _MIDDLES = (0.0, 0.067, 0.15, 0.25, 0.35), (0.4, 0.5, 0.6)
 
 
-def solve_function(task: Task, progress: Callable[[float], None] | None = None) -> Found:
+def solve_function(
+    task: Task, wishes: Wishes, progress: Callable[[float], None] | None = None
+) -> Found:
     """All designs, or a sample of the family, for a function task."""
     goal = task.function
     assert goal is not None, "a task of functions has one"
@@ -44,7 +50,7 @@ def solve_function(task: Task, progress: Callable[[float], None] | None = None) 
     if not goal.starts_fixed:
         u, v = u - u[:, :1], v - v[:, :1]
     if goal.fit:
-        return _fitted(task, u[0], v[0], slides, progress)
+        return _fitted(task, wishes, u[0], v[0], slides, progress)
     if goal.starts_fixed:
         made, determined = _through_three(u, v, slides)
         zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
@@ -204,6 +210,7 @@ def _through_four(task: Task, u: Array, v: Array, slides: bool) -> Found:
 
 def _fitted(
     task: Task,
+    wishes: Wishes,
     u: Array,
     v: Array,
     slides: bool,
@@ -221,6 +228,9 @@ def _fitted(
     ]
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
+    size, pivots = float(np.ptp(v)), task.given.fixed_pivots
+    if not slides:
+        size = math.dist(*pivots) if len(pivots) > 1 else 1.0
     fits = fit_functions(
         u,
         v,
@@ -228,6 +238,7 @@ def _fitted(
         slides=slides,
         minimax=goal.fit == "minimax",
         first=first,
+        held=partial(FunctionWishes, wishes, u, size, slides),
         progress=progress,
     )
     made: list[Candidates] = []

@@ -110,9 +110,12 @@ class Design:
             if abs(away) > _ON_LINE * abs(points["B"] - points["A"]):
                 points["C"] = points["A"] + 1j * away * line
         if drive.turns:
-            # measured as the file measures it, and in the first turn to begin with
+            # measured as the file measures it, in the first turn to begin with or as the task does
             shift = np.pi if drive in backward else 0.0
-            shift -= 2.0 * np.pi * np.floor((ends[0] + shift) / (2.0 * np.pi) + _SAME_TURN)
+            turns = np.floor((ends[0] + shift) / FULL_TURN + _SAME_TURN)
+            if zero is not None and drive is Drive.A0:
+                turns = np.round((inputs[0] + shift - zero[0]) / FULL_TURN)
+            shift -= FULL_TURN * turns
             inputs, ends = inputs + shift, ends + shift
         return cls(
             kind=given.kind,

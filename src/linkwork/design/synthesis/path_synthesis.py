@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib.util import find_spec
+from itertools import islice
 
 import numpy as np
 
@@ -28,24 +30,34 @@ from linkwork.foundation.errors import MechanismError, Problem
 
 __all__ = ["solve_path"]
 
-_SAMPLES = 8  # tasks, where conditions are missing,
-_NEAR = 16  # and those within tolerances
+_SAMPLES = 8  # tasks at once, where conditions are missing,
+_MOST = 64  # and at most so many while fewer designs are sound than are to be delivered
+_PATHS, _SLOW_PATHS = 4000, 500  # followed before the last ones, with Numba and without: a second
+_NEAR = 16  # tasks within tolerances
 _SEED = 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Near:
-    """Positions within the tolerances, tasks with eight conditions that contain them, and what
-    solves these.
+    """Positions within the tolerances, tasks with eight conditions that contain them, what solves
+    these, and further tasks where conditions are drawn.
     """
 
     given: PrecisionPositions
     tasks: tuple[PrecisionPositions, ...]
+    further: Iterator[PrecisionPositions]
     solved: list[PrecisionFourBars] = field(default_factory=list)
 
 
-def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> Found:
+def solve_path(
+    task: Task,
+    wishes: Wishes,
+    progress: Callable[[float], None] | None,
+    sound: Callable[[Candidates], int],
+) -> Found:
     """All four-bars for eight conditions, or those of a sample of tasks with fewer.
+
+    ``sound`` counts the sound designs of candidates: too few of them are worth a larger sample.
 
     Raises
     ------
@@ -77,6 +89,8 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
             count -= 1
     if fits:
         return _fitted(task, points, near, told, reason)
+    if len(near) == 1:
+        _solve_further(task, points, near[0], told, sound)
     solved = [found for part in near for found in part.solved]
     grade, message = _completeness(solved, near)
     return Found(
@@ -88,6 +102,30 @@ def solve_path(task: Task, wishes: Wishes, progress: Callable[[float], None] | N
         completeness=grade,
         message=message + _of_four_bars(task),
     )
+
+
+def _solve_further(
+    task: Task,
+    points: ComplexArray,
+    near: _Near,
+    told: _Told,
+    sound: Callable[[Candidates], int],
+) -> None:
+    """Solve further tasks with drawn conditions until enough designs are sound, within a bound."""
+    wanted = task.rank.deliver - sum(map(sound, _candidates(points, near.solved)))
+    most = _PATHS if find_spec("numba") else _SLOW_PATHS
+    while (
+        wanted > 0
+        and sum(found.roots.paths for found in near.solved) < most
+        and (tasks := tuple(islice(near.further, _SAMPLES)))
+    ):
+        left = _MOST - len(near.solved)
+        more = [
+            four_bars_through(given, alike=left - k, progress=told.part(left - k))
+            for k, given in enumerate(tasks)
+        ]
+        near.solved.extend(more)
+        wanted -= sum(map(sound, _candidates(points, more)))
 
 
 def _fitted(
@@ -153,11 +191,15 @@ def _near(
     tolerant = is_tolerant(task)
     # without tolerances the only shifts are 0
     shifts, turns = drawn_within(task, _NEAR if tolerant else 1, np.random.default_rng(_SEED))
-    samples = 1 if tolerant else _SAMPLES
+    most, samples = (1, 1) if tolerant else (_MOST, _SAMPLES)
     for shift, turn in zip(shifts, turns, strict=True):
         own, turned = points + shift, angles + turn
-        tasks = tuple(positions_with_samples(own, turned, pivots, samples, rng, region, known))
-        yield _Near(given=PrecisionPositions.of(own, turned, pivots, lengths), tasks=tasks)
+        drawn_tasks = positions_with_samples(own, turned, pivots, most, rng, region, known)
+        yield _Near(
+            given=PrecisionPositions.of(own, turned, pivots, lengths),
+            tasks=tuple(islice(drawn_tasks, samples)),
+            further=drawn_tasks,
+        )
 
 
 def _check_lengths(task: Task, lengths: Sequence[GivenLength], near: _Near) -> None:

@@ -48,6 +48,7 @@ _WISHES: dict[DefectKind, tuple[str, Callable[[Wishes], Wishes]]] = {
     ),
     DefectKind.OBSTACLE: ("clear_of", lambda own: replace(own, obstacles=_NONE.obstacles)),
 }
+_COUNTS = ("complex", "real", "proved", "triples", "linkages", "starts", "interrupted")
 _MOST_JUDGED = 3  # sets of wishes that are left out to see what they cost
 
 
@@ -90,15 +91,7 @@ class Dyad:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in the command line's JSON."""
-        return {
-            "kind": self.kind,
-            "moving": list(self.moving),
-            "fixed": list(self.fixed),
-            "normal": None if self.normal is None else list(self.normal),
-            "proved": self.proved,
-            "error": self.error,
-            "message": self.message,
-        }
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in vars(self).items()}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -376,13 +369,7 @@ class Synthesis:
         return {
             "task": self.task.name,
             "kind": self.task.kind,
-            "complex": self.complex,
-            "real": self.real,
-            "proved": self.proved,
-            "triples": self.triples,
-            "linkages": self.linkages,
-            "starts": self.starts,
-            "interrupted": self.interrupted,
+            **{name: getattr(self, name) for name in _COUNTS},
             "completeness": self.completeness.name,
             "message": self.message,
             "delivered": len(self.delivered),

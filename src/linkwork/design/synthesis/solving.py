@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.synthesis.candidates import Drive
+from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
@@ -42,11 +42,15 @@ Solver = Callable[[Task, Wishes, Callable[[float], None] | None], Found]
 #: The solvers by kind of task.
 SOLVERS: dict[str, Solver] = {
     "motion": lambda task, wishes, progress: solve_motion(task, wishes),
-    "path": lambda task, wishes, progress: (solve_curve if task.is_approximate else solve_path)(
-        task, wishes, progress
+    "path": lambda task, wishes, progress: (
+        solve_curve(task, wishes, progress)
+        if task.is_approximate
+        else solve_path(task, wishes, progress, _sound_designs(task))
     ),
-    "mixed": solve_path,
-    "function": lambda task, wishes, progress: solve_function(task, progress),
+    "mixed": lambda task, wishes, progress: solve_path(
+        task, wishes, progress, _sound_designs(task)
+    ),
+    "function": solve_function,
 }
 _RIGHT = math.pi / 2.0
 _Alone = TypeVar("_Alone", bound=JudgedDesign)
@@ -71,7 +75,7 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            wishes=(wishes := wishes_of(task, drive)),
+            wishes=(wishes := _measured(wishes_of(task, drive), part, found.zero)),
             verdicts=judge(part, drive, wishes),
             zero=found.zero,
             output=found.output,
@@ -94,6 +98,27 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         starts=found.starts,
         interrupted=found.interrupted,
     )
+
+
+def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:
+    """Wishes with the range of a crank that the task measures from its moving pivot."""
+    asked = wishes.range
+    crank = (part.moving_a[:1, 0] - part.fixed_a[:1]) * np.exp(-1j * (zero or (0.0, 0.0))[0])
+    if asked is None or zero is None or (crank.real > 0.0).all():
+        return wishes
+    return replace(
+        wishes, range=replace(asked, start=asked.start + math.pi, stop=asked.stop + math.pi)
+    )
+
+
+def _sound_designs(task: Task) -> Callable[[Candidates], int]:
+    """What counts the sound designs of candidates, with any link driven."""
+
+    def number(part: Candidates) -> int:
+        verdicts = (judge(part, drive, wishes_of(task, drive)) for drive in part.drives)
+        return sum(int(found.sound.sum()) for found in verdicts)
+
+    return number
 
 
 def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis:

@@ -27,14 +27,12 @@ _REGULAR = 1e-7  # relative: far above the rounding of derivatives
 _LEVEL = 1e-9  # by which the largest error may exceed that of the reference points
 
 
-def rocker_errors(
-    inputs: Array, outputs: Array, side: float | Array, *, by_input: bool = False
-) -> Errors:
+def rocker_errors(inputs: Array, outputs: Array, side: float | Array) -> Errors:
     """The errors of a rocker's angle, for parameters a, b, c of a four-bar with ground 1.
 
     ``inputs``, ``outputs``: (K,) [rad]; ``side``: the sign of (B - A) × (B - B0). With lanes
-    (D, K), sides (D, 1) and parameters (3, D, 1), errors are (D, K). ``by_input`` adds the
-    derivative by the input.
+    (D, K), sides (D, 1) and parameters (3, D, 1), errors are (D, K). The last derivative is that
+    by the input.
     """
 
     def errors(lengths: Array) -> tuple[Array, Array]:
@@ -52,20 +50,17 @@ def rocker_errors(
             wrong = np.mod(found - outputs + np.pi, 2.0 * np.pi) - np.pi
             slope = b * dot(coupler, 1j * rocker)
             gradient = [dot(coupler, crank), -dot(coupler, rocker), c + 0.0 * wrong]
-            if by_input:
-                gradient.append(dot(coupler, 1j * a * crank))
+            gradient.append(dot(coupler, 1j * a * crank))
             return wrong, np.stack([part / slope for part in gradient], axis=-1)
 
     return errors
 
 
-def slider_errors(
-    inputs: Array, outputs: Array, side: float | Array, *, by_input: bool = False
-) -> Errors:
+def slider_errors(inputs: Array, outputs: Array, side: float | Array) -> Errors:
     """The errors of a slider's displacement, for parameters a, e, c: crank, offset and rod.
 
     ``inputs`` (K,) [rad], ``outputs`` (K,) [length]; ``side``: the sign of (B - A) along the line.
-    Lanes and ``by_input`` as of :func:`rocker_errors`.
+    Lanes and derivatives as of :func:`rocker_errors`.
     """
 
     def errors(lengths: Array) -> tuple[Array, Array]:
@@ -76,8 +71,7 @@ def slider_errors(
             reach = side * np.sqrt(c**2 - height**2)
             wrong = a * crank.real + reach - outputs
             gradient = [crank.real + height * crank.imag / reach, -height / reach, c / reach]
-            if by_input:
-                gradient.append(a * (height * crank.real / reach - crank.imag))
+            gradient.append(a * (height * crank.real / reach - crank.imag))
             return wrong, np.stack(gradient, axis=-1)
 
     return errors

@@ -258,6 +258,8 @@ class Task:
                 same &= math.remainder(one.angle - other.angle, turn) == 0
             if same:
                 yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+            elif self.is_approximate and one.input is not None and one.input == other.input:
+                yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
 
     def _wish_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
         wanted = self.wanted
@@ -270,8 +272,13 @@ class Task:
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
         timed = [p.input for p in self.positions if p.input is not None]
-        if self.function is not None and not self.is_six_bar and not self.function.starts_fixed:
-            timed = [one for one, _ in self.function.pairs]
+        if self.function is not None and not self.is_six_bar:
+            given = [one for one, _ in self.function.pairs] or self.function.input or (0.0,)
+            if max(given) - min(given) > self.angle.turn:
+                key = "pairs" if self.function.pairs else "input"
+                yield ("function", key), f"spans inputs of more than a turn, {self.angle.turn:g}"
+            elif self.function.fit or not self.function.starts_fixed:
+                timed = [*given]
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
             _, span = least_arc(np.array(timed, dtype=float), self.angle.turn)
@@ -306,6 +313,7 @@ class Task:
                     f"is {apart:g} from position {j + 1}, out of reach of links of at most "
                     f"{wanted.longest:g}: two arms reach {4 * wanted.longest:g}",
                 )
+                break  # farther ones say the same
         if wanted.region and _area(wanted.region) == 0:
             yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
         else:
@@ -327,6 +335,13 @@ class Task:
                         ("given", "fixed_pivots", k),
                         f"is in circle {j + 1} of clear_of, so no design can be clear of it",
                     )
+        ground = math.dist(*pivots) if len(pivots) == 2 else 1.0
+        loop = self.kind == "function" and self.mechanisms[0] == "four-bar"
+        if loop and not wanted.shortest <= ground <= wanted.longest:
+            yield (
+                ("wanted", "lengths"),
+                f"exclude the ground, which is {ground:g} long; [given] fixed_pivots changes that",
+            )
         if len(pivots) == 2 and self.kind != "function":
             apart = math.dist(*pivots)
             if not wanted.shortest <= apart <= wanted.longest:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.settings import Goal, Improvement
-from linkwork.design.synthesis.curve_file import read_curve
+from linkwork.design.synthesis.curve_file import Curve, read_curve
 from linkwork.design.synthesis.function_goal import LOOP_PAIRS, FunctionGoal
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import Given, PrecisionPosition, Ranking, Wanted
@@ -101,11 +101,23 @@ def _plain(given: Any) -> Any:
             return given
 
 
+def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
+    try:
+        return read_curve(table, folder, turn)
+    except MechanismError as error:
+        if error.problems[0].key:
+            raise
+        # a file that cannot be read has no key: that of the task which names it
+        told = f'"{table["file"]}": {error.problems[0].message}'
+        problem = Problem(key=("curve", "file"), message=told)
+        raise MechanismError([problem], "the task") from None
+
+
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
     angle = AngleUnit(content.get("angle", "deg"))
-    curve = read_curve(content["curve"], folder, angle.turn) if "curve" in content else None
+    curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
     return Task(
         kind=content["task"],
@@ -202,9 +214,11 @@ def _given(table: dict[str, Any]) -> Given:
 def _function(table: dict[str, Any], mechanism: Any) -> FunctionGoal:
     exact = WATT_PAIRS if WATT_II in mechanism else LOOP_PAIRS
     listed = {key: tuple(v) for key, v in table.items() if isinstance(v, list)}
+    free = [key for key in ("input", "output") if isinstance(table.get(key), int | float)]
+    listed |= {key: (0.0, float(table[key])) for key in free}
     if "pairs" in table:
         listed["pairs"] = _points(table["pairs"])
-    return FunctionGoal(**{**table, **listed}, exact=exact)
+    return FunctionGoal(**{**table, **listed}, free=tuple(free), exact=exact)
 
 
 def _improvement(table: dict[str, Any]) -> Improvement:

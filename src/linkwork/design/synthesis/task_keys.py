@@ -26,6 +26,7 @@ TURNS_FULLY = "turns fully"
 
 _POINT = ListOf(PlainNumber(), "coordinate", 2, 2)
 _PAIR = ListOf(PlainNumber(), "number", 2, 2)
+_ENDS = Either(PlainNumber(), _PAIR, "[45, 105], or 60: a range that begins anywhere")
 _RANGE = Table(
     (
         Key("from", PlainNumber(), "First input value", required=True),
@@ -71,8 +72,8 @@ _FUNCTION = Key(
                 ListOf(_PAIR, "pair", 3),
                 "Instead of a formula: angles of input and output, [[0, 0], [10, 4], [20, 9]]",
             ),
-            Key("input", _PAIR, "The input angles at the ends of the range; free if left out"),
-            Key("output", _PAIR, "The output at the ends: angles, or a slider's displacements"),
+            Key("input", _ENDS, "The input angles at the ends of the range; 60: it is 60 wide"),
+            Key("output", _ENDS, "The same of the output: angles, or a slider's displacements"),
             Key(
                 "positions",
                 Whole(3, 9),

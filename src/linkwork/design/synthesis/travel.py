@@ -141,12 +141,13 @@ def _driven_range(
     nowhere = np.full(len(place), NOWHERE)
     sure = np.ones(len(place), dtype=bool)
     low, high = place.min(axis=1), place.max(axis=1)
+    forward = place[:, -1] >= place[:, 0]
     if wanted is None:
-        forward = place[:, -1] >= place[:, 0]
         return np.where(forward, low, high), np.where(forward, high, low), nowhere, sure
     if wanted.turn:
         first = place[:, 0]
-        return first, first + FULL_TURN, np.where(free & loops.turns, NOWHERE, count), sure
+        last = first + np.where(forward, FULL_TURN, -FULL_TURN)
+        return first, last, np.where(free & loops.turns, NOWHERE, count), sure
     first = wanted.start - loops.origin
     last = first + (wanted.stop - wanted.start)
     if loops.turns:

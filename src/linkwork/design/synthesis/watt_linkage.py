@@ -49,9 +49,10 @@ def first_angle(group: WattGroup, k: int) -> float:
 def driven_range(group: WattGroup, k: int, wishes: Wishes) -> tuple[float, float]:
     """The driven range: as wanted, else the range of the function, or its pairs [rad]."""
     task, wanted, start = group.task, wishes.range, first_angle(group, k)
-    if wanted is not None:
-        return (start, start + FULL_TURN) if wanted.turn else (wanted.start, wanted.stop)
     goal, inputs = task.function, group.inputs
+    if wanted is not None:
+        turn = math.copysign(FULL_TURN, inputs[-1] - inputs[0])
+        return (start, start + turn) if wanted.turn else (wanted.start, wanted.stop)
     if goal is not None and goal.of and goal.input is not None:
         return task.in_radians(goal.input[0]), task.in_radians(goal.input[1])
     low, high = float(inputs.min()), float(inputs.max())

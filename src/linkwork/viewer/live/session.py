@@ -50,7 +50,8 @@ class Desk:
         self.ask(*_UNTOLD)
 
     def open(self) -> None:
-        """Send the complete state."""
+        """Send the complete state; what is known of it at once, while a long answer is prepared."""
+        self._signs.show_again()
         self.ask(None, None)
 
     def ask(self, request: Request | None, number: int | None) -> None:

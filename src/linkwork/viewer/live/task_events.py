@@ -62,7 +62,7 @@ class TaskState:
 
 @dataclass(frozen=True, kw_only=True)
 class DesignShown:
-    """A design in the list: numbers in file units, and why it is refused.
+    """A design in the list: numbers in file units, and why it is refused or doubtful.
 
     ``index``: its place in the whole list, or below -1 for a suggested one, with its ``origin``
     ("atlas", "improved", "as given"; otherwise ""); ``transmission``: the smallest over the driven
@@ -81,6 +81,7 @@ class DesignShown:
     error: float | None
     score: float | None
     reason: str
+    remark: str  # noqa: V107
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,11 +103,11 @@ class SkeletonShown:
 class DesignFound:
     """A design at the positions and in between: x, y of A, B and P, one row after another.
 
-    ``fixed``: A0 and B0; of a slider-crank A0 and two points of its line; of a slider at A a point
-    of its line in place of A0. ``line``: of a coupler that slides through B0, the direction of its
-    line from that of AB [rad]. ``at``: a row for
-    each position. ``rows``: the driven range, empty for a refused design. ``marks``: the row of
-    each position in it. ``curve``: the points of P on the branch of the first position.
+    ``fixed``: of A and of B the fixed pivot, or two points of the line on which it slides.
+    ``lines``: of couplers that slide through A0 or B0, the directions of their lines from that of
+    AB [rad]. ``at``: a row for each position. ``rows``: the driven range, empty for a refused
+    design. ``marks``: the row of each position in it. ``curve``: the points of P on the branch of
+    the first position.
 
     Mechanisms of other kinds have a ``skeleton``: their rows are x, y of all its points, which are
     not told ``at`` the positions.
@@ -114,9 +115,9 @@ class DesignFound:
 
     design: DesignShown
     skeleton: SkeletonShown | None
-    fixed: tuple[Point, ...]
+    fixed: tuple[tuple[Point, ...], ...]
     guided: str
-    line: float | None
+    lines: tuple[float | None, float | None]
     at: tuple[tuple[float, ...], ...]
     rows: tuple[tuple[float, ...], ...]
     marks: tuple[float, ...]
@@ -147,8 +148,9 @@ class TaskSolved:
     """The designs for the task, sound ones first.
 
     ``live``: during a drag, with the chosen design only. ``defects``: numbers of designs by defect.
-    ``costliest``: the wish that costs most, and how many designs it costs. ``left_out``: designs
-    that are not in the list. ``centre_curve``: polylines x, y, x, y, … of possible fixed pivots.
+    ``costliest``: the wish that costs most, and how many designs it costs. ``advice``: what to
+    change where no wish is to blame. ``left_out``: designs that are not in the list.
+    ``centre_curve``: polylines x, y, x, y, … of possible fixed pivots.
     """
 
     live: bool
@@ -164,6 +166,7 @@ class TaskSolved:
     defects: dict[str, float]
     costliest: str
     costs: int
+    advice: str
     designs: tuple[DesignShown, ...]
     left_out: int  # noqa: V107
     dyads: tuple[DyadShown, ...]

@@ -69,10 +69,12 @@ class WorkSigns:
         self._tell = tell
         self._number: int | None = None
         self._told_at = 0.0
+        self._early: list[Event] = []
 
     def begin(self, number: int | None) -> None:
         """Begin with a request of this id."""
         self._number, self._told_at = number, time.monotonic()
+        self._early = []
 
     def __call__(self, fraction: float) -> None:
         """Report the finished fraction, a few times per second at most."""
@@ -83,7 +85,13 @@ class WorkSigns:
 
     def show(self, events: list[Event]) -> None:
         """Send what is known before the answer."""
+        self._early = events
         self._tell(events, None)
+
+    def show_again(self) -> None:
+        """Send this to a page that connects before the answer."""
+        if self._early:
+            self._tell(self._early, None)
 
 
 def answers_of(workbench: Workbench | Bench, request: Request | None) -> list[Event]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from linkwork.design.precision.cognates import cognates
+from linkwork.design.synthesis.advice import advice_of
 from linkwork.design.synthesis.burmester import CentrePoints, centre_points
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.improved_mechanism import SweptDesign
@@ -71,6 +72,7 @@ def task_solved(
         defects={kind.value: count for kind, count in found.defects.items()},
         costliest=wish,
         costs=costs,
+        advice="" if live else advice_of(found),
         designs=tuple(design_shown(found.designs[k], k) for k in listed),
         left_out=len(found.designs) - len(listed),
         dyads=tuple(
@@ -106,7 +108,7 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
         skeleton=None,
         fixed=tuple(_fixed(own, at)),
         guided=next((name for name, z in zip("AB", at, strict=False) if z[0] == at[2][0]), "P"),
-        line=_line(own),
+        lines=_lines(own),
         at=_rows(*at),
         rows=rows,
         marks=marks,
@@ -114,24 +116,24 @@ def design_found(found: Synthesis, index: int) -> tell.DesignFound:
     )
 
 
-def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[Point]:
-    yield _point(own.fixed_a[0])
-    if "B0" in own.kind.pivots:
-        yield _point(own.fixed_b[0])
-        return
-    along = ((at[1] - own.fixed_b[0]) * own.direction[0].conj()).real
-    reach = 0.2 * max(float(np.ptp(along)), float(abs(at[1][0] - at[0][0])))
-    for end in (along.min() - reach, along.max() + reach):
-        yield _point(own.fixed_b[0] + end * own.direction[0])
+def _fixed(own: Candidates, at: tuple[ComplexArray, ...]) -> Iterator[tuple[Point, ...]]:
+    """Of A and of B: the fixed pivot, or two points of the fixed line."""
+    sides = ("A0", own.fixed_a, own.direction_a), ("B0", own.fixed_b, own.direction)
+    for (pivot, (start,), (direction,)), moving in zip(sides, at[:2], strict=True):
+        if pivot in own.kind.pivots:
+            yield (_point(start),)
+            continue
+        along = ((moving - start) * direction.conj()).real
+        reach = 0.2 * max(float(np.ptp(along)), float(abs(at[1][0] - at[0][0])))
+        ends = along.min() - reach, along.max() + reach
+        yield tuple(_point(start + end * direction) for end in ends)
 
 
-def _line(own: Candidates) -> float | None:
-    """The direction of the coupler's line through B0 from that of AB [rad]; of an Oldham coupling
-    B is the end of that line.
-    """
-    if own.kind not in (LoopKind.INVERTED, LoopKind.RAPSON):
-        return None
-    return float(np.angle(own.lines[0, 0] / (own.moving_b[0, 0] - own.moving_a[0, 0])))
+def _lines(own: Candidates) -> tuple[float | None, float | None]:
+    """The directions of the coupler's lines through A0 and B0 from that of AB [rad]."""
+    coupler = own.moving_b[0, 0] - own.moving_a[0, 0]
+    one, other = (float(np.angle(line[0, 0] / coupler)) for line in (own.lines_a, own.lines))
+    return one if own.kind is LoopKind.OLDHAM else None, other if own.kind.body_line else None
 
 
 def _rows(*parts: ComplexArray) -> tuple[tuple[float, ...], ...]:

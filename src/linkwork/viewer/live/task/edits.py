@@ -83,8 +83,16 @@ def _(edit: do.SetTaskEntry, text: TextEdits, snap: Snap) -> None:
     key: tuple[str | int, ...] = tuple(
         int(part) if part.isdigit() else part for part in edit.key.split(".")
     )
-    if edit.value is not None:
-        _put(text, key, edit.value)
+    value: Any = edit.value
+    if isinstance(key[-1], int):
+        if value is None and key[0] == "positions":
+            raise InputError("a position has two coordinates: type a number, or remove it")
+        if value is None:  # without one of its ends a range is left out
+            key = key[:-1]
+        elif not text.has(key[:-1]):  # the other end of a new range is typed next
+            key, value = key[:-1], [value, value]
+    if value is not None:
+        _put(text, key, value)
     elif text.has(key):
         text.remove(key)
 

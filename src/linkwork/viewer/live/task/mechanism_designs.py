@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from linkwork.design.synthesis.advice import remark_on
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.foundation.arrays import Array, ComplexArray, CountArray
@@ -37,6 +38,7 @@ def design_shown(design: JudgedDesign, index: int) -> DesignShown:
         error=finite(design.error),
         score=finite(design.score),
         reason=design.defects[0].message if design.kinds else "",
+        remark=remark_on(design),
     )
 
 
@@ -59,7 +61,7 @@ def mechanism_found(
         skeleton=None,
         fixed=(),
         guided="",
-        line=None,
+        lines=(None, None),
         at=(),
         rows=(),
         marks=(),

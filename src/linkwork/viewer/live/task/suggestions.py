@@ -42,7 +42,7 @@ class Suggestions:
         self._suggesting = suggesting
         self._designs: list[SuggestedDesign] = []
         self._judged: list[ImprovedMechanism] = []
-        self._of: tuple[tuple[str, ...], object] | None = None  # whose mechanism is the given one
+        self._of: tuple[object, ...] | None = None  # whose mechanism is the given one
         self._note = ""
         self.chosen: int | None = None
 
@@ -53,7 +53,8 @@ class Suggestions:
         """Judge all designs by a changed task; an incomplete one keeps the verdicts before."""
         if task is None:
             return
-        known = (task.mechanisms, task.wanted) if task.kind == "improve" else None
+        point = task.improvement and task.improvement.point
+        known = (task.mechanisms, task.wanted, point) if task.kind == "improve" else None
         if known != self._of:
             self._give(task)
             self._of = known
