@@ -148,6 +148,15 @@ def test_a_step_across_two_change_points_at_once_is_found() -> None:
         assert circuit.dead_points == ()
 
 
+@pytest.mark.parametrize(
+    ("name", "branches"), [("peaucellier", [2, 2]), ("galloway", [4]), ("kempe-translator", [24])]
+)
+def test_unproved_circuits_do_not_step_across_change_points(name: str, branches: list[int]) -> None:
+    found = lw.example(name).circuits(certify=False)
+    assert [len(circuit.branches) for circuit in found] == branches
+    assert all(circuit.dead_points == () for circuit in found)
+
+
 def test_a_kite_moves_while_its_crank_stands_still() -> None:
     """Galloway's mechanism: at 0 degrees coupler and rocker turn as one about the ground pivot."""
     (circuit,) = four_bar(FourBar(1.0, 1.0, 2.0, 2.0), 1.0).circuits()

@@ -11,11 +11,13 @@ import numpy.typing as npt
 import pytest
 
 from linkwork import Input, Mechanism, Status, linkage
+from linkwork.marching.loop import Attempt
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.branch_tracking import (
     InputPath,
     Node,
     Track,
+    _Trial,
     follow,
     node_at,
     rows_on_track,
@@ -240,6 +242,23 @@ def test_rows_beyond_a_dead_point_say_so_and_hold_nothing(side: int) -> None:
     )
     limits = [limit.input for limit in motion.limits]
     np.testing.assert_allclose(limits, [dead, 360 - dead], rtol=0, atol=math.degrees(1e-12))
+
+
+def test_few_steps_lead_to_a_change_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    solver, start = start_of(FourBar(2.0, 1.0, 2.0, 1.0), 1.0, 1)
+    tried: list[float] = []
+    attempt = _Trial.attempt
+
+    def counted(self: _Trial, here: Node, t: float) -> Attempt[Node]:
+        tried.append(t)
+        return attempt(self, here, t)
+
+    monkeypatch.setattr(_Trial, "attempt", counted)
+    nodes, end = follow(solver, PATH, start, 4.0)
+    assert end is not None
+    assert 0.0 < math.pi - nodes[-1].t < 1e-5
+    assert end.reached < math.pi <= end.failed + 1e-6
+    assert len(tried) < 40  # halving down to rounding would take more than twice as many
 
 
 @pytest.mark.parametrize("bar", [FourBar(2.0, 1.0, 2.0, 1.0), FourBar(3.0, 1.0, 3.0, 1.0)], ids=str)

@@ -25,7 +25,7 @@ N = TypeVar("N", bound=_AtParameter)
 @dataclass(frozen=True)
 class Attempt(Generic[N]):
     """One attempted step: the node reached, ``None`` if it is refused, and the factor by which the
-    next step should be larger or smaller, ``None`` if unknown.
+    next step should be larger or smaller, ``None`` if unknown, 0 if no smaller one is possible.
     """
 
     node: N | None
@@ -100,6 +100,8 @@ def march(
         found = trial.attempt(here, t)
         if found.node is None:
             failed = t
+            if found.factor == 0.0:
+                return nodes, Stop(here, t)
             h *= HALF if found.factor is None else max(_LEAST, min(HALF, found.factor))  # eq. (22)
             if h < smallest:
                 return nodes, Stop(here, t)

@@ -13,7 +13,12 @@ from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
-from linkwork.motion.circuit.followed_circuit import FollowedCircuit, is_regular, straight_way
+from linkwork.motion.circuit.followed_circuit import (
+    FollowedCircuit,
+    explorer_of,
+    is_regular,
+    straight_way,
+)
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
@@ -73,6 +78,7 @@ class _Search:
         self.drive, self.model, self.leads = drive, drive.model, drive.leads
         self.values = [float(value) * drive.unit for value in inputs]
         self.places = places
+        self.explorer = explorer_of(drive)
         self._lists: dict[int, Assemblies] = {}
         self._ways: dict[CurveBranch, float] = {}
 
@@ -119,20 +125,13 @@ class _Search:
         if self._list(0).completeness is Completeness.NOT_LISTED:
             if guess is None:
                 return []
-            circuit = FollowedCircuit(self.drive, guess)
+            circuit = FollowedCircuit(self.explorer, guess)
             branches = [b for b in circuit.branches() if self._passes(circuit, b, 0)]
             return [_Start(v=guess, circuit=circuit, branches=branches)] if branches else []
         starts: list[_Start] = []
         for v in self._regular_starts():
-            known = [(one.circuit, one.circuit.known) for one in starts]
-            own = FollowedCircuit(self.drive, v)
-            on = (
-                (circuit, branch)
-                for circuit, branches in (*known, (own, own.branches()))
-                for branch in branches
-                if circuit.lies_on(branch, v)
-            )
-            circuit, branch = next(on, (own, None))
+            circuit = FollowedCircuit(self.explorer, v)
+            branch = next((b for b in circuit.known if circuit.lies_on(b, v)), None)
             if branch is not None:
                 starts.append(_Start(v=v, circuit=circuit, branches=[branch]))
         return starts
@@ -186,7 +185,7 @@ class _Search:
         if not near and not self._is_limit(circuit, k):
             return _unreached(listed, k)
         near = [v for v in near if is_regular(self.leads, v)]
-        joined = self._are_joined(start, near) if near else None
+        joined = self._are_joined(circuit, near) if near else None
         if joined:
             return _changes(DefectKind.BRANCH, k)
         if not near or self._is_limit(circuit, k):
@@ -195,35 +194,35 @@ class _Search:
             return _not_proved(f"the circuit of position {k} was not followed to its end")
         return _changes(DefectKind.CIRCUIT, k)
 
-    def _are_joined(self, start: _Start, near: Sequence[Array]) -> bool | None:
-        """Whether one of some positions (N,) is on the circuit of the first one; ``None`` if the
-        circuits cannot be followed to their ends.
+    def _are_joined(self, mine: FollowedCircuit, near: Sequence[Array]) -> bool | None:
+        """Whether one of some positions (N,) is on a circuit; ``None`` if the circuits cannot be
+        followed to their ends.
 
-        From both sides: two circuits are one where their arcs meet at a change point, and they are
-        two as soon as one of them is whole without the other's position.
+        Two circuits are one where their arcs meet at a change point, and they are two as soon as
+        one of them is whole without the other's position.
         """
-        mine = start.circuit
-        others = [(v, FollowedCircuit(self.drive, v)) for v in near]
-        fresh = list(mine.known)
-        while not any(mine.lies_on(branch, v) for branch in fresh for v, _ in others):
-            others = [(v, other) for v, other in others if not other.is_whole]
+        if any(mine.has(v) for v in near):
+            return True
+        others: list[FollowedCircuit] = []
+        for v in () if mine.is_whole else near:
+            other = FollowedCircuit(self.explorer, v)
+            if not any(other.meets(one) for one in others):
+                others.append(other)
+        while True:
+            for one in (mine, *others):
+                one.join_arcs()
+            if any(mine.meets(other) for other in others):
+                return True
+            others = [other for other in others if not other.is_whole]
             if mine.is_whole or not others:
                 return False
-            ahead = [one for one in (mine, *(o for _, o in others)) if not one.ended]
+            ahead = [one for one in (mine, *others) if not one.ended]
             if not ahead:
                 return None
-            # one arc of each other circuit, which may meet the first arc, then all of this one
-            following = min(ahead, key=lambda one: (len(one.arcs) > 0, one is not mine))
-            known = len(following.known)
-            following.follow_next()
-            fresh = following.known[known:]
-            if any(mine.meets(other) for _, other in others):
-                return True
-            if following is not mine:
-                if any(following.lies_on(branch, start.v) for branch in fresh):
-                    return True
-                fresh = []
-        return True
+            # from both sides, about as many arcs from each
+            most = sum(len(other.arcs) for other in others)
+            first = ahead[0] is mine and len(mine.arcs) <= most
+            (mine if first else min(ahead, key=lambda one: len(one.arcs))).follow_next()
 
     def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
         """Whether a position is at an end of a branch, to the rounding of its input."""

@@ -7,7 +7,6 @@ everything that is connected is found.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,8 +96,24 @@ class Explorer:
     def visit(self, seed: Array) -> int:
         """The number of the arc through a position at which the parameter can lead.
 
-        The curve is followed if it is new, with everything that branches off at change points.
+        The curve is followed if it is new, with everything that branches off at change points of
+        arcs on which redundant links fit.
         """
+        first, number = self.arc_through(seed), 0
+        while number < len(self.crossings):
+            if any(number in arc.crossings and self.fits(arc) for arc in self.arcs):
+                while self.branch_off(number):
+                    pass
+            number += 1
+        return first
+
+    def arc_through(self, seed: Array) -> int:
+        """The number of the arc through a position; it is followed if it is new."""
+        number = self.known_arc(seed)
+        return self._explore(seed, 1.0) if number is None else number
+
+    def known_arc(self, seed: Array) -> int | None:
+        """The number of the arc through a position, if that is followed already."""
         # positions that walks have passed at the starting value: the cheapest test comes first
         for v, number in self._passed:
             if same_position(self.leads, v, seed):
@@ -106,35 +121,32 @@ class Explorer:
         for number, arc in enumerate(self.arcs):
             if any(_lies_on(self.leads, branch, seed) for branch in arc.branches):
                 return number
-        first, *_ = self.follow(seed)
-        return first
+        return None
 
-    def follow(self, seed: Array) -> Iterator[int]:
-        """The number of the new arc through a position, then of each one that branches off from
-        what was found; every arc is followed when it is asked for.
-        """
-        yield self._explore(seed, 1.0)
-        number = 0
-        while number < len(self.crossings):
-            crossing = self.crossings[number]
-            for k, direction in enumerate(crossing.directions):
-                for sign in (1.0, -1.0):
-                    # nothing came along this half-branch yet
-                    if (number, k, sign) in self._covered:
-                        continue
-                    other = crossing.directions[1 - k]
-                    beyond = _beyond(self.leads, crossing.v, sign * direction, other)
-                    self._covered.add((number, k, sign))
-                    if beyond is not None:
-                        yield self._explore(beyond, sign * direction)
-            number += 1
+    def branch_off(self, number: int) -> bool:
+        """Follow a half-branch of a crossing that no arc came along; false if none is left."""
+        crossing = self.crossings[number]
+        for k, sign in self.half_branches(number):
+            self._covered.add((number, k, sign))
+            direction, other = sign * crossing.directions[k], crossing.directions[1 - k]
+            beyond = _beyond(self.leads, crossing.v, direction, other)
+            if beyond is not None:
+                self._explore(beyond, direction)
+                return True
+        return False
+
+    def half_branches(self, number: int) -> list[tuple[int, float]]:
+        """Those of a crossing that no arc came along: the number of the direction, and its sign."""
+        both = [(k, sign) for k in (0, 1) for sign in (1.0, -1.0)]
+        return [(k, sign) for k, sign in both if (number, k, sign) not in self._covered]
 
     def fits(self, arc: Arc) -> bool:
         """Whether redundant links fit all along an arc."""
         equations = self.walks.drive.model.equations
         if not equations.redundant:
             return True
-        return all((misfit(equations, b.v) <= FITS).all() for b in self.solved_branches(arc))
+        legs = [leg for walk in arc.walks for leg in walk.curve.legs]
+        return all((misfit(equations, leg.v) <= FITS).all() for leg in legs)
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
         """Follow the curve through a seed both ways; the number of the arc."""

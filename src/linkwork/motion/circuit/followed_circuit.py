@@ -19,11 +19,10 @@ from linkwork.motion.tracking import track_to
 from linkwork.numerics.continuation.branch_tracking import node_at, rows_on_track
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrizations,
-    coincide,
     same_position,
 )
 
-__all__ = ["FollowedCircuit", "is_regular", "straight_way"]
+__all__ = ["FollowedCircuit", "explorer_of", "is_regular", "straight_way"]
 
 
 def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Array | None:
@@ -44,54 +43,65 @@ def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Array |
     return rows.v
 
 
+def explorer_of(drive: Drive) -> Explorer:
+    """The arcs that all circuits of a question have in common, none followed yet."""
+    return Explorer(Walks(drive, certify=False, prove_turns=False))
+
+
 class FollowedCircuit:
     """The circuit through a position at which the input can lead.
 
     Parameters
     ----------
-    drive : Drive
+    explorer : Explorer
+        With the arcs that other circuits have followed: each is followed once.
     start : (N,)
 
     Attributes
     ----------
     arcs, known : list of Arc, list of CurveBranch
         Its curves between change points, and their branches, as far as they are followed.
-    ended : bool
-        Whether no other arc is left to follow.
     """
 
-    def __init__(self, drive: Drive, start: Array) -> None:
-        self.leads = drive.leads
+    def __init__(self, explorer: Explorer, start: Array) -> None:
+        self.leads = explorer.leads
         self.arcs: list[Arc] = []
         self.known: list[CurveBranch] = []
-        self.ended = False
-        self._explorer = Explorer(Walks(drive, certify=False, prove_turns=False))
-        self._further = self._explorer.follow(start)
-        self._apart: list[Arc] = []
+        self._explorer = explorer
+        self._first = explorer.arc_through(start)
+        self._seen: set[int] = set()
+        self._crossings: dict[int, None] = {}
+        self.join_arcs()
 
     def follow_next(self) -> bool:
-        """Follow one more of the arcs that change points may join; whether there was one."""
-        number = next(self._further, None)
-        self.ended = number is None or not self._explorer.crossings
-        if number is not None and self._explorer.fits(self._explorer.arcs[number]):
-            self._apart.append(self._explorer.arcs[number])
-            self._join_arcs()
-        return number is not None
+        """Take over one more of the arcs that change points may join; whether there was one."""
+        known = len(self.arcs)
+        # in case that another circuit has followed it
+        self.join_arcs()
+        if len(self.arcs) > known:
+            return True
+        found = any(self._explorer.branch_off(number) for number in self._crossings)
+        self.join_arcs()
+        return found
 
-    def _join_arcs(self) -> None:
+    def join_arcs(self) -> None:
         """Take over the arcs that meet those of the circuit: none through an arc that does not fit,
         on which nothing can move.
         """
         joined = True
-        while joined and self._apart:
-            met = {crossing for arc in self.arcs for crossing in arc.crossings}
+        while joined:
             joined = False
-            for arc in list(self._apart):
-                if arc is self._explorer.arcs[0] or met.intersection(arc.crossings):
-                    self._apart.remove(arc)
-                    self.arcs.append(arc)
-                    self.known += arc.branches
-                    joined = True
+            for number, arc in enumerate(self._explorer.arcs):
+                meets = number == self._first or not self._crossings.keys().isdisjoint(
+                    arc.crossings
+                )
+                if meets and number not in self._seen:
+                    self._seen.add(number)
+                    if self._explorer.fits(arc):
+                        self.arcs.append(arc)
+                        self.known += arc.branches
+                        self._crossings.update(dict.fromkeys(arc.crossings))
+                        joined = True
 
     def branches(self) -> Iterator[CurveBranch]:
         """All branches; those behind a change point are followed when they are asked for."""
@@ -99,6 +109,11 @@ class FollowedCircuit:
         while number < len(self.known) or self.follow_next():
             yield from self.known[number : number + 1]
             number = min(number + 1, len(self.known))
+
+    @property
+    def ended(self) -> bool:
+        """Whether no other arc is left to follow."""
+        return not any(self._explorer.half_branches(number) for number in self._crossings)
 
     @property
     def is_open(self) -> bool:
@@ -111,14 +126,14 @@ class FollowedCircuit:
         """Whether all of it is followed."""
         return self.ended and not self.is_open
 
-    def meets(self, other: FollowedCircuit) -> bool:
-        """Whether both have a change point in common, as far as they are followed."""
-        mine, theirs = self._crossings(), other._crossings()
-        return any(coincide(self.leads, v, w) for v in mine for w in theirs)
+    def has(self, v: Array) -> bool:
+        """Whether a position (N,) lies on it, as far as it is followed."""
+        number = self._explorer.known_arc(v)
+        return number is not None and self._explorer.arcs[number] in self.arcs
 
-    def _crossings(self) -> list[Array]:
-        met = {crossing for arc in self.arcs for crossing in arc.crossings}
-        return [self._explorer.crossings[number].v for number in met]
+    def meets(self, other: FollowedCircuit) -> bool:
+        """Whether both have an arc in common, as far as they are followed."""
+        return any(arc in other.arcs for arc in self.arcs)
 
     def lies_on(self, branch: CurveBranch, v: Array) -> bool:
         """Whether a position (N,) at which the input can lead is one of a branch."""

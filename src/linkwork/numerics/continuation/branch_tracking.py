@@ -19,6 +19,7 @@ from linkwork.foundation.status import CONVERGED, Status
 from linkwork.marching.loop import Attempt, StepBounds, march
 from linkwork.marching.step_size import by_error
 from linkwork.numerics.block_solver import BlockSolver
+from linkwork.numerics.continuation.input_path import InputPath, quintic
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.single_rows import SingleSolution, rates_of_row, solve_row
@@ -38,26 +39,13 @@ __all__ = [
 
 _FAST = 5.0  # rate of a variable, weighted, from which on a dead point may be ahead
 _APPROACH = 0.75  # of the estimated distance to a dead point: the largest step
+_RISEN = 100.0  # condition from which on a singular position may be ahead
+_ONWARD = 0.8  # of the estimated distance to it: the largest step,
+_LAST = 0.7  # up to this part of the largest condition
+_END = 0.5  # of that condition, and of the distance: behind such a step it would be too large
 _OTHER_RATES = 30.0  # times the correction: rates so far from those predicted are another branch's,
 _LEVEL_RATES = 1e-3  # unless they differ by no more than this over the step
 _NODE_TOLERANCE = 1e-7  # a correction this small leaves an error of its square
-
-
-@dataclass(frozen=True, kw_only=True)
-class InputPath:
-    """Inputs as u(t) = origin + t · rate, both (p,).
-
-    ``size``: natural size of t, one radian for an angle, a length of the mechanism for a length.
-    """
-
-    origin: Array
-    rate: Array
-    size: float = 1.0
-
-    def at(self, t: float | Array) -> Array:
-        """u(t), (p,) or (B, p)."""
-        inputs: Array = self.origin + np.multiply.outer(np.asarray(t), self.rate)
-        return inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,12 +230,37 @@ class _Trial:
         self.solver, self.path, self.options = solver, path, options
         # a prediction that needs more steps was too far: halving costs less
         self.quick = unlimited(solver.options, 6, _NODE_TOLERANCE)
+        self.before: Node | None = None
 
     def room(self, here: Node, sign: float) -> float:
-        """How far a step may go towards a dead point, where rates grow like 1/√distance.
+        """How far a step may go towards a singular position.
 
-        There x'/2x'' of the fastest variable is the distance; elsewhere it is no limit.
+        Rates grow like 1/√distance from a dead point: there x'/2x'' of the fastest variable is the
+        distance. The condition grows like 1/distance from a change point. Elsewhere there is no
+        limit.
         """
+        dead = self._dead_point_ahead(here, sign)
+        if here.condition < _RISEN:
+            return dead
+        last = _LAST * self.options.largest_condition
+        part = _END if self._is_last(here) else min(_ONWARD, 1.0 - here.nearness / last)
+        return min(dead, part * self._singular_ahead(here))
+
+    def _is_last(self, here: Node) -> bool:
+        """Whether a track that goes on towards a singular position ends at a node."""
+        return here.nearness > _END * self.options.largest_condition
+
+    def _singular_ahead(self, here: Node) -> float:
+        """How far it is to where 1/condition is zero, extrapolated from the last step."""
+        before = self.before
+        if before is None:
+            return self.path.size / here.condition
+        if here.condition <= before.condition:
+            return math.inf
+        return abs(here.t - before.t) * before.condition / (here.condition - before.condition)
+
+    def _dead_point_ahead(self, here: Node, sign: float) -> float:
+        """How far a step may go towards a dead point."""
         speed = np.abs(here.first) / self.solver.variable_scale
         k = int(np.argmax(speed))
         # rates that shrink lead away from a dead point
@@ -256,6 +269,19 @@ class _Trial:
         return _APPROACH * abs(float(here.first[k] / (2.0 * here.second[k])))  # eq. (24)
 
     def attempt(self, here: Node, t: float) -> Attempt[Node]:
+        """A step; where it is refused, how far a shorter one may go."""
+        found, away, h = self._try(here, t), self._singular_ahead(here), abs(t - here.t)
+        if found.node is not None:
+            self.before = here
+        elif self._is_last(here) and self.before is not None and away < math.inf:
+            # halved down to rounding in front of a dead point, which may not be located otherwise
+            if self._dead_point_ahead(here, math.copysign(1.0, t - here.t)) == math.inf:
+                return Attempt(None, 0.0)
+        elif found.factor is None and away < h:
+            return Attempt(None, _ONWARD * away / h)
+        return found
+
+    def _try(self, here: Node, t: float) -> Attempt[Node]:
         """Predict, correct and judge."""
         solver, path, opt, h = self.solver, self.path, self.options, t - here.t
         guess = predict(here, t)
@@ -366,16 +392,3 @@ def interpolate(track: Track, t: Array) -> tuple[Array, IndexArray]:
     h = (times[left + 1] - times[left])[:, None]
     s = (t[:, None] - times[left][:, None]) / h
     return quintic(s, h, nodes.take(left), nodes.take(left + 1)), left
-
-
-def quintic(s: Array, h: Array, left: SolvedRows, right: SolvedRows) -> Array:
-    """The polynomials through both ends of steps of length h (B or 1, 1), at the fractions s."""
-    v0, v1 = left.v, right.v
-    a1, b1 = left.first * h, right.first * h
-    a2, b2 = left.second * h * h, right.second * h * h
-    rise = v1 - v0
-    c3 = 10 * rise - 6 * a1 - 4 * b1 - 1.5 * a2 + 0.5 * b2  # eq. (20)
-    c4 = -15 * rise + 8 * a1 + 7 * b1 + 1.5 * a2 - b2
-    c5 = 6 * rise - 3 * a1 - 3 * b1 - 0.5 * a2 + 0.5 * b2
-    value: Array = v0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))))  # eq. (20)
-    return value
