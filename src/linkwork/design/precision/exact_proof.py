@@ -71,9 +71,10 @@ def prove_numbers(
             holds[live], error[live] = _prove(equations, v[live], jacobian, inverse, f[live], scale)
             largest = (np.abs(correction) / scale).max(axis=1)
             rounding = 3.0 * UNIT_ROUNDOFF * np.abs(v[live]).max(axis=1)
-            # what is as large as the numbers themselves leads elsewhere
-            moving = (error[live] > rounding) & (largest > _EXACT) & (largest < 1.0)
-            v[live, :n] -= correction
+            near = largest < 1.0  # what is as large as the numbers themselves leads elsewhere
+            holds[live] &= near
+            moving = near & (error[live] > rounding) & (largest > _EXACT)
+            v[live[near], :n] -= correction[near]
             live, correction = live[moving], correction[moving]
             if not len(live):
                 break
