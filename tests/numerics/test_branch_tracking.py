@@ -257,7 +257,6 @@ def test_few_steps_lead_to_a_change_point(monkeypatch: pytest.MonkeyPatch) -> No
     nodes, end = follow(solver, PATH, start, 4.0)
     assert end is not None
     assert 0.0 < math.pi - nodes[-1].t < 1e-5
-    assert end.reached < math.pi <= end.failed + 1e-6
     assert len(tried) < 40  # halving down to rounding would take more than twice as many
 
 

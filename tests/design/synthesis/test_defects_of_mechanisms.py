@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 import linkwork as lw
-from linkwork.motion.circuit.arcs import Explorer
 from linkwork.motion.circuit.followed_circuit import FollowedCircuit, explorer_of, straight_way
 from linkwork.motion.curve_branches import TracedCurve, trace_boldly
 from linkwork.motion.drive import Drive
@@ -108,22 +107,6 @@ def test_branches_behind_change_points_are_followed_when_they_are_asked_for() ->
     assert len(circuit.arcs) == 1
     assert len(list(circuit.branches())) == 4
     assert next(circuit.branches()) is first
-
-
-def test_circuits_of_one_question_follow_each_arc_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    bars = lw.example("parallelogram")
-    (case, *_) = (case for case in library_cases(bars, 8, 0) if case.change is not None)
-    explored: list[Any] = []
-    explore = Explorer._explore
-
-    def counted(self: Explorer, *given: Any) -> int:
-        explored.append(given)
-        return explore(self, *given)
-
-    monkeypatch.setattr(Explorer, "_explore", counted)
-    assert judged_change(bars, case) == case.change
-    # four arcs meet at two change points
-    assert len(explored) <= 4
 
 
 def test_defects_are_found_without_all_circuits(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -219,10 +219,8 @@ class _Search:
             ahead = [one for one in (mine, *others) if not one.ended]
             if not ahead:
                 return None
-            # from both sides, about as many arcs from each
-            most = sum(len(other.arcs) for other in others)
-            first = ahead[0] is mine and len(mine.arcs) <= most
-            (mine if first else min(ahead, key=lambda one: len(one.arcs))).follow_next()
+            # from both sides
+            min(ahead, key=lambda one: len(one.arcs)).follow_next()
 
     def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
         """Whether a position is at an end of a branch, to the rounding of its input."""

@@ -143,9 +143,7 @@ class Explorer:
     def fits(self, arc: Arc) -> bool:
         """Whether redundant links fit all along an arc."""
         equations = self.walks.drive.model.equations
-        if not equations.redundant:
-            return True
-        legs = [leg for walk in arc.walks for leg in walk.curve.legs]
+        legs = (leg for walk in arc.walks for leg in walk.curve.legs)
         return all((misfit(equations, leg.v) <= FITS).all() for leg in legs)
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
