@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -165,17 +166,17 @@ _GIVEN = {"fixed_pivots": [(0.0, 0.0), (100.0, 0.0)], "lengths": {"B P": 60}}
     ("changes", "told"),
     [
         (
-            {"_MOST": 300},
+            {"_MOST": 300, "_MOST_IN_NUMPY": 300},
             r"from those of 8 tasks; not all solutions .* known: after 300 paths, which found",
         ),
         ({"_ROUNDS": 1, "_SEED": 12}, r"tasks; not all solutions .*: the trace test denies "),
     ],
 )
 def test_a_task_without_a_start_set_is_sampled_and_says_why(
-    changes: dict[str, int], told: str, monkeypatch: pytest.MonkeyPatch
+    changes: dict[str, int], told: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})
-    monkeypatch.setattr(own_start_sets, "_stored", lambda problem: None)
     for name, value in changes.items():
         monkeypatch.setattr(own_start_sets, name, value)
     if "_ROUNDS" in changes:
@@ -188,3 +189,22 @@ def test_a_task_without_a_start_set_is_sampled_and_says_why(
     assert found.completeness is Completeness.SAMPLED
     assert re.search(told, found.message)
     assert found.proved > 2
+
+
+def test_a_spent_budget_is_kept_until_more_may_be_spent(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
+    for name in ("_MOST", "_MOST_IN_NUMPY"):
+        monkeypatch.setattr(own_start_sets, name, 20)
+    problem = PrecisionProblem(poses=1, points=1, pivots=2, lengths=(("A", "B"),))
+    monkeypatch.setattr(own_start_sets, "_KNOWN", {})
+    reason = own_member(problem).reason
+    assert "after 20 paths" in reason
+    monkeypatch.setattr(own_start_sets, "_KNOWN", {})
+    monkeypatch.setattr(own_start_sets, "_solved", None)  # which would be an error
+    assert own_member(problem).reason == reason
+    monkeypatch.undo()
+    monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
+    monkeypatch.setattr(own_start_sets, "_KNOWN", {})
+    assert own_member(problem).member is not None

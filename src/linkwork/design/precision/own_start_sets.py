@@ -31,10 +31,11 @@ __all__ = ["OwnMember", "own_member"]
 _FOLDER, _VERSION = "start_linkages", 1  # of the random members and of the data stored of them
 _SEED = 11
 _SMALL = 100  # paths that are expected; more of them are compiled as soon as that saves time
-_MOST = 250_000  # paths, about 20 s of two cores compiled,
+_MOST = 250_000  # paths, up to a minute and a half of two cores compiled,
 _MOST_IN_NUMPY = 10_000  # and as long without a compiler
 _ROUNDS, _DIRECTIONS = 8, 2  # trace tests, and directions of each
 _SINGULAR = 1e12  # condition number of a random member
+_SPENT = "spent"  # paths that did not suffice, and the solutions that they found
 _UNKNOWN = "not all solutions of a random task of this kind are known: "
 
 
@@ -79,8 +80,8 @@ def own_member(
     """
     known = _KNOWN.get(problem)
     if known is None:
-        member = _stored(problem)
-        known = OwnMember(member=member) if member else _solved(problem, progress)
+        most = _MOST if compiled_pays(_MOST) else _MOST_IN_NUMPY
+        known = _stored(problem, most) or _solved(problem, most, progress)
         _KNOWN[problem] = known
     return known
 
@@ -88,8 +89,9 @@ def own_member(
 _KNOWN = dict[PrecisionProblem, OwnMember]()
 
 
-def _solved(problem: PrecisionProblem, progress: Callable[[float], None] | None) -> OwnMember:
-    most = _MOST if compiled_pays(_MOST) else _MOST_IN_NUMPY
+def _solved(
+    problem: PrecisionProblem, most: int, progress: Callable[[float], None] | None
+) -> OwnMember:
     rng, tracker, grown = np.random.default_rng(_SEED), _Budget(most, progress), [1]
     if _is_singular(problem):
         told = "in general some of the conditions contradict each other, and others are missing"
@@ -100,8 +102,8 @@ def _solved(problem: PrecisionProblem, progress: Callable[[float], None] | None)
                 problem, rng, tracker, grown.append, idle=1, directions=_DIRECTIONS, rounds=_ROUNDS
             )
     except _SpentError:
-        told = f"after {most} paths, which found {grown[-1]}"
-        return OwnMember(member=None, reason=_UNKNOWN + told)
+        keep_arrays(_path(problem), {_SPENT: np.array([most, grown[-1]])})
+        return _spent(most, grown[-1])
     if not found.confirmed:
         told = f"the trace test denies that {grown[-1]} are all"
         return OwnMember(member=None, reason=_UNKNOWN + told)
@@ -118,13 +120,23 @@ def _is_singular(problem: PrecisionProblem) -> bool:
     return bool(np.linalg.cond(rows) > _SINGULAR)
 
 
-def _stored(problem: PrecisionProblem) -> Member | None:
-    """The member that is kept; a file that cannot be read is none: it is written again."""
+def _spent(followed: int, found: int) -> OwnMember:
+    told = f"after {followed} paths, which found {found}"
+    return OwnMember(member=None, reason=_UNKNOWN + told)
+
+
+def _stored(problem: PrecisionProblem, most: int) -> OwnMember | None:
+    """The member that is kept, or that so many paths do not find one; a file that cannot be read
+    is written again.
+    """
     with (
         suppress(OSError, ValueError, KeyError, zipfile.BadZipFile),
         np.load(_path(problem)) as stored,
     ):
-        return member_of_arrays(problem, stored)
+        if _SPENT in stored:
+            followed, found = stored[_SPENT].tolist()
+            return None if followed < most else _spent(followed, found)
+        return OwnMember(member=member_of_arrays(problem, stored))
     return None
 
 
