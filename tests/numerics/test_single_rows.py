@@ -124,6 +124,12 @@ def test_no_rows_are_no_rows() -> None:
     solver = lw.example("four-bar").model.compiled.solver
     nothing = solver.solve(np.empty((0, 3)))
     assert nothing.v.shape == solver.rates(nothing.v, np.ones(1)).first.shape == (0, 3)
+    for way in (prove, reach):
+        for kind in (_Arrays, _Numbers):
+            own = kind(solver.blocks, solver.unknowns, solver.variables, solver.variable_scale)
+            found = way(own, nothing.v, np.empty((0, 1)), expansions(own, nothing.v))
+            assert found.holds.shape == (0,)
+            assert found.error_bound.shape == (0, 3 if way is prove else 2)
 
 
 def test_a_position_with_a_singular_block_has_no_rates() -> None:

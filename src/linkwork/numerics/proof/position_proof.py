@@ -170,11 +170,12 @@ def _prove_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Arra
         existence.append([radii.existence_radius for radii in own])
         uniqueness.append([radii.uniqueness_radius for radii in own])
         errors.append(error_bound)
+    blocks = len(rows), len(solver.blocks)
     return Proof(
-        holds=np.array(holds),
-        existence_radius=np.array(existence),
-        uniqueness_radius=np.array(uniqueness),
-        error_bound=np.array(errors),
+        holds=np.array(holds, dtype=bool),
+        existence_radius=np.array(existence).reshape(blocks),
+        uniqueness_radius=np.array(uniqueness).reshape(blocks),
+        error_bound=np.array(errors).reshape(len(rows), solver.variables),
     )
 
 
@@ -191,9 +192,9 @@ def _reach_singly(solver: BlockSolver, rows: Sequence[PlacesOfRow], radius: Arra
                 isolation[k] = x
         isolations.append(isolation)
     return Reach(
-        holds=np.array(holds),
-        error_bound=np.array(errors),
-        isolation_radius=np.array(isolations),
+        holds=np.array(holds, dtype=bool),
+        error_bound=np.array(errors).reshape(len(rows), n),
+        isolation_radius=np.array(isolations).reshape(len(rows), n),
     )
 
 
