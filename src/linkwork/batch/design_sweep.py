@@ -59,9 +59,10 @@ def design_rows(
     else:
         left &= ~path.fill(designs, found, certify, threads, execution or Execution())
         # most of those without a start need not be built to be tried
-        open_ones = left & stay_open(designs)
-        leave_open(designs, np.flatnonzero(open_ones), found)
-        left &= ~open_ones
+        if left.any():
+            open_ones = left & stay_open(designs)
+            leave_open(designs, np.flatnonzero(open_ones), found)
+            left &= ~open_ones
     for k in np.flatnonzero(left):
         sweep_single(designs, int(k), found, certify)
     return found.freeze()
