@@ -255,7 +255,6 @@ def _fitted(
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     if not fits.closes.all():
         message += "; the loop of the best one hardly closes: it may be no local minimum"
-        return replace(found, message=message)
     return replace(found, message=message, starts=len(x))
 
 

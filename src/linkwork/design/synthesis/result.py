@@ -294,6 +294,11 @@ class Synthesis:
         return tuple(design for design in self.designs if design.kinds)
 
     @property
+    def outcome(self) -> str:
+        """What starts lead to, in words: a fit of a function may be no local minimum."""
+        return "local minima" if self.task.function is None else "fits"
+
+    @property
     def sound(self) -> int:
         """The number of designs without defects, delivered or not."""
         return len(self.designs) - len(self.refused)
