@@ -295,7 +295,7 @@ class Synthesis:
 
     @property
     def outcome(self) -> str:
-        """What starts lead to, in words: a fit of a function may be no local minimum."""
+        """What starts lead to, in words. A fit of a function may be no local minimum."""
         return "local minima" if self.task.function is None else "fits"
 
     @property
