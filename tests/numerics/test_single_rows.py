@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import platform
+
 import numpy as np
 import pytest
 
 import linkwork as lw
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
+from linkwork.kernels.program import kernel_cache
+from linkwork.kernels.single import quick_rows
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.elimination import inverse_and_sign, solve_linear
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 from linkwork.numerics.rows import SolvedRows
+from linkwork.numerics.single_rows import SingleRows
 
 #: Dyads, coupled loops, sliding lengths, gears and belts.
 MECHANISMS = [
@@ -160,3 +165,46 @@ def test_small_systems_are_solved_as_by_lapack(n: int) -> None:
     assert solve_linear(nothing, [1.0] * n) is None
     assert inverse_and_sign(nothing)[1] == 0
     assert np.isnan(inverse_and_sign(nothing)[0]).all()
+
+
+#: Processors for which C compilers do not fuse products and sums.
+_EXACT = platform.machine().lower() in {"x86_64", "amd64"}
+
+
+@pytest.mark.parametrize("name", [*MECHANISMS, "dixon-two", "three-rpr"])
+def test_compiled_rows_are_those_of_plain_numbers(name: str) -> None:
+    arrays, numbers, start = _both(name)
+    plain = SingleRows(numbers.singles, None)
+    quick = SingleRows(numbers.singles, lambda blocks, rows: quick_rows.QuickRows(blocks))
+    for _ in range(20):  # the first ones are solved in plain numbers
+        quick.solve_row(start[0].copy(), NewtonOptions())
+    within = 0.0 if _EXACT else 1e-6
+    rate = np.linspace(1.0, 2.0, arrays.variables - arrays.unknowns)
+    endings = set()
+    for options in (NewtonOptions(), NewtonOptions(max_steps=3, largest_turn=0.2)):
+        a, b = plain.solve(start, options), quick.solve(start, options)
+        for column in ("status", "failed_block", "iterations"):
+            np.testing.assert_array_equal(getattr(a, column), getattr(b, column))
+        for column in ("v", "residual", "first_step", "contraction"):
+            np.testing.assert_allclose(getattr(a, column), getattr(b, column), rtol=within)
+        endings |= set(a.status.tolist())
+        a, b = plain.rates(a.v, rate, 0.5 * rate), quick.rates(a.v, rate, 0.5 * rate)
+        np.testing.assert_array_equal(a.orientation, b.orientation)
+        for column in ("first", "second", "condition", "nearness"):
+            np.testing.assert_allclose(getattr(a, column), getattr(b, column), rtol=within)
+    assert len(endings) > 1
+
+
+def test_rows_are_compiled_when_that_pays(monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = lw.example("four-bar").model.compiled.solver.singles
+    monkeypatch.setattr(kernel_cache, "_was_compiled", lambda loop: True)
+    monkeypatch.setattr(kernel_cache, "is_loaded", lambda loop: False)
+    monkeypatch.setattr(quick_rows, "is_loaded", lambda loop: False)
+    monkeypatch.setitem(quick_rows._WORK, "", 0)
+    assert quick_rows.quick_rows(blocks, 20_000) is None
+    assert quick_rows.quick_rows(blocks, 20_000) is not None
+    monkeypatch.setattr(kernel_cache, "_was_compiled", lambda loop: False)
+    assert quick_rows.quick_rows(blocks, 20_000) is None
+    assert quick_rows.quick_rows(blocks, 300_000) is not None
+    monkeypatch.setattr(quick_rows, "find_spec", lambda name: None)
+    assert quick_rows.quick_rows(blocks, 300_000) is None

@@ -17,6 +17,7 @@ from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import LinearRows
+from linkwork.kernels.single.quick_rows import quick_rows
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.decomposition import BlockForm, block_form
 
@@ -122,7 +123,7 @@ def compile_equations(equations: LoopEquations, where: str) -> Compiled:
                 variables=np.array([*unknowns, *known], dtype=np.intp),
             )
         )
-    solver = BlockSolver(blocks, n, table.variables, table.variable_scale)
+    solver = BlockSolver(blocks, n, table.variables, table.variable_scale, make_quick=quick_rows)
     return Compiled(
         equations=equations,
         table=table,

@@ -14,6 +14,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.kernels.loop_table import LoopTable, TableSplitter
 from linkwork.kernels.real_rows import LinearRows
+from linkwork.kernels.single.quick_rows import quick_rows
 from linkwork.numerics.block_solver import Block, BlockSolver
 from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.local_parametrization import Parametrization
@@ -88,7 +89,9 @@ class ParametrizedTable:
                 )
             )
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
-        solver = BlockSolver(blocks, len(others), table.variables, table.variable_scale[order])
+        solver = BlockSolver(
+            blocks, len(others), table.variables, table.variable_scale[order], make_quick=quick_rows
+        )
         return Parametrization(lead=lead, solver=solver, order=order)
 
     def jacobian(self, v: Array) -> Array:

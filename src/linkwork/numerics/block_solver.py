@@ -14,7 +14,7 @@ from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.rows import SolvedRows
-from linkwork.numerics.single_rows import LARGE, SingleBlock, rates_singly, solve_singly
+from linkwork.numerics.single_rows import LARGE, MakeQuick, SingleBlock, SingleRows
 from linkwork.numerics.system import System
 
 __all__ = ["Block", "BlockSolver", "Linearised", "linearise_block"]
@@ -58,6 +58,8 @@ class BlockSolver:
     unknowns, variables : int
         n and N of the whole.
     variable_scale : (N,)
+    make_quick : MakeQuick, optional
+        Compiled code for rows that are solved one by one.
     """
 
     blocks: Sequence[Block]
@@ -65,6 +67,12 @@ class BlockSolver:
     variables: int
     variable_scale: Array
     options: NewtonOptions = field(default_factory=NewtonOptions)
+    make_quick: MakeQuick | None = None
+
+    @cached_property
+    def one_by_one(self) -> SingleRows:
+        """Rows one after the other, where :meth:`goes_singly`."""
+        return SingleRows(self.singles, self.make_quick)
 
     @cached_property
     def singles(self) -> list[SingleBlock]:
@@ -101,7 +109,7 @@ class BlockSolver:
         A row whose block fails keeps its guess in all later blocks.
         """
         if watches is None and self.goes_singly(len(start)):
-            return solve_singly(self.singles, start, options or self.options)
+            return self.one_by_one.solve(start, options or self.options)
         v = start.copy()
         count = len(v)
         status = np.full(count, CONVERGED, dtype=np.int8)
@@ -188,7 +196,7 @@ class BlockSolver:
             ``v``, ``first``, ``second``, ``condition``, ``nearness``, ``orientation``.
         """
         if linear is None and self.goes_singly(len(v)):
-            return rates_singly(self.singles, v, input_rate, input_bend)
+            return self.one_by_one.rates(v, input_rate, input_bend)
         parts = self.linearise(v) if linear is None else linear
         count = len(v)
         first = np.zeros((count, self.variables))

@@ -1,11 +1,9 @@
-"""Linear equations with few unknowns, in plain numbers where that is quicker than LAPACK."""
+"""Linear equations with few unknowns, in plain numbers: LAPACK would take as long."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-
-import numpy as np
 
 __all__ = ["inverse_and_sign", "solve_linear"]
 
@@ -31,11 +29,9 @@ def solve_linear(matrix: Sequence[Row], right: Row) -> Row | None:
             return None
         y = (s - share * r) / pivot
         return [(r - b * y) / a, y]
-    try:
-        found: Row = np.linalg.solve(np.array([row[:n] for row in matrix]), right).tolist()
-    except np.linalg.LinAlgError:
-        return None
-    return found
+    found = [[x] for x in right]
+    sign = _eliminate([row[:n] for row in matrix], found)
+    return [x for (x,) in found] if sign else None
 
 
 def inverse_and_sign(matrix: Sequence[Row]) -> tuple[list[Row], int]:
@@ -61,12 +57,48 @@ def inverse_and_sign(matrix: Sequence[Row]) -> tuple[list[Row], int]:
         rows = [[(1.0 - b * lower) / a, -b * last / a], [lower, last]]
         sign = _sign(a) * _sign(pivot)
         return ([row[::-1] for row in rows], -sign) if exchanged else (rows, sign)
-    array = np.array([row[:n] for row in matrix])
-    try:
-        found: list[Row] = np.linalg.inv(array).tolist()
-    except np.linalg.LinAlgError:
-        return [[math.nan] * n for _ in range(n)], 0
-    return found, _sign(float(np.linalg.det(array)))
+    inverse = [[float(i == j) for j in range(n)] for i in range(n)]
+    sign = _eliminate([row[:n] for row in matrix], inverse)
+    return inverse, sign
+
+
+def _eliminate(matrix: list[Row], right: list[Row]) -> int:
+    """Solve A X = B, in place of B, with partial pivoting; the sign of det A.
+
+    It is 0 where A is singular, and no number stays in B, or A is no number.
+    """
+    n, sign = len(matrix), 1
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i][k]) > abs(matrix[best][k]):
+                best = i
+        if best != k:
+            sign = -sign
+            matrix[k], matrix[best] = matrix[best], matrix[k]
+            right[k], right[best] = right[best], right[k]
+        above, known = matrix[k], right[k]
+        pivot = above[k]
+        if not pivot:
+            right[:] = [[math.nan] * len(known) for _ in right]
+            return 0
+        sign *= _sign(pivot)
+        for row, own in zip(matrix[k + 1 :], right[k + 1 :], strict=True):
+            share = row[k] / pivot
+            for j in range(k + 1, n):
+                row[j] -= share * above[j]
+            for j, x in enumerate(known):
+                own[j] -= share * x
+    for k in range(n - 1, -1, -1):
+        row, own = matrix[k], right[k]
+        for i in range(n - 1, k, -1):
+            share = row[i]
+            for j, x in enumerate(right[i]):
+                own[j] -= share * x
+        pivot = row[k]
+        for j, x in enumerate(own):
+            own[j] = x / pivot
+    return sign
 
 
 def _sign(x: float) -> int:

@@ -1,37 +1,37 @@
 """A few rows solved one after the other in plain numbers: what arrays would take longer for.
 
-The methods are those of :mod:`newton` and :mod:`block_solver`, step by step.
+The methods are those of :mod:`newton` and :mod:`block_solver`, step by step. Where a process solves
+many such rows, compiled code takes the same steps.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.status import CONVERGED, Status
 from linkwork.numerics.elimination import inverse_and_sign, solve_linear
 from linkwork.numerics.newton import FAR, SMALLEST_RATIO, NewtonOptions
 from linkwork.numerics.rows import SolvedRows
-from linkwork.numerics.system import SingleSystem, System
+from linkwork.numerics.system import QuickRows, SingleSystem, System
 
 __all__ = [
     "LARGE",
+    "MakeQuick",
     "SingleBlock",
     "SingleLinear",
+    "SingleRows",
     "SingleSolution",
     "dot",
     "linearise_singly",
-    "rates_of_row",
-    "rates_singly",
-    "solve_row",
-    "solve_singly",
 ]
 
 LARGE = 1e3  # condition up to which balanced columns are not tried
+_OFTEN = 16  # rows of the same blocks after which compiled code is asked for
 
 Row = list[float]
 
@@ -61,20 +61,107 @@ class SingleSolution:
     contraction: float = 0.0
 
 
-def solve_row(blocks: Sequence[SingleBlock], v: Row, options: NewtonOptions) -> SingleSolution:
-    """Newton-Raphson block by block, in place; a row whose block fails keeps its guess in later
-    ones.
+#: Makes compiled code of blocks, if it pays after so many more of their rows.
+MakeQuick = Callable[[Sequence[SingleBlock], int], QuickRows | None]
+
+
+class SingleRows:
+    """Blocks of which rows are solved one by one.
+
+    Parameters
+    ----------
+    blocks : sequence of SingleBlock
+    make_quick : MakeQuick, optional
     """
-    found = SingleSolution()
-    for number, block in enumerate(blocks):
-        here = [v[k] for k in block.variables]
-        _newton(block, here, options, found)
-        for k, x in zip(block.unknowns, here, strict=False):
-            v[k] = x
-        if found.status != CONVERGED:
-            found.failed_block = number
-            break
-    return found
+
+    def __init__(self, blocks: Sequence[SingleBlock], make_quick: MakeQuick | None) -> None:
+        self._blocks, self._make_quick = blocks, make_quick
+        self._quick: QuickRows | None = None
+        self._rows = 0
+
+    def _compiled(self) -> QuickRows | None:
+        """Compiled code, if it serves."""
+        if self._quick is None and self._make_quick is not None:
+            self._rows += 1
+            if self._rows >= _OFTEN:
+                self._quick, self._rows = self._make_quick(self._blocks, self._rows), 0
+        return self._quick
+
+    def solve_row(self, v: Array, options: NewtonOptions) -> SingleSolution:
+        """Newton-Raphson block by block from v (N,), in place; a row whose block fails keeps its
+        guess in later ones.
+        """
+        quick = self._compiled()
+        if quick is not None:
+            return SingleSolution(*quick.solve(v, options.max_steps, (
+                options.equation_tolerance, options.solution_tolerance, options.largest_turn,
+                FAR, SMALLEST_RATIO,
+            )))  # fmt: skip
+        row, found = v.tolist(), SingleSolution()
+        for number, block in enumerate(self._blocks):
+            here = [row[k] for k in block.variables]
+            _newton(block, here, options, found)
+            for k, x in zip(block.unknowns, here, strict=False):
+                row[k] = x
+            if found.status != CONVERGED:
+                found.failed_block = number
+                break
+        v[:] = row
+        return found
+
+    def take_rates(
+        self, v: Array, first: Array, second: Array, signs: StatusArray
+    ) -> tuple[float, float]:
+        """``BlockSolver.rates`` at one position v (N,): condition and nearness.
+
+        ``first``, ``second`` (N,): with u' and u'' of the inputs in place, filled with the rates of
+        the unknowns; ``signs`` (blocks,): filled with those of the determinants.
+        """
+        quick = self._compiled()
+        if quick is not None:
+            return quick.take_rates(v, first, second, signs, LARGE)
+        row, rates, bends = v.tolist(), first.tolist(), second.tolist()
+        condition = nearness = 1.0
+        for number, block in enumerate(self._blocks):
+            here = [row[k] for k in block.variables]
+            part = _block_rates(block, here, rates, bends)
+            own = _condition(block, part)
+            condition = max(condition, own)
+            nearness = max(nearness, own if own <= LARGE else _nearness(block, part, own))
+            signs[number] = part.sign
+        first[:], second[:] = rates, bends
+        return condition, nearness
+
+    def solve(self, start: Array, options: NewtonOptions) -> SolvedRows:
+        """``BlockSolver.solve`` for a few rows (B, N)."""
+        v = start.copy()
+        done = [self.solve_row(row, options) for row in v]
+        return SolvedRows(
+            v=v,
+            status=np.array([x.status for x in done], dtype=np.int8),
+            failed_block=np.array([x.failed_block for x in done]),
+            iterations=np.array([x.iterations for x in done]),
+            residual=np.array([x.residual for x in done]),
+            first_step=np.array([x.first_step for x in done]),
+            contraction=np.array([x.contraction for x in done]),
+        )
+
+    def rates(self, v: Array, input_rate: Array, input_bend: Array | float = 0.0) -> SolvedRows:
+        """``BlockSolver.rates`` for a few rows (B, N)."""
+        first, second = np.zeros(v.shape), np.zeros(v.shape)
+        unknowns = v.shape[1] - input_rate.shape[-1]
+        first[:, unknowns:], second[:, unknowns:] = input_rate, input_bend
+        signs = np.zeros((len(v), len(self._blocks)), dtype=np.int8)
+        rows = zip(v, first, second, signs, strict=True)
+        found = np.array([self.take_rates(*row) for row in rows]).reshape(-1, 2)
+        return SolvedRows(
+            v=v,
+            first=first,
+            second=second,
+            condition=found[:, 0],
+            nearness=found[:, 1],
+            orientation=signs,
+        )
 
 
 def _newton(block: SingleBlock, v: Row, opt: NewtonOptions, found: SingleSolution) -> None:
@@ -127,21 +214,6 @@ def _newton(block: SingleBlock, v: Row, opt: NewtonOptions, found: SingleSolutio
     found.contraction = max(found.contraction, contraction)
 
 
-def solve_singly(blocks: Sequence[SingleBlock], start: Array, options: NewtonOptions) -> SolvedRows:
-    """``BlockSolver.solve`` for a few rows (B, N)."""
-    rows: list[Row] = start.tolist()
-    done = [solve_row(blocks, v, options) for v in rows]
-    return SolvedRows(
-        v=np.array(rows),
-        status=np.array([x.status for x in done], dtype=np.int8),
-        failed_block=np.array([x.failed_block for x in done]),
-        iterations=np.array([x.iterations for x in done]),
-        residual=np.array([x.residual for x in done]),
-        first_step=np.array([x.first_step for x in done]),
-        contraction=np.array([x.contraction for x in done]),
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class SingleLinear:
     """A block at one position: dF/dv (n, N), the inverse of its first n columns, sign of det."""
@@ -155,54 +227,6 @@ def linearise_singly(block: SingleBlock, v: Row) -> SingleLinear:
     """A block at a position of its own variables (N,)."""
     jacobian = block.one.residual_and_jacobian(v)[1]
     return SingleLinear(jacobian, *inverse_and_sign(jacobian))
-
-
-@dataclass(slots=True)
-class SingleRates:
-    """Derivatives of all variables at one position (N,), and what is known of its Jacobians."""
-
-    first: Row
-    second: Row
-    condition: float = 1.0
-    nearness: float = 1.0
-    orientation: list[int] = field(default_factory=list)
-
-
-def rates_of_row(
-    blocks: Sequence[SingleBlock], v: Row, rate: Row, bend: Row | None = None
-) -> SingleRates:
-    """``BlockSolver.rates`` at one position (N,), for u' and u'' of the inputs (p,)."""
-    still = [0.0] * (len(v) - len(rate))
-    found = SingleRates(still + rate, still + (bend or [0.0] * len(rate)))
-    for block in blocks:
-        here = [v[k] for k in block.variables]
-        part = _block_rates(block, here, found.first, found.second)
-        own = _condition(block, part)
-        found.condition = max(found.condition, own)
-        found.nearness = max(found.nearness, own if own <= LARGE else _nearness(block, part, own))
-        found.orientation.append(part.sign)
-    return found
-
-
-def rates_singly(
-    blocks: Sequence[SingleBlock],
-    v: Array,
-    input_rate: Array,
-    input_bend: Array | float = 0.0,
-) -> SolvedRows:
-    """``BlockSolver.rates`` for a few rows (B, N)."""
-    each = len(v), input_rate.shape[-1]
-    rates = np.broadcast_to(input_rate, each).tolist()
-    bends = np.broadcast_to(input_bend, each).tolist()
-    rows = [rates_of_row(blocks, *row) for row in zip(v.tolist(), rates, bends, strict=True)]
-    return SolvedRows(
-        v=v,
-        first=np.array([row.first for row in rows]),
-        second=np.array([row.second for row in rows]),
-        condition=np.array([row.condition for row in rows]),
-        nearness=np.array([row.nearness for row in rows]),
-        orientation=np.array([row.orientation for row in rows], dtype=np.int8),
-    )
 
 
 def _block_rates(block: SingleBlock, v: Row, first: Row, second: Row) -> SingleLinear:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, IndexArray, StatusArray
 
-__all__ = ["Curvature", "SingleCurvature", "SingleSystem", "SmallSystem", "System"]
+__all__ = ["Curvature", "QuickRows", "SingleCurvature", "SingleSystem", "SmallSystem", "System"]
 
 
 class SmallSystem(Protocol):
@@ -82,8 +82,24 @@ class SingleSystem(Protocol):
         """How many of the m equations belong to loops."""
 
     @property
+    def loops(self) -> int:
+        """L, each of two equations."""
+
+    @property
     def phases(self) -> Sequence[Sequence[tuple[int, float]]]:
         """Variables and weights of the G phases."""
+
+    @property
+    def fixed(self) -> Sequence[tuple[int, int, complex]]:
+        """Loop, phase and coefficient of terms."""
+
+    @property
+    def sliding(self) -> Sequence[tuple[int, int, complex, int]]:
+        """The same and the variable length of terms that have one."""
+
+    @property
+    def lines(self) -> Sequence[tuple[float, Sequence[tuple[int, float]]]]:
+        """The constant, and variables with weights, of linear rows."""
 
     @property
     def pairs(self) -> Sequence[tuple[int, int]]:
@@ -100,6 +116,29 @@ class SingleSystem(Protocol):
 
     def curvature(self, v: Sequence[float], matrix: Sequence[list[float]]) -> SingleCurvature:
         """As :meth:`System.curvature`."""
+
+
+class QuickRows(Protocol):
+    """Blocks in compiled code, of which rows v (N,) are solved one by one."""
+
+    def solve(
+        self, v: Array, max_steps: int, limits: tuple[float, float, float, float, float]
+    ) -> tuple[int, int, int, float, float, float]:
+        """Newton-Raphson, in place: status, failed block, iterations, residual, first step and
+        contraction.
+
+        ``limits``: both tolerances, the largest turn, the correction that has run away, and the
+        smallest one of which a ratio is taken.
+        """
+
+    def take_rates(
+        self, v: Array, first: Array, second: Array, signs: StatusArray, large: float
+    ) -> tuple[float, float]:
+        """Rates of the unknowns, after those of the inputs, and signs of determinants, in place:
+        condition and nearness.
+
+        ``large``: the condition up to which balanced columns are not tried.
+        """
 
 
 class SingleCurvature(Protocol):

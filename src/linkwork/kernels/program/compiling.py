@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = [
     "call_at",
     "called_by_name",
+    "called_unfused",
     "carray",
     "compiled",
     "compiled_for",
@@ -43,6 +44,7 @@ __all__ = [
     "prefetch",
     "trial_at",
     "types",
+    "unfused",
 ]
 
 _numba: Any = numba  # whose types do not know of all options
@@ -91,7 +93,7 @@ def _refuse(function: Any, *_: object) -> NoReturn:
 
 def _compiling(signature: object, **options: object) -> Compiling:
     def compile_function(function: Any, /) -> Any:
-        made = _numba.njit(nogil=True, **_OPTIONS, **options)(function)
+        made = _numba.njit(nogil=True, **(_OPTIONS | options))(function)
         made._cache = _SourcesCache(function)
         if "no_cpython_wrapper" in options:
             # Python would call a function that is not there
@@ -114,11 +116,20 @@ def compiled_for(signature: object) -> Compiling:
 
 compiled = compiled_for(None)
 
+
+def called_unfused(signature: object) -> Compiling:
+    """As :func:`compiled_for`, and every operation is rounded by itself, as in Python."""
+    return _compiling(signature, no_cfunc_wrapper=True, fastmath=False)
+
+
 # to compile the way in from Python takes longer than to compile most functions
 _WITHIN = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: The same for functions that only compiled ones call: Python cannot.
 compiled_within: Compiling = _compiling(None, **_WITHIN)
+
+#: The same, and every operation is rounded by itself, as in Python.
+unfused: Compiling = _compiling(None, fastmath=False, **_WITHIN)
 
 #: The same for functions that make no arrays: references to their arguments are not counted.
 #: Counting would take a fifth of the time.

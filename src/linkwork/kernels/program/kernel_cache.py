@@ -15,6 +15,7 @@ from linkwork.foundation.cache_folder import user_cache
 __all__ = [
     "LOOPS",
     "PATH_LOOP",
+    "SINGLE_LOOP",
     "is_compiled",
     "is_loaded",
     "loop_serves",
@@ -26,8 +27,14 @@ __all__ = [
 LOOPS = {"independent": "march", "lockstep": "in_step", "rowwise": "by_rows"}
 #: The loop over solution paths of a homotopy.
 PATH_LOOP = "lane_paths"
-_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths"}
-_COMPILED = ("kernels/gpu", "kernels/march", "kernels/paths", "kernels/program", "marching")
+#: Newton-Raphson of one row.
+SINGLE_LOOP = "compiled_rows"
+_FUNCTIONS = LOOPS | {PATH_LOOP: "follow_paths", SINGLE_LOOP: "solve_row"}
+_FOLDERS = {PATH_LOOP: "paths", SINGLE_LOOP: "single"}
+_COMPILED = (
+    "kernels/gpu", "kernels/march", "kernels/paths", "kernels/program", "kernels/single",
+    "marching",
+)  # fmt: skip
 _PAYS = 10_000_000  # positions: as long as they take another loop does it take to compile one
 
 
@@ -80,7 +87,7 @@ def _indices(loop: str) -> Iterator[Path]:
 
 def _package(loop: str) -> str:
     """The package of kernels that a loop belongs to."""
-    return "paths" if loop == PATH_LOOP else "march"
+    return _FOLDERS.get(loop, "march")
 
 
 def say_that_it_compiles(loop: str = "") -> None:

@@ -22,7 +22,7 @@ from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.continuation.input_path import InputPath, quintic
 from linkwork.numerics.newton import unlimited
 from linkwork.numerics.rows import SolvedRows
-from linkwork.numerics.single_rows import SingleSolution, rates_of_row, solve_row
+from linkwork.numerics.single_rows import SingleSolution
 
 __all__ = [
     "BOLD",
@@ -152,15 +152,18 @@ Watch = Callable[[Node, Node], bool]
 def node_at(solver: BlockSolver, path: InputPath, t: float, v: Array, iterations: int = 0) -> Node:
     """The node of a converged position."""
     if solver.goes_singly(1):
-        one = rates_of_row(solver.singles, v.tolist(), path.rate.tolist())
+        first, second = np.zeros(len(v)), np.zeros(len(v))
+        first[solver.unknowns :] = path.rate
+        signs = np.zeros(len(solver.blocks), dtype=np.int8)
+        condition, nearness = solver.one_by_one.take_rates(v, first, second, signs)
         return Node(
             t=t,
             v=v,
-            first=np.array(one.first),
-            second=np.array(one.second),
-            orientation=np.array(one.orientation, dtype=np.int8),
-            condition=one.condition,
-            nearness=one.nearness,
+            first=first,
+            second=second,
+            orientation=signs,
+            condition=condition,
+            nearness=nearness,
             iterations=iterations,
         )
     rates = solver.rates(v[None, :], path.rate)
@@ -321,9 +324,8 @@ class _Trial:
         """Newton-Raphson from a guess (N,): where it ended, and how."""
         solver = self.solver
         if solver.goes_singly(1):
-            row = guess.tolist()
-            found = solve_row(solver.singles, row, self.quick)
-            return np.array(row), found
+            v = guess.copy()
+            return v, solver.one_by_one.solve_row(v, self.quick)
         done = solver.solve(guess[None, :], self.quick)
         return done.v[0], SingleSolution(
             status=int(done.status[0]),

@@ -1,0 +1,15 @@
+"""Rows one by one in compiled code, which is loaded when first used."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwork.foundation.lazy import loader
+
+if TYPE_CHECKING:
+    from linkwork.kernels.single.compiled_rows import (
+        solve_row as solve_row,
+        take_rates as take_rates,
+    )
+else:
+    __getattr__ = loader(__name__)

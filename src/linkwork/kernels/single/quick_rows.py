@@ -1,0 +1,63 @@
+"""Rows solved one by one in compiled code, from when on that pays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+
+from linkwork.foundation.arrays import Array, StatusArray
+from linkwork.kernels import single
+from linkwork.kernels.program.kernel_cache import LOOPS, SINGLE_LOOP, is_loaded, loop_serves
+from linkwork.kernels.single.packed_blocks import PackedBlock, pack
+
+__all__ = ["QuickRows", "quick_rows"]
+
+# solved blocks: in plain numbers they take as long as to load compiled code,
+_LOADING = 30_000
+# or to compile it
+_COMPILING = 300_000
+#: Blocks that were to be solved, since compiled code was looked for last.
+_WORK = {"": 0}
+
+
+class QuickRows:
+    """Some blocks in compiled code.
+
+    Results equal those of :mod:`linkwork.numerics.single_rows`, bit for bit where a machine rounds
+    every operation by itself.
+    """
+
+    def __init__(self, blocks: Sequence[PackedBlock]) -> None:
+        self._solve_row, self._take_rates = single.solve_row, single.take_rates
+        self._code, self._numbers = pack(blocks)
+
+    def solve(
+        self, v: Array, max_steps: int, limits: tuple[float, float, float, float, float]
+    ) -> tuple[int, int, int, float, float, float]:
+        """Solve all blocks from ``v`` (N,), in place; see :func:`compiled_rows.solve_row`."""
+        return self._solve_row(self._code, self._numbers, v, max_steps, *limits)
+
+    def take_rates(
+        self, v: Array, first: Array, second: Array, signs: StatusArray, large: float
+    ) -> tuple[float, float]:
+        """Fill in the rates of the unknowns; see :func:`compiled_rows.take_rates`."""
+        own = v.copy()  # which may not be contiguous, or not to be written to
+        return self._take_rates(self._code, self._numbers, own, first, second, signs, large)
+
+
+def quick_rows(blocks: Sequence[PackedBlock], rows: int) -> QuickRows | None:
+    """Blocks in compiled code, if that pays after as many rows as a process has solved by now.
+
+    Parameters
+    ----------
+    rows : int
+        Rows of these blocks that have been solved since the last call.
+    """
+    if not is_loaded(SINGLE_LOOP):
+        _WORK[""] += rows * len(blocks)
+        work = _WORK[""]
+        if work < _LOADING and not any(map(is_loaded, LOOPS)):
+            return None
+        if not loop_serves(SINGLE_LOOP, 0) and (work < _COMPILING or find_spec("numba") is None):
+            return None
+    return QuickRows(blocks)
