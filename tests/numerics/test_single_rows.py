@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import platform
 
 import numpy as np
@@ -193,6 +194,28 @@ def test_compiled_rows_are_those_of_plain_numbers(name: str) -> None:
         for column in ("first", "second", "condition", "nearness"):
             np.testing.assert_allclose(getattr(a, column), getattr(b, column), rtol=within)
     assert len(endings) > 1
+
+
+def test_compiled_code_is_not_copied() -> None:
+    asked: list[int] = []
+
+    def make(blocks: object, rows: int) -> None:
+        asked.append(rows)
+
+    rows = SingleRows([], make)
+    for _ in range(40):
+        rows.solve_row(np.zeros(2), NewtonOptions())
+    assert asked == [16, 16]
+    solver = lw.example("four-bar").model.compiled.solver
+    for _ in range(20):
+        solver.one_by_one.solve_row(np.array([0.4, 1.2, 0.5]), NewtonOptions())
+    solver.one_by_one._quick = quick_rows.QuickRows(solver.singles)
+    copy = pickle.loads(pickle.dumps(solver))
+    assert copy.one_by_one._quick is None
+    a, b = (
+        one.one_by_one.solve(np.array([[0.4, 1.2, 0.5]]), NewtonOptions()) for one in (solver, copy)
+    )
+    np.testing.assert_array_equal(a.v, b.v)
 
 
 def test_rows_are_compiled_when_that_pays(monkeypatch: pytest.MonkeyPatch) -> None:

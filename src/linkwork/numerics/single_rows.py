@@ -79,6 +79,10 @@ class SingleRows:
         self._quick: QuickRows | None = None
         self._rows = 0
 
+    def __reduce__(self) -> tuple[type[SingleRows], tuple[object, ...]]:
+        """Copies by pickle ask for compiled code themselves."""
+        return SingleRows, (self._blocks, self._make_quick)
+
     def _compiled(self) -> QuickRows | None:
         """Compiled code, if it serves."""
         if self._quick is None and self._make_quick is not None:
