@@ -9,6 +9,7 @@ import linkwork as lw
 from linkwork.design.improvement.goals import goal_of
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.varied_number import number_named
@@ -26,9 +27,10 @@ def _values(
     table = motion.inputs[next(iter(motion.inputs))] * scale
     goal = goal_of(model, Goal(of=of, target=0.0, at=at), table, motion.found, scale)
     q = np.stack([mechanism.solve(at=value).q for value in at]) if at else motion.q
-    lanes = SolvedLanes(model, numbers, x, q, goal.at, 2)
+    writer = DesignWriter(model, numbers)
+    lanes = SolvedLanes(writer, x, q, goal.at, 2)
     inputs = np.broadcast_to(goal.at, (2, len(goal.at)))
-    found = lanes.at(np.array([x, x]), inputs, np.arange(2))
+    found = lanes.at(writer.written(np.array([x, x])), inputs, np.arange(2))
     value, by_x = goal.values(found)
     return value[1], by_x[1]
 

@@ -8,6 +8,7 @@ import pytest
 import linkwork as lw
 from linkwork.design.improvement import improving
 from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.varied_number import number_named
 
@@ -18,8 +19,9 @@ def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
     numbers = [number_named(bar.description, name) for name in names]
     x = np.array([q.of(bar.description) for q in numbers])
     position = bar.solve(at=50.0)
-    lanes = SolvedLanes(bar.model, numbers, x, position.q[None], np.radians([50.0]), 2)
-    found = lanes.at(np.array([x, x]), np.radians([[50.0], [50.0]]), np.arange(2))
+    writer = DesignWriter(bar.model, numbers)
+    lanes = SolvedLanes(writer, x, position.q[None], np.radians([50.0]), 2)
+    found = lanes.at(writer.written(np.array([x, x])), np.radians([[50.0], [50.0]]), np.arange(2))
     slopes = found.values([found.rows.place("B").v.real])[1][:, 0, 0]
     expected = [bar.gradient("B.x", by=names, at=50.0)[name] for name in names]
     # both solve the same linear equations: a few roundings

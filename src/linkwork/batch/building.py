@@ -19,7 +19,7 @@ from linkwork.equations.compiling import Compiled, compile_equations
 from linkwork.equations.from_linkage import write_loops
 from linkwork.equations.from_loops import read_loops, read_plain_equations
 from linkwork.equations.input_motion import driven_by_time
-from linkwork.equations.model import LoopEquations, Term
+from linkwork.equations.model import LoopEquations
 from linkwork.foundation.arrays import AnyArray, Array, IndexArray
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.lanes import LaneArithmetic, is_batched
@@ -273,20 +273,8 @@ def _widened(model: Model, varied: Sequence[VariedNumber]) -> _Widened | None:
 
 def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
     """The mechanism's equations with the terms of the given ones."""
-    loops = tuple(
-        replace(loop, left=_plain_terms(loop.left), right=_plain_terms(loop.right))
-        for loop in equations.loops
-    )
-    points = {
-        name: replace(path, terms=_plain_terms(path.terms))
-        for name, path in equations.points.items()
-    }
-    symbols = {name: _first(number).real for name, number in equations.symbols.items()}
-    return replace(own, loops=loops, points=points, symbols=symbols)
-
-
-def _plain_terms(terms: Sequence[Term]) -> tuple[Term, ...]:
-    return tuple(replace(term, value=_first(term.value)) for term in terms)
+    wide = equations.mapped(_first)
+    return replace(own, loops=wide.loops, points=wide.points, symbols=wide.symbols)
 
 
 def _first(number: complex) -> complex:

@@ -33,7 +33,7 @@ from linkwork.motion.model import Model
 from linkwork.motion.quantity_values import QuantityValues, term_jet
 from linkwork.motion.speeds import leading_speeds
 
-__all__ = ["DifferentiatedRows"]
+__all__ = ["DifferentiatedRows", "taped_speed"]
 
 _ZERO = np.zeros(())
 
@@ -89,14 +89,17 @@ class DifferentiatedRows(QuantityValues):
             self.taped: LoopEquations = write_equations(self.description)
         self.tape.writing = False
         lost: BoolArray = np.logical_not(np.isfinite(v).all(axis=1))
-        still = np.where(lost, np.nan, 0.0)
-        links: Any = _Column([angle.constant for angle in self.taped.links.values()])
-        dimensions: Any = _Column(list(self.taped.dimensions.values()))
-        super().__init__(model, lost, still, links, dimensions)
-        self.count = len(self.equations.unknowns)
+        self._take_quantities(model, lost)
         self.solution = np.where(lost[:, None], np.nan, v)
         # without an input nothing moves, and there are no rates
         self.order = order if self.equations.inputs else 0
+
+    def _take_quantities(self, model: Model, lost: BoolArray) -> None:
+        """What quantities read besides variables and points."""
+        links: Any = _Column([angle.constant for angle in self.taped.links.values()])
+        dimensions: Any = _Column(list(self.taped.dimensions.values()))
+        super().__init__(model, lost, np.where(lost, np.nan, 0.0), links, dimensions)
+        self.count = len(self.equations.unknowns)
         self._symbols = [x.symbol for x in self.equations.variables]
         self._points: dict[str, Jet] = {}
 
@@ -147,10 +150,12 @@ class DifferentiatedRows(QuantityValues):
         """All variables by symbol, with as many derivatives on the tape as asked for."""
         return self._differentiated()
 
-    def _differentiated(self) -> dict[str, Jet]:
+    def _differentiated(self, values: Sequence[Any] = ()) -> dict[str, Jet]:
+        """Variables on the tape; ``values``: themselves, if they are on it already."""
         known = self.solution, *self._rates
         columns: list[list[Any]] = [[part[:, k] for k in range(part.shape[1])] for part in known]
-        for order in range(self.order + 1):
+        columns[0] = list(values) or columns[0]
+        for order in range(1 if values else 0, self.order + 1):
             # higher derivatives are not on the tape yet, and do not enter lower ones
             jets = [Jet(*parts) for parts in zip(*columns, strict=True)]
             rows = self._residuals(dict(zip(self._symbols, jets, strict=True)))
@@ -193,6 +198,11 @@ class DifferentiatedRows(QuantityValues):
         loops = [self._sum(loop.terms, variables) for loop in taped.loops]
         rows = [Jet(z.v.real, z.d1.real, z.d2.real) for z in loops]
         rows += [Jet(z.v.imag, z.d1.imag, z.d2.imag) for z in loops]
+        return rows + self._further(variables)
+
+    def _further(self, variables: Mapping[str, Jet]) -> list[Jet]:
+        """All equations but loops."""
+        taped, rows = self.taped, []
         for line in taped.linear:
             total = _constant(line.constant)
             for symbol, weight in line.terms:
@@ -243,11 +253,7 @@ class DifferentiatedRows(QuantityValues):
     @cached_property
     def speed(self) -> Any:
         """The speed of the leading input, which numbers may change; ``None`` without."""
-        if self.model.speed is None:
-            return None
-        speeds = leading_speeds(self.description, self.equations.inputs, self.model.rows)
-        # time itself, where it drives the rows, has a speed of its own
-        return next(iter(speeds.values()), self.model.speed)
+        return taped_speed(self.model, self.description, self.equations)
 
     @cached_property
     def misfits(self) -> list[Any]:
@@ -262,6 +268,15 @@ class DifferentiatedRows(QuantityValues):
         """The leading input, internal units."""
         lead, _ = leading_input(self.model.rows)
         return self.variables[self._symbols[self.count + lead]].v
+
+
+def taped_speed(model: Model, description: Description, equations: LoopEquations) -> Any:
+    """The speed of the leading input in a description with taped numbers; ``None`` without."""
+    if model.speed is None:
+        return None
+    speeds = leading_speeds(description, equations.inputs, model.rows)
+    # time itself, where it drives the rows, has a speed of its own
+    return next(iter(speeds.values()), model.speed)
 
 
 def _constant(number: Any) -> Jet:

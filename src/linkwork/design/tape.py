@@ -15,20 +15,21 @@ A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, chapter 3.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial, reduce
+from math import isfinite
 from typing import Any, cast
 
 import numpy as np
 
-from linkwork.design.derivative_rules import PLAIN, RULES, Partial, one_sided
+from linkwork.design.derivative_rules import PLAIN, RULES, Partial, carried, one_sided
 from linkwork.expression.lane_functions import least, most
-from linkwork.foundation.arrays import AnyArray, Array
+from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.lanes import Consensus, Lanes, Truths
 from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.rounding import RANK_TOLERANCE
 
-__all__ = ["Tape", "TapedNumber"]
+__all__ = ["Tape", "TapedNumber", "is_still"]
 
 _OF_TWO: dict[Callable[..., Any], Any] = {least: np.minimum, most: np.maximum}
 _NEUTRAL: dict[object, float] = {np.add: 0.0, np.subtract: 0.0, np.multiply: 1.0}
@@ -94,9 +95,11 @@ class Tape(Consensus):
     # Arithmetic
 
     def operand(self, number: object) -> Any:
-        """A taped number, or a constant: a plain number or an array."""
+        """A taped number, truths, or a constant: a plain number or an array."""
+        if isinstance(number, TapedNumber) and number.arithmetic is not self:
+            raise NotElementwise
         # NumPy broadcasts constants by itself
-        return number.values if isinstance(number, Truths) else number
+        return number
 
     def plain(self, number: Any) -> Any:
         """A constant."""
@@ -108,8 +111,7 @@ class Tape(Consensus):
 
     def carry(self, value: Any, number: Any) -> Any:
         """A value with the derivatives of a number."""
-        bare = value.values if isinstance(value, TapedNumber) else np.atleast_1d(value)
-        return self.combine(bare, [(1.0, number)])
+        return self.apply(carried, value, number)
 
     def chain(self, value: Any, slope: Any, number: Any) -> Any:
         """A function's value at a number, which has this slope there."""
@@ -119,7 +121,7 @@ class Tape(Consensus):
         """One of two plain numbers."""
         if self.is_shared:
             return yes if truths.values[0] else no
-        return np.where(truths.values, yes, no)
+        return self.apply(np.where, truths, yes, no)
 
     # A number that must not vary may still be written with numbers that do: 2 f / f
 
@@ -127,7 +129,11 @@ class Tape(Consensus):
         """A number that must not vary, such as the ratio of wheels."""
         if not self.is_steady(number):
             raise NotElementwise
-        return number.values[0].item()
+        return self.value_in(number, 0)
+
+    def value_in(self, number: TapedNumber, lane: int) -> Any:
+        """The value of a number in one lane."""
+        return self.bare(number)[lane].item()
 
     def value_of(self, number: Any) -> Any:
         """The value of a number."""
@@ -148,9 +154,7 @@ class Tape(Consensus):
         """Whether no input changes a number."""
         if not isinstance(number, TapedNumber):
             return True
-        rates = np.abs(self.forward([number])[0])
-        size = max(1.0, float(np.abs(number.values).max(initial=0.0)))
-        return bool((rates <= _STEADY * size).all())
+        return bool(is_still(self.bare(number), self.forward([number])[0]).all())
 
     def solve_shortest(
         self, matrix: Sequence[Sequence[Any]], right: Sequence[Any]
@@ -184,21 +188,30 @@ class Tape(Consensus):
                     return _ZERO
         if function in _OF_TWO:
             return reduce(partial(self.apply, _OF_TWO[function]), given)
-        bare = [x.values if isinstance(x, TapedNumber) else x for x in given]
+        return self.computed(function, given)
+
+    def bare(self, number: Any) -> Any:
+        """The values of an operand."""
+        return number.values if isinstance(number, _HELD) else number
+
+    def computed(self, function: Callable[..., Any], given: Sequence[Any]) -> Any:
+        """The value of a function of operands."""
+        bare = [*map(self.bare, given)]
         if function in PLAIN:
             return self.decidable(function(*bare))
         rule = one_sided if function is np.abs and self.writing else RULES.get(function)
         if rule is None:
             raise NotElementwise
         values = np.asarray(function(*bare))
-        nodes: list[int] = []
-        partials: list[Partial] = []
-        wanted = [isinstance(x, TapedNumber) for x in given]
-        for x, own in zip(given, rule(values, *bare), strict=True):
-            if isinstance(x, TapedNumber):
-                nodes.append(x.node)
-                partials.append(own)
-        return self._node(values, nodes, partials) if any(wanted) else values
+        taped = [isinstance(x, TapedNumber) for x in given]
+        if not any(taped):
+            return values
+        linked = [
+            (x.node, own)
+            for x, own, is_taped in zip(given, rule(values, *bare), taped, strict=True)
+            if is_taped and own is not None
+        ]
+        return self._node(values, [node for node, _ in linked], [own for _, own in linked])
 
     def add(self, x: Any, y: Any) -> Any:
         """x + y."""
@@ -231,25 +244,29 @@ class Tape(Consensus):
     # Derivatives
 
     @np.errstate(all="ignore")  # a derivative that does not exist is no number
-    def forward(self, results: Sequence[object]) -> list[AnyArray]:
-        """The derivatives of results by all inputs, (P, …) each."""
-        count = len(self.inputs)
-        rates: dict[int, AnyArray] = {}
-        for k, node in enumerate(self.inputs):
-            rates[node] = np.zeros((count, 1))
-            rates[node][k] = 1.0
+    def forward(
+        self, results: Sequence[object], given: Mapping[int, AnyArray] | None = None
+    ) -> list[AnyArray]:
+        """The derivatives of results by all inputs, or by the parameters of given ones, (P, …).
+
+        ``given``: the derivatives of nodes by P parameters, (P, …) each, in the place of inputs.
+        """
+        units = np.eye(len(self.inputs))[:, :, None]
+        rates: dict[int, AnyArray] = dict(
+            zip(self.inputs, units, strict=True) if given is None else given
+        )
+        nothing = np.zeros((len(next(iter(rates.values()), ())), 1))
         for node in self._needed([x.node for x in results if isinstance(x, TapedNumber)]):
-            if node in rates:
-                continue
-            total: Any = 0.0
-            for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
-                x = rates[parent]
-                # eq. (121)
-                total = total + _product(a, x)
-                if b is not None:
-                    total = total + _product(b, np.conj(x))
-            rates[node] = np.real(total) if self._real[node] else np.asarray(total)
-        nothing = np.zeros((count, 1))
+            if node not in rates:
+                total: Any = 0.0
+                for parent, (a, b) in zip(self._parents[node], self._partials[node], strict=True):
+                    # eq. (121)
+                    part = _product(a, rates[parent])
+                    if b is not None:
+                        part = part + _product(b, np.conj(rates[parent]))
+                    # the first part is no sum yet
+                    total = total + part
+                rates[node] = np.asarray(np.real(total) if self._real[node] else total)
         return [rates[x.node] if isinstance(x, TapedNumber) else nothing for x in results]
 
     @np.errstate(all="ignore")
@@ -278,28 +295,39 @@ class Tape(Consensus):
             found[k] = adjoints.get(node, 0.0)
         return found
 
-    def _needed(self, results: Sequence[int]) -> list[int]:
-        """The nodes on which results depend, in order."""
+    def _needed(
+        self, results: Sequence[int], uses: Sequence[Sequence[int]] | None = None
+    ) -> list[int]:
+        """The nodes on which results depend, or of which they make use, in order."""
         wanted = bytearray(len(self._parents))
         for node in results:
             wanted[node] = 1
         # parents come before their children
         for node in range(max(results, default=-1), -1, -1):
             if wanted[node]:
-                for parent in self._parents[node]:
+                for parent in (uses or self._parents)[node]:
                     wanted[parent] = 1
         return [node for node, used in enumerate(wanted) if used]
 
 
+def is_still(values: AnyArray, rates: AnyArray) -> BoolArray:
+    """Where no input changes a number with these values (n,) and derivatives (P, n)."""
+    size = np.maximum(1.0, np.abs(values))
+    return np.asarray((np.abs(rates) <= _STEADY * size).all(axis=0))
+
+
 def _is_plain(x: Any, value: float) -> bool:
     """Whether something is this number, not taped."""
-    return not isinstance(x, TapedNumber) and np.ndim(x) == 0 and x == value
+    return not isinstance(x, _HELD) and np.ndim(x) == 0 and x == value
 
 
 def _product(factor: Any, rate: Any) -> Any:
     """A factor times a rate; without a rate 0, even where the factor does not exist."""
+    if type(factor) is float and factor == 1.0:
+        return rate
     product = factor * rate
-    if np.isfinite(factor).all():
+    # squares say whether all are finite in half the time; where they overflow nothing is wrong
+    if isfinite(np.vdot(factor, factor).real):
         return product
     return np.where(rate == 0.0, 0.0, product)
 
@@ -336,34 +364,14 @@ class TapedNumber(Lanes):
         """The shape of the values."""
         return np.shape(self.values)
 
-    def holds(self, truths: AnyArray) -> Any:
-        """Whether something holds: a plain array, or truths to be decided."""
-        return self.arithmetic.decidable(truths)
-
-    def _compared(self, other: object, function: Callable[..., Any]) -> Any:
-        return self.arithmetic.apply(function, self, other)
-
-    def __eq__(self, other: object) -> Any:
-        return self._compared(other, np.equal)
-
-    def __ne__(self, other: object) -> Any:
-        return self._compared(other, np.not_equal)
-
-    def __lt__(self, other: object) -> Any:
-        return self._compared(other, np.less)
-
-    def __le__(self, other: object) -> Any:
-        return self._compared(other, np.less_equal)
-
-    def __gt__(self, other: object) -> Any:
-        return self._compared(other, np.greater)
-
-    def __ge__(self, other: object) -> Any:
-        return self._compared(other, np.greater_equal)
+    def holds(self, question: Callable[..., Any], *others: object) -> Any:
+        """The answer to a question: a plain array, or truths to be decided."""
+        return self.arithmetic.apply(question, self, *others)
 
     def __bool__(self) -> bool:
         if self.arithmetic.is_shared:
             return bool(self.values[0] != 0.0)
-        return self.arithmetic.decide(
-            np.broadcast_to(self.values != 0.0, self.arithmetic.agreeing.shape)
-        )
+        return bool(self != 0.0)
+
+
+_HELD = (TapedNumber, Truths)

@@ -11,6 +11,7 @@ from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
+from linkwork.foundation.elementwise import display_value
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.names import canonical
 from linkwork.kernels.law_row import LawRow
@@ -76,7 +77,10 @@ class PointTable:
 
 
 def phasor_rows(rows: Sequence[Iterable[Term]], index: Mapping[str, int]) -> PhasorRows:
-    """Terms as arrays; ``index`` numbers the variables by symbol."""
+    """Terms as arrays; ``index`` numbers the variables by symbol.
+
+    Where values are those of several designs, the coefficients are those of the first one.
+    """
     terms = [(k, term) for k, row in enumerate(rows) for term in row]
     phases = [
         (t, index[name], weight) for t, (_, term) in enumerate(terms) for name, weight in term.phase
@@ -85,7 +89,7 @@ def phasor_rows(rows: Sequence[Iterable[Term]], index: Mapping[str, int]) -> Pha
         rows=len(rows),
         variables=len(index),
         row=np.array([k for k, _ in terms], dtype=np.intp),
-        coefficient=np.array([term.value for _, term in terms], dtype=complex),
+        coefficient=np.array([display_value(term.value) for _, term in terms], dtype=complex),
         length=np.array(
             [-1 if t.length is None else index[t.length] for _, t in terms], dtype=np.intp
         ),

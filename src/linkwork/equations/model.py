@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -236,6 +237,30 @@ class LoopEquations:
     outlines: Mapping[str, tuple[str, str, ComplexArray]] = FrozenDict()
     fixed: tuple[str, ...] = ()
     length_scale: float = 1.0
+
+    def mapped(self, change: Callable[[Any], Any]) -> LoopEquations:
+        """The same equations, each of whose coefficients is changed."""
+
+        def terms(own: tuple[Term, ...]) -> tuple[Term, ...]:
+            return tuple(replace(term, value=change(term.value)) for term in own)
+
+        return replace(
+            self,
+            loops=tuple(
+                replace(loop, left=terms(loop.left), right=terms(loop.right)) for loop in self.loops
+            ),
+            linear=tuple(replace(line, constant=change(line.constant)) for line in self.linear),
+            symbols={name: change(number) for name, number in self.symbols.items()},
+            dimensions={name: change(number) for name, number in self.dimensions.items()},
+            points={
+                name: replace(path, terms=terms(path.terms)) for name, path in self.points.items()
+            },
+            links={
+                name: replace(link, constant=change(link.constant))
+                for name, link in self.links.items()
+            },
+            redundant=tuple(replace(part, length=change(part.length)) for part in self.redundant),
+        )
 
     @property
     def variables(self) -> tuple[Variable, ...]:

@@ -45,7 +45,6 @@ def applied(name: str, arguments: Sequence[float]) -> float:
     given: list[object] = list(arguments)
     first = next(number for number in given if isinstance(number, Lanes))
     found = first.apply(FUNCTIONS[name], *given)
-    wrong = ~np.isfinite(found.values)
-    if name in _PARTIAL and wrong.any() and first.arithmetic.decide(wrong):
+    if name in _PARTIAL and not found.holds(np.isfinite):
         raise OverflowError if name == "exp" else ValueError
     return cast(float, found)

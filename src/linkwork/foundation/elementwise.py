@@ -99,7 +99,7 @@ def exponential(z: complex) -> complex:
     if not is_batched(z):
         return cmath.exp(z)
     found = z.apply(np.exp, z)
-    if (wrong := ~np.isfinite(found.values)).any() and z.arithmetic.decide(wrong):
+    if not found.holds(np.isfinite):
         raise OverflowError
     return cast(complex, found)
 
@@ -146,13 +146,13 @@ def degrees(angle: float) -> float:
 
 def finite(x: float) -> bool:
     """Whether a number is neither NaN nor infinite."""
-    return cast(bool, x.holds(np.isfinite(x.values))) if is_batched(x) else math.isfinite(x)
+    return cast(bool, x.holds(np.isfinite)) if is_batched(x) else math.isfinite(x)
 
 
 def is_fractional(x: float) -> bool:
     """Whether a number is not an integer."""
     if is_batched(x):
-        return cast(bool, x.holds(x.values != np.floor(x.values)))
+        return cast(bool, x.holds(np.not_equal, x.apply(np.floor, x)))
     return not float(x).is_integer()
 
 
@@ -222,7 +222,7 @@ def is_structurally_nonzero(x: complex) -> bool:
 
 def display_value(x: complex) -> complex:
     """The plain number that is displayed: of lanes, the first."""
-    return complex(x.values[0]) if is_batched(x) else x
+    return complex(x.arithmetic.value_in(x, 0)) if is_batched(x) else x
 
 
 def as_float(x: float) -> float:
@@ -232,7 +232,7 @@ def as_float(x: float) -> float:
 
 def leader_value(x: float) -> float:
     """The number in the leading lane."""
-    return cast(float, x.values[x.arithmetic.leader].item()) if is_batched(x) else x
+    return x.arithmetic.value_in(x, x.arithmetic.leader) if is_batched(x) else x
 
 
 def plain_value(x: _Number) -> _Number:

@@ -79,6 +79,10 @@ class Consensus(Arithmetic[Any]):
         """The value of a number that starts an iteration or decides a rank; lanes have many."""
         raise NotElementwise
 
+    def value_in(self, number: Any, lane: int) -> Any:
+        """The value of a number in one lane."""
+        return number.values[lane].item()
+
     def detached(self, number: Any) -> Any:
         """A number without its derivatives, in arithmetics that know them."""
         return number
@@ -154,9 +158,9 @@ class Lanes(Operand):
         """A NumPy function of plain numbers and lanes, lane by lane."""
         return self.arithmetic.apply(function, *numbers)
 
-    def holds(self, truths: BoolArray) -> Truths:
-        """Whether something holds in the same lanes."""
-        return Truths(truths, self.arithmetic)
+    def holds(self, question: Callable[..., Any], *others: object) -> Truths:
+        """The answer to a question of NumPy about this number and others, lane by lane."""
+        return Truths(question(self.values, *map(_bare, others)), self.arithmetic)
 
     def __round__(self) -> Lanes:
         return self.arithmetic.apply(np.rint, self)
@@ -178,22 +182,22 @@ class Lanes(Operand):
     # Questions
 
     def __eq__(self, other: object) -> Any:
-        return self.holds(self.values == _bare(other))
+        return self.holds(np.equal, other)
 
     def __ne__(self, other: object) -> Any:
-        return self.holds(self.values != _bare(other))
+        return self.holds(np.not_equal, other)
 
     def __lt__(self, other: object) -> Truths:
-        return self.holds(self.values < _bare(other))
+        return self.holds(np.less, other)
 
     def __le__(self, other: object) -> Truths:
-        return self.holds(self.values <= _bare(other))
+        return self.holds(np.less_equal, other)
 
     def __gt__(self, other: object) -> Truths:
-        return self.holds(self.values > _bare(other))
+        return self.holds(np.greater, other)
 
     def __ge__(self, other: object) -> Truths:
-        return self.holds(self.values >= _bare(other))
+        return self.holds(np.greater_equal, other)
 
     def __bool__(self) -> bool:
         return self.arithmetic.decide(self.values != 0)

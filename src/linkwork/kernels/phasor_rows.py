@@ -76,9 +76,10 @@ class PhasorRows:
         m[terms + s, self.row[sliding], self.length[sliding]] += 1.0  # eq. (2): sliding
         return m.reshape(terms + len(sliding), self.rows * self.variables)
 
-    def _phasors(self, v: Array) -> ComplexArray:
+    def _phasors(self, v: Array, coefficient: ComplexArray | None = None) -> ComplexArray:
         # eq. (1)
-        phasors: ComplexArray = self.coefficient * np.exp(1j * tall_product(v, self._weights))
+        own = self.coefficient if coefficient is None else coefficient
+        phasors: ComplexArray = own * np.exp(1j * tall_product(v, self._weights))
         return phasors
 
     def _terms(self, v: Array, phasors: ComplexArray) -> ComplexArray:
@@ -94,14 +95,20 @@ class PhasorRows:
         """F, (B, R)."""
         return tall_product(self._terms(v, self._phasors(v)), self._gather)
 
-    def value_and_jacobian(self, v: Array) -> tuple[ComplexArray, ComplexArray]:
-        """F, (B, R), and dF/dv, (B, R, N)."""
-        phasors = self._phasors(v)
+    def value_and_jacobian(
+        self, v: Array, coefficient: ComplexArray | None = None
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """F, (B, R), and dF/dv, (B, R, N); ``coefficient``: other ones in each position, (B, T)."""
+        phasors = self._phasors(v, coefficient)
         terms = self._terms(v, phasors)
         sliding = self._sliding
         both = np.concatenate([terms, phasors[:, sliding]], axis=1) if len(sliding) else terms
         jacobian = tall_product(both, self._slopes).reshape(len(v), self.rows, self.variables)
         return tall_product(terms, self._gather), jacobian
+
+    def by_coefficients(self, v: Array) -> ComplexArray:
+        """The derivatives of terms by their coefficients, (B, T)."""
+        return self._terms(v, self._phasors(v, np.ones_like(self.coefficient)))
 
     def jet(self, v: Array, d1: Array, d2: Array) -> tuple[ComplexArray, ...]:
         """F with first and second derivative along a path with v' = d1, v'' = d2; each (B, R).

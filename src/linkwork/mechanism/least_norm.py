@@ -41,7 +41,7 @@ def least_norm(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Seq
         return shortest
     a, b = _stacked(matrix, lanes), _stacked([right], lanes)[:, 0]
     finite: BoolArray = np.isfinite(np.concatenate([a, b[:, :, None]], axis=2)).all(axis=(1, 2))
-    if lanes.holds(~finite):
+    if lanes.arithmetic.decide(~finite):
         raise np.linalg.LinAlgError
     x = np.full((len(a), a.shape[2]), np.nan)
     regular, rows, sizes = _regular(a)
@@ -65,7 +65,7 @@ def full_rank(matrix: Sequence[Sequence[float]], tolerance: float) -> bool:
     full = regular & (least > tolerance)
     others = np.flatnonzero(~full & np.isfinite(a).all((1, 2)))
     full[others] = np.linalg.matrix_rank(a[others], tolerance) == len(matrix)
-    return bool(lanes.holds(full))
+    return lanes.arithmetic.decide(full)
 
 
 def _lanes_in(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Lanes | None:

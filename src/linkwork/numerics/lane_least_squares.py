@@ -59,15 +59,6 @@ class Residuals:
         parts: list[Any] = [None if own is None else own[which] for own in self._parts]
         return Residuals(*parts)
 
-    @classmethod
-    def joined(cls, one: Self, other: Self) -> Self:
-        """Those of some lanes, and of others after them."""
-        parts: list[Any] = [
-            None if a is None or b is None else np.concatenate([a, b])
-            for a, b in zip(one._parts, other._parts, strict=True)
-        ]
-        return cls(*parts)
-
     def replaced(self, which: BoolArray, other: Residuals) -> Residuals:
         """Those of another place in some lanes."""
         parts: list[Any] = [

@@ -13,9 +13,9 @@ from linkwork.design.improvement.largest_miss import largest_misses, powered
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.design.improvement.trade_off import Objectives, TradeOff
+from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.operand import NotElementwise
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
@@ -125,7 +125,7 @@ class FitProblem:
 
     def __init__(self, given: Fitting, lanes: int) -> None:
         model, motion, path = given.model, given.motion, given.path
-        self.model, self.numbers, self.motion = model, given.numbers, motion
+        self.model, self.motion = model, motion
         self.box, self.path, self.lanes = given.box, path, lanes
         self.x = np.array([float(q.of(model.description)) for q in given.numbers])
         lead = next(iter(motion.inputs))
@@ -134,6 +134,7 @@ class FitProblem:
         table = (np.asarray(motion.inputs[lead]) * scale)[motion.asked]
         there = np.asarray(motion.found[motion.asked])
         self.own_variables = self._timing(table)
+        self.writer = DesignWriter(model, given.numbers)
         self.goals = [goal_of(model, goal, table, there, scale) for goal in given.goals]
         self.points = None if path is None else self._rows(path.inputs)
         # goals of the same rows share their positions
@@ -205,7 +206,7 @@ class FitProblem:
         """Lanes at inputs, begun at the nearest rows of the mechanism's motion."""
         away = inputs_away(at, self.motion, self.model)
         q = self.motion.q[away.argmin(axis=1)]
-        return SolvedLanes(self.model, self.numbers, self.x, q, at, self.lanes)
+        return SolvedLanes(self.writer, self.x, q, at, self.lanes)
 
     @property
     def _solvers(self) -> list[SolvedLanes]:
@@ -279,38 +280,23 @@ class FitProblem:
         return replace(every, interrupted=own.interrupted)
 
     def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
-        """All misses of designs (D, P); NaN where a design cannot be built like the others."""
-        try:
-            found = self._together(x, t, lanes)
-        except NotElementwise:
-            half = len(x) // 2
-            if half:
-                first, second = slice(0, half), slice(half, None)
-                return Residuals.joined(
-                    self.evaluate(x[first], t[first], lanes[first]),
-                    self.evaluate(x[second], t[second], lanes[second]),
-                )
-            # the mechanism itself can be built: its residuals have the shapes
-            found = self._together(self.x[None], t, lanes, keep=False)
-            found = replace(found, rows=found.rows * np.nan, shared=found.shared * np.nan)
-        return found
-
-    def _together(self, x: Array, t: Array, lanes: IndexArray, *, keep: bool = True) -> Residuals:
+        """All misses of designs (D, P); NaN for those of other equations."""
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
         by_t: Array | None = None
         kept = []
+        designs = self.writer.written(x)
         if self.path is not None and self.points is not None:
             at = np.broadcast_to(self.path.inputs, (count, len(self.path.places)))
             at = at if self.path.timed else t
-            found = self.points.at(x, at, lanes)
+            found = self.points.at(designs, at, lanes)
             rows, by_x, slope = self.path.misses(found)
             by_t = None if self.path.timed else slope
             kept.append((self.points, found, at))
         positions = {}
         for key, solved in self.rows.items():
             at = np.broadcast_to(solved.rows_at, (count, len(solved.rows_at)))
-            positions[key] = solved.at(x, at, lanes)
+            positions[key] = solved.at(designs, at, lanes)
             kept.append((solved, positions[key], at))
         shared, shared_by_x = [np.zeros((count, 0))], [np.zeros((count, 0, parameters))]
         for k, misses in enumerate(self.goals):
@@ -325,7 +311,7 @@ class FitProblem:
             result = self.trade.applied(result, lanes)
         if self.power > 1:
             result = powered(result, self.power, self.largest[lanes], self.counted)
-        for solver, found, at in kept if keep else ():
+        for solver, found, at in kept:
             solver.keep(found, x, at, lanes, result.total)
         return result
 

@@ -75,13 +75,15 @@ class PathGoal:
     def misses(self, found: LanePositions) -> tuple[Array, Array, Array]:
         """Vectors from the points (D, N, 2), by the numbers and by the inputs.
 
-        A row that does not close yet counts as a large miss, and waits.
+        A row that does not close yet counts as a large miss, and waits; a design of other equations
+        has no misses.
         """
         place = found.rows.place(self.point).v
         rows, by_x, by_t = found.values([place.real, place.imag])
         rows = rows - np.stack([self.places.real, self.places.imag], axis=1)
         lost = ~found.found.reshape(found.shape)
         rows[lost], by_x[lost], by_t[lost] = self.lost, 0.0, 0.0
+        rows[~found.rows.designs.fine] = np.nan
         return rows, by_x, by_t
 
 
@@ -261,7 +263,7 @@ class _NumberMisses(Misses):
         rows = found.rated(self.order)
         known = {name: self._number(asked, found, rows) for name, asked in self.asked.items()}
         count = found.shape[0]
-        by_x = np.zeros((count, len(found.numbers)))
+        by_x = np.zeros((count, found.by_x.shape[2]))
         total = np.zeros(count)
         with np.errstate(all="ignore"):
             for name in known:
@@ -294,7 +296,7 @@ class _NumberMisses(Misses):
                 weight[k] = part
         total: Any = 0.0
         for weight, column in zip(weights, columns, strict=True):
-            total = total + np.real(np.conj(found.widened(weight)) * column)
+            total = total + np.real(np.conj(weight.ravel()) * column)
         _, by_x = found.totals(rows, total)
         # rows of no weight may have no derivative
         used = np.any([weight != 0.0 for weight in weights], axis=0)

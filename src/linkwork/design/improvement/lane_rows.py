@@ -1,175 +1,165 @@
-"""Rows of many designs on one tape, each with its own numbers, unknowns and inputs.
+"""Rows of many designs, each with its own numbers, unknowns and inputs.
 
-F(v, u; p) = 0 holds in each row; its derivatives by the unknowns v, the inputs u and the numbers p
-come from one tape, and those of a quantity g(v, u; p) by the implicit function theorem, eq. (156).
+F(v, u; p) = 0 holds in each row. Its loops are sums of terms, whose derivatives by variables and
+coefficients are known; the other equations and all quantities are written on a tape.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
-from typing import Any
+from copy import copy
+from typing import Any, Self
 
 import numpy as np
 
-from linkwork.batch.building import write_equations
 from linkwork.design.differentiated_rows import DifferentiatedRows
-from linkwork.design.tape import Tape
+from linkwork.design.improvement.written_designs import WrittenDesigns
+from linkwork.design.tape import Tape, TapedNumber
 from linkwork.expression.jets import Jet
-from linkwork.foundation.arrays import Array, BoolArray
-from linkwork.mechanism.varied_number import VariedNumber, with_numbers
-from linkwork.motion.model import Model
-from linkwork.motion.quantity_values import QuantityValues
+from linkwork.foundation.arrays import AnyArray, Array
 
-__all__ = ["LaneRows", "RatedRows", "WrittenDesigns"]
+__all__ = ["LaneEquations", "LaneRows"]
 
 _ZERO = np.zeros(())
 
 
-class _Column:
-    """Numbers that are asked for as the last axis of an array."""
-
-    def __init__(self, numbers: Sequence[Any]) -> None:
-        self.numbers = numbers
-
-    def __getitem__(self, index: tuple[Any, int]) -> Any:
-        return self.numbers[index[-1]]
-
-
-class WrittenDesigns:
-    """The equations of B rows with numbers of their own.
-
-    Parameters
-    ----------
-    model : Model
-    numbers : sequence of VariedNumber
-    values : (B, P)
-        File units.
-
-    Attributes
-    ----------
-    fine : (B,) bool
-        Rows whose equations have the form of the mechanism's own.
-    """
-
-    def __init__(self, model: Model, numbers: Sequence[VariedNumber], values: Array) -> None:
-        self.model, self.tape = model, Tape(1 + len(values))
-        # the mechanism itself leads: its equations can be written, whatever the other rows hold
-        own = [float(q.of(model.description)) for q in numbers]
-        taped = {
-            q: self.tape.number(np.append(own[k], values[:, k])) for k, q in enumerate(numbers)
-        }
-        self.numbers = list(self.tape.inputs)
-        self.tape.writing = True
-        with np.errstate(all="ignore"):
-            self.description = with_numbers(model.description, taped)
-            self.taped = write_equations(self.description)
-        agreeing: BoolArray = self.tape.agreeing & ~self.tape.apart
-        self.fine = agreeing[1:]
-        self.tape.writing = False
-
-
 class LaneRows(DifferentiatedRows):
-    """Quantities of B rows on the tape of their designs.
+    """Quantities of the rows of D designs, design by design.
 
     Parameters
     ----------
-    written : WrittenDesigns
+    designs : WrittenDesigns
     v : (B, N)
         Unknowns, then inputs, internal units; NaN where there is no position.
+    slopes : (B, N, K)
+        Their derivatives by parameters, of which the first P are the designs' numbers.
     """
 
-    def __init__(self, written: WrittenDesigns, v: Array) -> None:
-        model, self.tape = written.model, written.tape
-        self.description, self.taped = written.description, written.taped
-        # the row of the mechanism itself, which has no position here, leads
-        led = _led(v)
-        lost: BoolArray = np.logical_not(np.isfinite(led).all(axis=1))
-        links: Any = _Column([angle.constant for angle in self.taped.links.values()])
-        dimensions: Any = _Column(list(self.taped.dimensions.values()))
-        QuantityValues.__init__(self, model, lost, np.where(lost, np.nan, 0.0), links, dimensions)
-        self.count, self.order = len(self.equations.unknowns), 0
-        self.solution = v
-        self._symbols = [x.symbol for x in self.equations.variables]
-        self._points: dict[str, Jet] = {}
-        first = len(self.tape.inputs)
-        columns: list[Any] = [self.tape.number(led[:, k]) for k in range(v.shape[1])]
-        #: Nodes of the variables on the tape.
-        self.nodes = self.tape.inputs[first:]
-        del self.tape.inputs[first:]
-        parts = zip(self._symbols, columns, strict=True)
+    def __init__(self, designs: WrittenDesigns, v: Array, slopes: Array) -> None:
+        self.tape, self.solution, self.order = Tape(len(v)), v, 0
+        self.designs = designs
+        self._given: dict[int, AnyArray] = {}
+        self._rows_of: dict[int, Any] = {}
+        self._shape = slopes.shape[2], len(v)
+        self.taped = designs.writer.equations.mapped(self._spread)
+        self._take_quantities(designs.writer.model, np.logical_not(np.isfinite(v).all(axis=1)))
+        self.__dict__["speed"] = self._spread(designs.writer.speed)
+        numbers = [self._number(v[:, k], slopes[:, k].T) for k in range(v.shape[1])]
+        parts = zip(self._symbols, numbers, strict=True)
         self.__dict__["variables"] = {name: Jet(x, _ZERO, _ZERO) for name, x in parts}
 
-    def equations_and_slopes(self, by: Sequence[int]) -> tuple[Array, Array]:
-        """F (B, m), and its derivatives by inputs of the tape, (B, m, len(by))."""
-        with np.errstate(all="ignore"):
-            return self.slopes([row.v for row in self._residuals(self.variables)], by)
+    def _number(self, values: AnyArray, rates: AnyArray) -> Any:
+        """A number on the tape of the rows."""
+        found: Any = self.tape.number(values)
+        self._given[found.node] = rates
+        return found
 
-    def slopes(self, results: Sequence[Any], by: Sequence[int]) -> tuple[Array, Array]:
-        """Real results (B, m), and their derivatives by inputs of the tape, (B, m, len(by))."""
-        return self._slopes(results, by, 1 + len(self.solution))
+    def _spread(self, number: Any) -> Any:
+        """A number of the designs in their rows."""
+        if not isinstance(number, TapedNumber):
+            return number
+        if number.node not in self._rows_of:
+            value, rate = self.designs.known[number.node]
+            each = self._shape[1] // len(value)
+            rates = np.zeros(self._shape, dtype=rate.dtype)
+            rates[: len(rate)] = np.repeat(rate, each, axis=1)
+            self._rows_of[number.node] = self._number(np.repeat(value, each), rates)
+        return self._rows_of[number.node]
 
-    def _slopes(self, results: Sequence[Any], by: Sequence[int], rows: int) -> tuple[Array, Array]:
-        kept, self.tape.inputs = self.tape.inputs, list(by)
-        rates = self.tape.forward(results)
-        self.tape.inputs = kept
-        values = [np.broadcast_to(getattr(x, "values", x), rows) for x in results]
-        slopes = [np.broadcast_to(np.real(rate), (len(by), rows)) for rate in rates]
+    def slopes(self, results: Sequence[Any]) -> tuple[Array, Array]:
+        """Real results (B, m), and their derivatives by the parameters, (B, m, K)."""
+        rates = self.tape.forward(results, self._given)
+        values = [np.broadcast_to(getattr(x, "values", x), self._shape[1]) for x in results]
+        slopes = [np.broadcast_to(np.real(rate), self._shape) for rate in rates]
         return (
-            np.stack(values, axis=1)[1:],
-            np.stack(slopes, axis=0).transpose(2, 0, 1)[1:],
+            np.array(values).reshape(len(results), self._shape[1]).T,
+            np.array(slopes).reshape(len(results), *self._shape).transpose(2, 0, 1),
         )
 
+    def further(self) -> tuple[Array, Array]:
+        """All equations but loops, (B, m), and their derivatives by the parameters."""
+        return self.slopes([row.v for row in self._further(self.variables)])
 
-class RatedRows(LaneRows):
-    """Solved rows whose derivatives by the leading input are on the tape too, eq. (120).
+    def rated(self, inverse: Array, first: Array, order: int) -> Self:
+        """The same rows with derivatives by the leading input, eq. (120).
+
+        Parameters
+        ----------
+        inverse : (B, n, n)
+            Of the Jacobians.
+        first : (B, N)
+            The derivatives of all variables by the leading input.
+        order : int
+            1 or 2.
+        """
+        second = np.zeros_like(first)
+        if order > 1:
+            parts = (self.solution, first, second)
+            jets = [Jet(*(part[:, k] for part in parts)) for k in range(first.shape[1])]
+            bent = [row.d2 for row in self._residuals(dict(zip(self._symbols, jets, strict=True)))]
+            rows = [np.broadcast_to(getattr(x, "values", x), len(first)) for x in bent]
+            # J q'' = -(all other terms of F'')
+            right = np.array(rows).reshape(len(rows), len(first)).T
+            second[:, : self.count] = -(inverse @ right[:, :, None])[:, :, 0]
+        moved = copy(self)
+        moved._points, moved.order = {}, order
+        moved.__dict__.update(_inverse=inverse, _rates=(first, second))
+        values = [self.variables[symbol].v for symbol in self._symbols]
+        moved.__dict__["variables"] = moved._differentiated(values)
+        return moved
+
+
+class LaneEquations:
+    """F(v, u; p) of D designs in N rows each.
 
     Parameters
     ----------
-    rows : LaneRows
-    numbers : sequence of int
-        Nodes of the numbers.
-    inverse : (B, n, n)
-        Of the Jacobians.
-    first : (B, N)
-        The derivatives of all variables by the leading input.
-    order : int
-        1 or 2.
+    designs : WrittenDesigns
+    rows : int
+        N.
     """
 
-    def __init__(
-        self, rows: LaneRows, numbers: Sequence[int], inverse: Array, first: Array, order: int
-    ) -> None:
-        self.__dict__.update(rows.__dict__)
-        del self.__dict__["variables"]
-        self.__dict__.pop("speed", None)
-        self._points, self.order = {}, order
-        self.solution, self._inverse = _led(rows.solution), _led(inverse)
-        self.__dict__["_rates"] = self._led_rates(first)
+    def __init__(self, designs: WrittenDesigns, rows: int) -> None:
+        self.designs, self.rows = designs, rows
+        self.loops, coefficients = designs.writer.loops, designs.writer.coefficients
+        own = np.empty((len(designs.x), len(coefficients)), dtype=complex)
+        self._by_numbers = np.zeros((*own.shape, designs.x.shape[1]), dtype=complex)
+        for k, number in enumerate(coefficients):
+            if isinstance(number, TapedNumber):
+                own[:, k], rate = designs.known[number.node]
+                self._by_numbers[:, k] = rate.T
+            else:
+                own[:, k] = number
+        self._coefficients = np.repeat(own, rows, axis=0)
 
-    def _led_rates(self, first: Array) -> tuple[Array, Array]:
-        """First and second derivatives of the variables, the latter only if asked for."""
-        rates, second = _led(first), np.zeros_like(_led(first))
-        if self.order > 1:
-            parts = (self.solution, rates, second)
-            jets = [Jet(*(part[:, k] for part in parts)) for k in range(rates.shape[1])]
-            bent = [row.d2 for row in self._residuals(dict(zip(self._symbols, jets, strict=True)))]
-            rows = [np.broadcast_to(getattr(x, "values", x), len(rates)) for x in bent]
-            # J q'' = -(all other terms of F'')
-            solved = self._inverse @ np.stack(rows, axis=1)[:, :, None]
-            second[:, : self.count] = -solved[:, :, 0]
-        return rates, second
+    @np.errstate(all="ignore")  # rows without a position are no numbers
+    def at(self, v: Array) -> tuple[Array, Array]:
+        """F (B, m) at variables (B, N), and by them, (B, m, N)."""
+        value, slope = self.loops.value_and_jacobian(v, self._coefficients)
+        further, slopes = self._further(v)
+        return (
+            np.concatenate([value.real, value.imag, further], axis=1),
+            np.concatenate([slope.real, slope.imag, slopes[:, :, -v.shape[1] :]], axis=1),
+        )
 
-    @cached_property
-    def variables(self) -> dict[str, Jet]:
-        """All variables by symbol, see :class:`DifferentiatedRows`."""
-        return self._differentiated()
+    @np.errstate(all="ignore")
+    def by_numbers(self, v: Array) -> Array:
+        """F by the numbers, (B, m, P)."""
+        designs, terms, numbers = self._by_numbers.shape
+        bare = self.loops.by_coefficients(v).reshape(designs, self.rows, terms)
+        found = np.empty((len(v), self.loops.rows, numbers), dtype=complex)
+        for row in range(self.loops.rows):
+            own = self.loops.row == row
+            found[:, row] = (bare[:, :, own] @ self._by_numbers[:, own]).reshape(len(v), numbers)
+        _, slopes = self._further(v)
+        return np.concatenate([found.real, found.imag, slopes[:, :, :numbers]], axis=1)
 
-    def slopes(self, results: Sequence[Any], by: Sequence[int]) -> tuple[Array, Array]:
-        """As of :class:`LaneRows`."""
-        return self._slopes(results, by, len(self.solution))
-
-
-def _led(values: Array) -> Array:
-    """Values with a row of the mechanism itself, which has none, before them."""
-    return np.concatenate([np.full((1, *values.shape[1:]), np.nan), values])
+    def _further(self, v: Array) -> tuple[Array, Array]:
+        """All equations but loops, by the numbers and by the variables."""
+        numbers, variables = self._by_numbers.shape[2], v.shape[1]
+        equations = self.designs.writer.equations
+        if not (equations.linear or equations.real or equations.laws):
+            return np.zeros((len(v), 0)), np.zeros((len(v), 0, numbers + variables))
+        slopes = np.zeros((len(v), variables, numbers + variables))
+        slopes[:, :, numbers:] = np.eye(variables)
+        return LaneRows(self.designs, v, slopes).further()

@@ -10,6 +10,7 @@ from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, F
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.largest_miss import POWERS
 from linkwork.design.improvement.solved_lanes import SolvedLanes
+from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
@@ -67,8 +68,9 @@ def path_misses(
     motion; NaN where it has no position on their branch.
     """
     away = inputs_away(path.inputs, motion, model)
-    solved = SolvedLanes(model, numbers, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
-    found = solved.at(x[None], path.inputs[None], np.zeros(1, dtype=int))
+    writer = DesignWriter(model, numbers)
+    solved = SolvedLanes(writer, x, motion.q[away.argmin(axis=1)], path.inputs, 1)
+    found = solved.at(writer.written(x[None]), path.inputs[None], np.zeros(1, dtype=int))
     place = found.rows.place(path.point).v
     value = found.values([place.real, place.imag])[0][0]
     return np.asarray(np.abs(value[:, 0] + 1j * value[:, 1] - path.places))

@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.improvement.lane_rows import LaneRows, RatedRows, WrittenDesigns
+from linkwork.design.improvement.lane_rows import LaneEquations, LaneRows
+from linkwork.design.improvement.written_designs import DesignWriter, WrittenDesigns
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
-from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.leading_input import leading_input
-from linkwork.motion.model import Model
 from linkwork.results.quantity import Kind
 
 __all__ = ["LanePositions", "SolvedLanes"]
@@ -38,8 +37,6 @@ class LanePositions:
         D N rows, design by design.
     by_x, by_t : (D N, n, P), (D N, n)
         Derivatives of the unknowns by the numbers and by the leading input.
-    numbers : sequence of int
-        Nodes of the tape.
     inputs : (p,)
         The rates of the inputs by the leading one.
     shape : (int, int)
@@ -53,31 +50,29 @@ class LanePositions:
     by_x: Array
     by_t: Array
     found: BoolArray
-    numbers: Sequence[int]
     inputs: Array
     shape: tuple[int, int]
     inverse: Array
     sign: Array
 
-    def values(self, results: Sequence[object]) -> tuple[Array, Array, Array]:
-        """Real results (D, N, m) on the tape, by numbers (D, N, m, P) and the input (D, N, m)."""
-        n = self.rows.count
-        value, slope = self.rows.slopes(results, [*self.numbers, *self.rows.nodes])
-        count = len(self.numbers)
-        by_q = slope[:, :, count : count + n]
-        # eq. (156)
-        by_x = slope[:, :, :count] + by_q @ self.by_x
-        by_t = slope[:, :, count + n :] @ self.inputs + (by_q @ self.by_t[:, :, None])[:, :, 0]
+    def values(
+        self, results: Sequence[object], rows: LaneRows | None = None
+    ) -> tuple[Array, Array, Array]:
+        """Real results (D, N, m) on the tape of the rows, or of rated ones; by numbers (D, N, m, P)
+        and the input (D, N, m).
+        """
+        value, slope = (rows or self.rows).slopes(results)
         shape = *self.shape, len(results)
-        value = np.where(self.found[:, None], value, np.nan)
-        return value.reshape(shape), by_x.reshape(*shape, count), by_t.reshape(shape)
+        value = np.where(self.found[:, None], value, np.nan).reshape(shape)
+        slope = slope.reshape(*shape, slope.shape[2])
+        return value, slope[..., :-1], slope[..., -1]
 
     def rated(self, order: int) -> LaneRows:
         """The rows with so many derivatives by the leading input, 0 to 2."""
         if order not in self._rated:
             lead = np.broadcast_to(self.inputs, (len(self.found), len(self.inputs)))
             first = np.concatenate([self.by_t, lead], axis=1)
-            self._rated[order] = RatedRows(self.rows, self.numbers, self.inverse, first, order)
+            self._rated[order] = self.rows.rated(self.inverse, first, order)
         return self._rated[order]
 
     @cached_property
@@ -86,21 +81,13 @@ class LanePositions:
 
     def totals(self, rows: LaneRows, result: Any) -> tuple[Array, Array]:
         """A real result of rows or rated rows, (D, N), and by the numbers, (D, N, P)."""
-        if rows is self.rows:
-            value, by_x, _ = self.values([result])
-            return value[:, :, 0], by_x[:, :, 0]
-        value, by_x = rows.slopes([result], self.numbers)
-        value = np.where(self.found, value[:, 0], np.nan)
-        return value.reshape(self.shape), by_x[:, 0].reshape(*self.shape, -1)
+        value, by_x, _ = self.values([result], rows)
+        return value[:, :, 0], by_x[:, :, 0]
 
     def plain(self, column: Any) -> AnyArray:
         """The values of a column of rows, (D, N); NaN where there is no position."""
-        values = np.broadcast_to(getattr(column, "values", column), 1 + len(self.found))[1:]
+        values = np.broadcast_to(getattr(column, "values", column), len(self.found))
         return np.where(self.found, values, np.nan).reshape(self.shape)
-
-    def widened(self, weights: AnyArray) -> AnyArray:
-        """Weights (D, N) for columns of rows."""
-        return np.concatenate([[0.0], weights.ravel()])
 
 
 class SolvedLanes:
@@ -108,10 +95,9 @@ class SolvedLanes:
 
     Parameters
     ----------
-    model : Model
-    numbers : sequence of VariedNumber
+    writer : DesignWriter
     x : (P,)
-        Their values in the mechanism, file units.
+        The numbers of the mechanism, file units.
     q : (N, n)
         Unknowns of the mechanism at the rows.
     t : (N,)
@@ -119,16 +105,8 @@ class SolvedLanes:
     lanes : int
     """
 
-    def __init__(
-        self,
-        model: Model,
-        numbers: Sequence[VariedNumber],
-        x: Array,
-        q: Array,
-        t: Array,
-        lanes: int,
-    ) -> None:
-        self.model, self.numbers = model, tuple(numbers)
+    def __init__(self, writer: DesignWriter, x: Array, q: Array, t: Array, lanes: int) -> None:
+        self.model = model = writer.model
         self.lead, self.rate = leading_input(model.rows)
         self.rows_at = t
         rows, n = len(t), len(model.equations.unknowns)
@@ -141,9 +119,9 @@ class SolvedLanes:
         self.by_t = np.zeros((lanes, rows, n))
         self.total = np.full(lanes, np.inf)
         self._sign: Array | None = None
-        first = self.at(x[None, :], t[None, :], np.arange(1))
+        first = self.at(writer.written(x[None, :]), t[None, :], np.arange(1))
         self._sign = first.sign
-        self.by_x[:] = first.by_x.reshape(1, rows, n, -1)
+        self.by_x[:] = first.by_x.reshape(1, rows, n, len(x))
         self.by_t[:] = first.by_t.reshape(1, rows, n)
         self._known = np.broadcast_to(first.found, (lanes, rows)).copy()
         if first.found.any():
@@ -162,27 +140,27 @@ class SolvedLanes:
         first = self.model.rows[0]
         return np.asarray(first + (t - first[self.lead])[..., None] * self.rate)
 
-    def at(self, x: Array, t: Array, lanes: IndexArray) -> LanePositions:
-        """The positions of designs (D, P) at inputs (D, N) of these lanes."""
-        count, rows = t.shape
+    def at(self, designs: WrittenDesigns, t: Array, lanes: IndexArray) -> LanePositions:
+        """The positions of D designs at inputs (D, N) of these lanes."""
+        x, (count, rows) = designs.x, t.shape
         change = np.einsum("dnkp,dnp->dnk", self.by_x[lanes], x[:, None] - self.x[lanes])
         change += self.by_t[lanes] * (t - self.t[lanes])[:, :, None]
         v = np.concatenate([self.q[lanes] + change, self.inputs(t)], axis=2)
-        v = v.reshape(count * rows, -1)
-        written = WrittenDesigns(self.model, self.numbers, np.repeat(x, rows, axis=0))
+        v = v.reshape(count * rows, v.shape[2])
+        equations = LaneEquations(designs, rows)
         n = self.q.shape[2]
         scale = self.model.compiled.table.equation_scale
         weight = self.model.compiled.table.variable_scale[:n]
-        fine = written.fine.copy()
+        fine = np.repeat(designs.fine, rows)
         if not fine.any():
             v = np.full_like(v, np.nan)
         for _ in range(_NEWTON_STEPS):
-            solved = LaneRows(written, v)
-            f, slope = solved.equations_and_slopes(solved.nodes)
-            jacobian = slope[:, :, :n]
+            solved = v
+            f, by_v = equations.at(v)
+            jacobian = by_v[:, :, :n]
             step = _solve(jacobian, f[:, :, None])[:, :, 0]
-            missed = np.abs(f / scale).max(axis=1)
-            moved = np.abs(step / weight).max(axis=1)
+            missed = np.abs(f / scale).max(axis=1, initial=0.0)
+            moved = np.abs(step / weight).max(axis=1, initial=0.0)
             closed = (missed <= _CLOSED) | (moved <= _CLOSED)
             if (closed | ~np.isfinite(missed)).all():
                 break
@@ -192,17 +170,18 @@ class SolvedLanes:
         fine &= closed
         if self._sign is not None:
             fine &= (sign == self._sign).ravel()
-        by = [*written.numbers, *solved.nodes[n:]]
         inverse = _solve(jacobian, np.broadcast_to(np.eye(n), jacobian.shape))
-        by_all = -inverse @ solved.equations_and_slopes(by)[1]
-        rate = self.rate
+        # eq. (156)
+        slopes = np.zeros((len(v), v.shape[1], x.shape[1] + 1))
+        slopes[:, :n, :-1] = -inverse @ equations.by_numbers(solved)
+        slopes[:, :n, -1] = -(inverse @ (by_v[:, :, n:] @ self.rate)[:, :, None])[:, :, 0]
+        slopes[:, n:, -1] = self.rate
         return LanePositions(
-            rows=solved,
-            by_x=by_all[:, :, : len(written.numbers)],
-            by_t=by_all[:, :, len(written.numbers) :] @ rate,
+            rows=LaneRows(designs, solved, slopes),
+            by_x=slopes[:, :n, :-1],
+            by_t=slopes[:, :n, -1],
             found=fine,
-            numbers=written.numbers,
-            inputs=rate,
+            inputs=self.rate,
             shape=(count, rows),
             inverse=inverse,
             sign=sign,
@@ -219,7 +198,7 @@ class SolvedLanes:
         shape = *found.shape, n
         self.x[to], self.t[to] = x[which[0]], t[which]
         self.q[to] = found.rows.solution[:, :n].reshape(shape)[which]
-        self.by_x[to] = found.by_x.reshape(*shape, -1)[which]
+        self.by_x[to] = found.by_x.reshape(*shape, x.shape[1])[which]
         self.by_t[to] = found.by_t.reshape(shape)[which]
         self._known[to] = True
         closed = found.found.reshape(found.shape)
