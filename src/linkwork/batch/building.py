@@ -266,15 +266,10 @@ def _widened(model: Model, varied: Sequence[VariedNumber]) -> _Widened | None:
     own, wider = Pattern.of(model.equations), Pattern.of(equations)
     if (own.loops, own.points) == (wider.loops, wider.points):
         return None
-    plain = _plain(equations, model.equations)
+    first = equations.mapped(_first)
+    plain = replace(model.equations, loops=first.loops, points=first.points, symbols=first.symbols)
     compiled = compile_equations(plain, f'mechanism "{description.name}"')
     return _Widened(equations=plain, compiled=compiled)
-
-
-def _plain(equations: LoopEquations, own: LoopEquations) -> LoopEquations:
-    """The mechanism's equations with the terms of the given ones."""
-    wide = equations.mapped(_first)
-    return replace(own, loops=wide.loops, points=wide.points, symbols=wide.symbols)
 
 
 def _first(number: complex) -> complex:

@@ -16,7 +16,7 @@ from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.operand import NotElementwise
 from linkwork.kernels.program.recorder import Recorder, Value
 from linkwork.motion.model import Model
-from linkwork.motion.quantity_values import QuantityValues, term_jet
+from linkwork.motion.quantity_values import LastAxis, QuantityValues, term_jet
 
 __all__ = ["HasParts", "RecordedQuantities"]
 
@@ -91,16 +91,6 @@ _OPERATORS: Mapping[Any, Callable[..., Any]] = {
 }  # fmt: skip
 
 
-class _Column:
-    """Numbers that are asked for as the last axis of an array."""
-
-    def __init__(self, numbers: Sequence[RecordedNumber]) -> None:
-        self.numbers = numbers
-
-    def __getitem__(self, index: tuple[Any, int]) -> RecordedNumber:
-        return self.numbers[index[-1]]
-
-
 class HasParts(Protocol):
     """A structure, its path of inputs, and its coefficients: numbers, or values that vary."""
 
@@ -136,7 +126,7 @@ class RecordedQuantities(QuantityValues):
         base, zero = design.base, np.zeros(())
         links = [self._part(f"link{k}") for k in range(len(base.equations.links))]
         named = [self._part(f"dimension{k}") for k in range(len(base.equations.dimensions))]
-        columns: list[Any] = [_Column(links), _Column(named)]
+        columns: list[Any] = [LastAxis(links), LastAxis(named)]
         super().__init__(base, np.zeros((), dtype=bool), zero, *columns)
         self.number = {x.symbol: k for k, x in enumerate(self.equations.variables)}
         self.places: dict[str, Jet] = {}

@@ -25,27 +25,18 @@ from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.elementwise import chained, vector
 from linkwork.foundation.lanes import is_batched
 from linkwork.foundation.names import canonical
+from linkwork.foundation.stacked_systems import inverses
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.leading_input import leading_input
 from linkwork.motion.model import Model
-from linkwork.motion.quantity_values import QuantityValues, term_jet
+from linkwork.motion.quantity_values import LastAxis, QuantityValues, term_jet
 from linkwork.motion.speeds import leading_speeds
 
 __all__ = ["DifferentiatedRows", "taped_speed"]
 
 _ZERO = np.zeros(())
-
-
-class _Column:
-    """Numbers that are asked for as the last axis of an array."""
-
-    def __init__(self, numbers: Sequence[Any]) -> None:
-        self.numbers = numbers
-
-    def __getitem__(self, index: tuple[Any, int]) -> Any:
-        return self.numbers[index[-1]]
 
 
 class DifferentiatedRows(QuantityValues):
@@ -96,8 +87,8 @@ class DifferentiatedRows(QuantityValues):
 
     def _take_quantities(self, model: Model, lost: BoolArray) -> None:
         """What quantities read besides variables and points."""
-        links: Any = _Column([angle.constant for angle in self.taped.links.values()])
-        dimensions: Any = _Column(list(self.taped.dimensions.values()))
+        links: Any = LastAxis([angle.constant for angle in self.taped.links.values()])
+        dimensions: Any = LastAxis(list(self.taped.dimensions.values()))
         super().__init__(model, lost, np.where(lost, np.nan, 0.0), links, dimensions)
         self.count = len(self.equations.unknowns)
         self._symbols = [x.symbol for x in self.equations.variables]
@@ -132,15 +123,9 @@ class DifferentiatedRows(QuantityValues):
     def _inverse(self) -> Array:
         """J⁻¹ (B, n, n); NaN in rows without a derivative."""
         inverse = np.full((len(self.solution), self.count, self.count), np.nan)
-        fine = np.flatnonzero(~self.lost)
-        jacobian = self.model.compiled.table.jacobian(self.solution[fine])[:, :, : self.count]
-        try:
-            inverse[fine] = np.linalg.inv(jacobian)
-        except np.linalg.LinAlgError:
-            # one singular row would spoil all others
-            for row, matrix in zip(fine, jacobian, strict=True):
-                if np.linalg.matrix_rank(matrix) == self.count:
-                    inverse[row] = np.linalg.inv(matrix)
+        fine = ~self.lost
+        jacobian = self.model.compiled.table.jacobian(self.solution[fine])
+        inverse[fine] = inverses(jacobian[:, :, : self.count])
         return inverse
 
     # Solved variables on the tape

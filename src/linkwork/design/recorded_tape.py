@@ -36,20 +36,16 @@ class RecordedTape(Tape):
     """
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__(2)  # not shared: designs to come have other numbers
         self.writing = True
         #: How nodes that are no inputs are computed.
         self._steps: dict[int, _Step] = {}
+        self._uses: dict[int, list[int]] = {}
         self._decisions: list[tuple[int, bool]] = []
         #: Numbers on which something depends because no input changes them.
         self._steady: list[TapedNumber] = []
         self._plan: list[tuple[int, bool, _Step]] = []
         self._results: list[TapedNumber] = []
-
-    @property
-    def is_shared(self) -> bool:
-        """No: the designs that follow have other numbers."""
-        return False
 
     # Recording
 
@@ -76,6 +72,7 @@ class RecordedTape(Tape):
         if not isinstance(found, _RECORDED):
             found = self._node(found, (), ())  # one of two constants
         self._steps[found.node] = function, given
+        self._uses[found.node] = [x.node for x in given if isinstance(x, _RECORDED)]
         return found
 
     def combine(self, values: AnyArray, terms: Sequence[tuple[Any, Any]]) -> NoReturn:
@@ -103,14 +100,8 @@ class RecordedTape(Tape):
         """End the record of what leads to numbers."""
         self._results = [*self._steady, *numbers]
         nodes = [number.node for number in self._results]
-        uses = [
-            [x.node for x in self._steps[k][1] if isinstance(x, _RECORDED)]
-            if k in self._steps
-            else ()
-            for k in range(len(self._parents))
-        ]
         rated = set(self._needed(nodes))
-        wanted = self._needed([*nodes, *(node for node, _ in self._decisions)], uses)
+        wanted = self._needed([*nodes, *(node for node, _ in self._decisions)], self._uses)
         self._plan = [(k, k in rated, self._steps[k]) for k in wanted if k in self._steps]
 
     @np.errstate(all="ignore")
@@ -163,7 +154,8 @@ class _RecordedTruths(_Unread, Truths):  # type: ignore[misc]  # no values
     """Truths on a record."""
 
     __slots__ = ("node", "own")
-    __hash__ = None  # type: ignore[assignment]  # as of all truths
+    consensus: RecordedTape
+    __hash__ = None
 
     def __init__(self, values: AnyArray, record: RecordedTape, node: int) -> None:
         self.own, self.consensus, self.node = values, record, node

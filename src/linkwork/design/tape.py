@@ -296,7 +296,7 @@ class Tape(Consensus):
         return found
 
     def _needed(
-        self, results: Sequence[int], uses: Sequence[Sequence[int]] | None = None
+        self, results: Sequence[int], uses: Mapping[int, Sequence[int]] | None = None
     ) -> list[int]:
         """The nodes on which results depend, or of which they make use, in order."""
         wanted = bytearray(len(self._parents))
@@ -305,7 +305,7 @@ class Tape(Consensus):
         # parents come before their children
         for node in range(max(results, default=-1), -1, -1):
             if wanted[node]:
-                for parent in (uses or self._parents)[node]:
+                for parent in self._parents[node] if uses is None else uses.get(node, ()):
                     wanted[parent] = 1
         return [node for node, used in enumerate(wanted) if used]
 

@@ -15,6 +15,7 @@ from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.virtual_work import efforts
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.certification import Certification
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.foundation.status import CONVERGED
 from linkwork.foundation.units import force_of_inertia
 from linkwork.numerics.proof.position_proof import prove
@@ -139,12 +140,7 @@ class InputDynamics:
             mass = mass[:, free][:, :, free]
             good = found & np.isfinite(force).all(axis=1) & np.isfinite(mass).all(axis=(1, 2))
             result = np.full_like(q, np.nan)
-            if good.any():
-                try:
-                    bend = np.linalg.solve(mass[good], force[good, :, None])
-                except np.linalg.LinAlgError:
-                    return result
-                result[good] = bend[:, :, 0]
+            result[good] = solutions(mass[good], force[good, :, None])[:, :, 0]
         return result
 
     def masses(self) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 
 from linkwork.forces.size import Size
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
+from linkwork.foundation.stacked_systems import solutions
 
 __all__ = ["Coupled", "Coupling"]
 
@@ -151,7 +152,7 @@ class Coupling:
             if done.all():
                 break
             # sizes have edges: Newton-Raphson takes the slope of one side there (semismooth)
-            step = _solved(self._jacobian(u, share), rest)
+            step = solutions(self._jacobian(u, share), rest[:, :, None])[:, :, 0]
             # NaN leaves the row where it is: it did not converge
             s = np.where(done[:, None] | ~np.isfinite(step), s, s - step)
         return s, done
@@ -188,7 +189,8 @@ class Coupling:
         """Rows with one equilibrium, by Banach's theorem in a weighted maximum norm."""
         # eq. (76): weights w > 0 with C w < w exist if and only if C has a spectral radius below 1
         identity = np.eye(len(self.sizes))
-        weights = _solved(identity - self._bounds, np.ones(self.start.shape[:2]))
+        ones = np.ones((*self.start.shape[:2], 1))
+        weights = solutions(identity - self._bounds, ones)[:, :, 0]
         drop = weights - np.einsum("bjk,bk->bj", self._bounds, weights)
         found: BoolArray = ((weights > 0.0) & (drop > _MARGIN * weights)).all(axis=1)
         return found
@@ -206,7 +208,7 @@ class Coupling:
             # Euler's prediction: ds/dλ = J⁻¹ σ
             u = own._unknowns(s[on])
             more = np.where(self.rubs, own._values(u), 0.0) * (aim - share[on])[:, None]
-            guess = s[on] + _solved(own._jacobian(u, share[on]), more)
+            guess = s[on] + solutions(own._jacobian(u, share[on]), more[:, :, None])[:, :, 0]
             at, solved = own._newton(np.nan_to_num(guess), aim)
             size = np.abs(at).max(axis=1) + np.abs(s[on]).max(axis=1)
             near = np.abs(at - guess).max(axis=1) <= _NEAR * size
@@ -263,15 +265,4 @@ class Coupling:
             holds = (ahead >= y * (1.0 + _MARGIN)).all(axis=1) & (y >= 0.0).all(axis=1)
             gain = (y * g).sum(axis=1)
             found |= real & holds & (gain > _MARGIN * (np.abs(y * g).sum(axis=1)))
-        return found
-
-
-def _solved(matrix: Array, right: Array) -> Array:
-    """The solutions (B, n) of B systems; NaN where one is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:
-        found = np.full_like(right, np.nan)
-        for k in np.flatnonzero(np.linalg.det(matrix) != 0.0):
-            found[k] = np.linalg.solve(matrix[k], right[k])
         return found

@@ -15,6 +15,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import RANK_TOLERANCE
+from linkwork.foundation.stacked_systems import inverses
 
 __all__ = ["Balance", "balance"]
 
@@ -73,9 +74,9 @@ def balance(matrix: Array) -> Balance:
     regular = np.zeros(rows, dtype=bool)
     if equations == unknowns:
         if fine.all():
-            inverse = _inverses(matrix)
+            inverse = inverses(matrix)
         else:
-            inverse[fine] = _inverses(matrix[fine])
+            inverse[fine] = inverses(matrix[fine])
         with np.errstate(all="ignore"):
             # forces and scaled moments have one unit, so that rows and columns compare
             regular = size * _norms(inverse) <= _REGULAR
@@ -102,16 +103,3 @@ def _norms(matrices: Array) -> Array:
     sums = np.abs(matrices).reshape(rows * height, width) @ np.ones(width)
     found: Array = sums.reshape(rows, height).max(axis=1, initial=0.0)
     return found
-
-
-def _inverses(matrices: Array) -> Array:
-    """The inverses (B, n, n); NaN for singular matrices."""
-    try:
-        return np.asarray(np.linalg.inv(matrices))
-    except np.linalg.LinAlgError:
-        found = np.full_like(matrices, np.nan)
-        # one singular row would spoil all others
-        for k, matrix in enumerate(matrices):
-            if np.linalg.cond(matrix) < _REGULAR:
-                found[k] = np.linalg.inv(matrix)
-        return found

@@ -13,6 +13,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.kernels.law_row import LawRow
 from linkwork.kernels.loop_table import LoopTable
 from linkwork.kernels.phasor_rows import PhasorRows
@@ -46,20 +47,8 @@ def variable_series(table: LoopTable, v: Array, inputs: Array) -> Array:
         x[k, :, n:] = inputs[k]
         right = _coefficient(table, x[: k + 1]) / table.equation_scale
         # eq. (91)
-        x[k, :, :n] = -_solve(matrix, right) * table.variable_scale[:n]
+        x[k, :, :n] = -solutions(matrix, right[:, :, None])[:, :, 0] * table.variable_scale[:n]
     return x
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """Solutions (B, n) of square systems; NaN for singular ones."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:
-        found = np.full_like(right, np.nan)
-        for row, (own, side) in enumerate(zip(matrix, right, strict=True)):
-            if np.isfinite(own).all() and np.linalg.matrix_rank(own) == len(own):
-                found[row] = np.linalg.solve(own, side)
-        return found
 
 
 def _coefficient(table: LoopTable, x: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,17 @@ from linkwork.results import quantities
 from linkwork.results.quantities.asked import Group
 from linkwork.results.quantity import Kind
 
-__all__ = ["QuantityValues", "term_jet"]
+__all__ = ["LastAxis", "QuantityValues", "term_jet"]
+
+
+class LastAxis:
+    """Numbers that are asked for as the last axis of an array."""
+
+    def __init__(self, numbers: Sequence[Any]) -> None:
+        self.numbers = numbers
+
+    def __getitem__(self, index: tuple[Any, int]) -> Any:
+        return self.numbers[index[-1]]
 
 
 class QuantityValues(ABC):

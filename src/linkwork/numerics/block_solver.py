@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.stacked_systems import inverses
 from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.newton import NewtonOptions, Watch, newton
 from linkwork.numerics.rows import SolvedRows
@@ -258,18 +259,9 @@ def linearise_block(block: Block, v: Array) -> Linearised:
 
 def _inverse(jacobian: Array) -> tuple[Array, StatusArray]:
     """J⁻¹ and the sign of det J per lane; NaN and 0 where J is singular."""
-    try:
-        inverse = np.linalg.inv(jacobian)
-    except np.linalg.LinAlgError:
-        inverse = np.full_like(jacobian, np.nan)
-        for lane, matrix in enumerate(jacobian):
-            try:
-                inverse[lane] = np.linalg.inv(matrix)
-            except np.linalg.LinAlgError:
-                continue
     # the two positions that meet at a dead point have opposite signs
     sign = np.sign(np.linalg.det(jacobian))
-    return np.asarray(inverse, dtype=float), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
+    return inverses(jacobian), np.where(np.isfinite(sign), sign, 0).astype(np.int8)
 
 
 def _condition(system: System, jacobian: Array, inverse: Array) -> Array:

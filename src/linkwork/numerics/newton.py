@@ -11,6 +11,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.rounding import EPSILON
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.foundation.status import CONVERGED, Status
 from linkwork.foundation.value_types import check_values
 from linkwork.numerics.rows import SolvedRows
@@ -212,18 +213,9 @@ class _Iteration:
 
 def corrections(jacobian: Array, f: Array) -> tuple[Array, BoolArray]:
     """-J⁻¹F per lane, and the lanes where J is singular to rounding."""
-    try:
-        change = -np.linalg.solve(jacobian, f[:, :, None])[:, :, 0]  # eq. (6)
-    except np.linalg.LinAlgError:
-        # one singular lane makes NumPy refuse the batch: the others are solved one by one
-        change = np.full_like(f, np.nan)
-        for lane in range(len(f)):
-            try:
-                change[lane] = -np.linalg.solve(jacobian[lane], f[lane])
-            except np.linalg.LinAlgError:
-                continue
-    singular: BoolArray = ~np.isfinite(change).all(axis=1)
-    return np.asarray(change, dtype=float), singular
+    change: Array = -solutions(jacobian, f[:, :, None])[:, :, 0]  # eq. (6)
+    singular: BoolArray = np.logical_not(np.isfinite(change).all(axis=1))
+    return change, singular
 
 
 def _shorten(change: Array, turns: BoolArray, largest: float) -> Array:

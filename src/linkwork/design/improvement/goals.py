@@ -263,7 +263,7 @@ class _NumberMisses(Misses):
         rows = found.rated(self.order)
         known = {name: self._number(asked, found, rows) for name, asked in self.asked.items()}
         count = found.shape[0]
-        by_x = np.zeros((count, found.by_x.shape[2]))
+        by_x = np.zeros((count, found.slopes.shape[2] - 1))
         total = np.zeros(count)
         with np.errstate(all="ignore"):
             for name in known:

@@ -122,14 +122,12 @@ class LaneEquations:
     def __init__(self, designs: WrittenDesigns, rows: int) -> None:
         self.designs, self.rows = designs, rows
         self.loops, coefficients = designs.writer.loops, designs.writer.coefficients
-        own = np.empty((len(designs.x), len(coefficients)), dtype=complex)
+        own = np.tile(self.loops.coefficient, (len(designs.x), 1))
         self._by_numbers = np.zeros((*own.shape, designs.x.shape[1]), dtype=complex)
         for k, number in enumerate(coefficients):
             if isinstance(number, TapedNumber):
                 own[:, k], rate = designs.known[number.node]
                 self._by_numbers[:, k] = rate.T
-            else:
-                own[:, k] = number
         self._coefficients = np.repeat(own, rows, axis=0)
 
     @np.errstate(all="ignore")  # rows without a position are no numbers

@@ -18,6 +18,7 @@ from linkwork.design.improvement.lane_rows import LaneEquations, LaneRows
 from linkwork.design.improvement.written_designs import DesignWriter, WrittenDesigns
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray, IndexArray
+from linkwork.foundation.stacked_systems import inverses, solutions
 from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantity import Kind
 
@@ -35,10 +36,8 @@ class LanePositions:
     ----------
     rows : LaneRows
         D N rows, design by design.
-    by_x, by_t : (D N, n, P), (D N, n)
-        Derivatives of the unknowns by the numbers and by the leading input.
-    inputs : (p,)
-        The rates of the inputs by the leading one.
+    slopes : (D N, N, P + 1)
+        Derivatives of all variables by the numbers and by the leading input.
     shape : (int, int)
     inverse : (D N, n, n)
         Of the Jacobians.
@@ -47,10 +46,8 @@ class LanePositions:
     """
 
     rows: LaneRows
-    by_x: Array
-    by_t: Array
+    slopes: Array
     found: BoolArray
-    inputs: Array
     shape: tuple[int, int]
     inverse: Array
     sign: Array
@@ -70,9 +67,7 @@ class LanePositions:
     def rated(self, order: int) -> LaneRows:
         """The rows with so many derivatives by the leading input, 0 to 2."""
         if order not in self._rated:
-            lead = np.broadcast_to(self.inputs, (len(self.found), len(self.inputs)))
-            first = np.concatenate([self.by_t, lead], axis=1)
-            self._rated[order] = self.rows.rated(self.inverse, first, order)
+            self._rated[order] = self.rows.rated(self.inverse, self.slopes[:, :, -1], order)
         return self._rated[order]
 
     @cached_property
@@ -121,8 +116,8 @@ class SolvedLanes:
         self._sign: Array | None = None
         first = self.at(writer.written(x[None, :]), t[None, :], np.arange(1))
         self._sign = first.sign
-        self.by_x[:] = first.by_x.reshape(1, rows, n, len(x))
-        self.by_t[:] = first.by_t.reshape(1, rows, n)
+        self.by_x[:] = first.slopes[:, :n, :-1].reshape(1, rows, n, len(x))
+        self.by_t[:] = first.slopes[:, :n, -1].reshape(1, rows, n)
         self._known = np.broadcast_to(first.found, (lanes, rows)).copy()
         if first.found.any():
             near = self._nearest(first.found)
@@ -158,7 +153,7 @@ class SolvedLanes:
             solved = v
             f, by_v = equations.at(v)
             jacobian = by_v[:, :, :n]
-            step = _solve(jacobian, f[:, :, None])[:, :, 0]
+            step = solutions(jacobian, f[:, :, None])[:, :, 0]
             missed = np.abs(f / scale).max(axis=1, initial=0.0)
             moved = np.abs(step / weight).max(axis=1, initial=0.0)
             closed = (missed <= _CLOSED) | (moved <= _CLOSED)
@@ -170,7 +165,7 @@ class SolvedLanes:
         fine &= closed
         if self._sign is not None:
             fine &= (sign == self._sign).ravel()
-        inverse = _solve(jacobian, np.broadcast_to(np.eye(n), jacobian.shape))
+        inverse = inverses(jacobian)
         # eq. (156)
         slopes = np.zeros((len(v), v.shape[1], x.shape[1] + 1))
         slopes[:, :n, :-1] = -inverse @ equations.by_numbers(solved)
@@ -178,10 +173,8 @@ class SolvedLanes:
         slopes[:, n:, -1] = self.rate
         return LanePositions(
             rows=LaneRows(designs, solved, slopes),
-            by_x=slopes[:, :n, :-1],
-            by_t=slopes[:, :n, -1],
+            slopes=slopes,
             found=fine,
-            inputs=self.rate,
             shape=(count, rows),
             inverse=inverse,
             sign=sign,
@@ -198,8 +191,8 @@ class SolvedLanes:
         shape = *found.shape, n
         self.x[to], self.t[to] = x[which[0]], t[which]
         self.q[to] = found.rows.solution[:, :n].reshape(shape)[which]
-        self.by_x[to] = found.by_x.reshape(*shape, x.shape[1])[which]
-        self.by_t[to] = found.by_t.reshape(shape)[which]
+        self.by_x[to] = found.slopes[:, :n, :-1].reshape(*shape, x.shape[1])[which]
+        self.by_t[to] = found.slopes[:, :n, -1].reshape(shape)[which]
         self._known[to] = True
         closed = found.found.reshape(found.shape)
         for k in np.flatnonzero(better & closed.any(axis=1)):
@@ -226,16 +219,3 @@ class SolvedLanes:
         self.t[lane, to] = self.rows_at[to] - self._away(near)[to]
         for kept in (self.x, self.q, self.by_x, self.by_t):
             kept[lane, to] = kept[lane, of]
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """Solutions of systems, NaN where a matrix is singular or no number."""
-    wrong = ~(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2)))
-    matrix, right = matrix.copy(), right.copy()
-    matrix[wrong], right[wrong] = np.eye(matrix.shape[1]), np.nan
-    try:
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        singular = np.linalg.matrix_rank(matrix) < matrix.shape[1]
-        matrix[singular], right[singular] = np.eye(matrix.shape[1]), np.nan
-        return np.asarray(np.linalg.solve(matrix, right))

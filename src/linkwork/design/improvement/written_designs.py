@@ -48,17 +48,10 @@ class DesignWriter:
         )
         #: Of the terms of loops; plain numbers, too.
         self.coefficients: list[Any] = [term.value for row in rows for term in row]
-        self._numbers: dict[int, TapedNumber] = {}
-        self.equations.mapped(self._note)
-        for number in (self.speed, *self.coefficients):
-            self._note(number)
+        found = [self.speed, *self.coefficients]
+        self.equations.mapped(found.append)
+        self._numbers = {x.node: x for x in found if isinstance(x, TapedNumber)}
         self._record.keep(list(self._numbers.values()))
-
-    def _note(self, number: Any) -> Any:
-        """Remember numbers that designs are asked for."""
-        if isinstance(number, TapedNumber):
-            self._numbers[number.node] = number
-        return number
 
     def written(self, x: Array) -> WrittenDesigns:
         """The equations of designs (D, P), file units."""

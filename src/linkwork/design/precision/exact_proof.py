@@ -18,6 +18,7 @@ from linkwork.design.precision.product_sums import ProductSums
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
+from linkwork.foundation.stacked_systems import inverses
 from linkwork.numerics.proof.kantorovich import radii
 
 __all__ = ["ProvedNumbers", "exact_turn", "prove_numbers", "whole_number", "whole_unit"]
@@ -65,7 +66,7 @@ def prove_numbers(
             residual = np.array([equations.exact_residual(row) for row in whole[live].tolist()])
             f[live] = np.ldexp(residual.astype(float), -2 * bits)
             jacobian = equations.jacobian(v[live])
-            inverse = _inverses(jacobian)
+            inverse = inverses(jacobian)
             correction = matrix_vector(inverse, f[live])
             scale = _LEAST_WEIGHT * size + np.abs(v[live, :n])
             holds[live], error[live] = _prove(equations, v[live], jacobian, inverse, f[live], scale)
@@ -142,17 +143,3 @@ def _whole_numbers(x: Array, bits: int) -> AnyArray:
     number, shift = (part * 2.0**53).astype(np.int64).astype(object), exponent + (bits - 53)
     left, right = (np.maximum(z, 0).astype(object) for z in (shift, -shift))
     return np.asarray(number << left >> right, dtype=object)
-
-
-def _inverses(matrices: Array) -> Array:
-    """Approximate inverses (B, n, n); NaN where there is none."""
-    try:
-        return np.asarray(np.linalg.inv(matrices), dtype=float)
-    except np.linalg.LinAlgError:
-        found = np.full_like(matrices, np.nan)
-        for k, matrix in enumerate(matrices):
-            try:
-                found[k] = np.linalg.inv(matrix)
-            except np.linalg.LinAlgError:
-                continue
-        return found

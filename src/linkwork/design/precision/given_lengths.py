@@ -19,9 +19,10 @@ from linkwork.design.precision.position_equations import HeldValue
 from linkwork.design.precision.positions import PrecisionPositions
 from linkwork.design.precision.problem import CONDITIONS, PLACES
 from linkwork.foundation.arrays import ComplexArray
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.numerics.homotopy.parameter_path import as_batch
 from linkwork.numerics.homotopy.path_tracking import relative_size
-from linkwork.numerics.homotopy.polynomial_system import distinct_solutions, solve_linear
+from linkwork.numerics.homotopy.polynomial_system import distinct_solutions
 
 __all__ = ["four_bars_with_lengths"]
 
@@ -93,7 +94,7 @@ def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
             rows = np.linalg.norm(jacobian, axis=2)
             f, jacobian = f / rows, jacobian / rows[:, :, None]
             across = jacobian.conj().transpose(0, 2, 1)
-            change = (across @ solve_linear(jacobian @ across, f[:, :, None]))[:, :, 0]
+            change = (across @ solutions(jacobian @ across, f[:, :, None]))[:, :, 0]
             linkage = linkage.copy()
             linkage[:, free] -= change
     settled = relative_size(change, linkage[:, free], _LEAST_SIZE) < _SETTLED

@@ -19,7 +19,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.products import matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
-from linkwork.numerics.homotopy.polynomial_system import solve_linear
+from linkwork.foundation.stacked_systems import inverses
 from linkwork.numerics.proof.kantorovich import radii
 
 __all__ = ["BilinearSystem", "ProvedRoots", "prove_roots"]
@@ -122,7 +122,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     """
     count, m = len(x), system.size
     f, j = system.residual_and_jacobian(x)
-    a = solve_linear(j, np.broadcast_to(np.eye(2 * m, dtype=complex), j.shape))
+    a = inverses(j)
     a = np.where(np.isfinite(a).all(axis=(1, 2), keepdims=True), a, 0.0)  # then Z0 ≥ 1
     size = np.abs(a)
     u, v = np.abs(_with_one(x[:, :m])), np.abs(_with_one(x[:, m:]))

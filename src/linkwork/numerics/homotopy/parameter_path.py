@@ -16,9 +16,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.marching.solution_path import PathOptions
 from linkwork.numerics.homotopy.path_tracking import Paths, relative_size, track
-from linkwork.numerics.homotopy.polynomial_system import solve_linear
 
 __all__ = [
     "QUICK",
@@ -158,7 +158,7 @@ def polish_ends(path: ParameterPath, x: ComplexArray) -> PolishedEnds:
     for _ in range(_POLISH):
         here, before = x[live], last[live]
         f, jacobian = path.residual_and_jacobian(here)
-        change = solve_linear(jacobian, f[:, :, None])[:, :, 0]
+        change = solutions(jacobian, f[:, :, None])[:, :, 0]
         size = relative_size(change, here, QUICK.floor)
         better, rounded = size < before, size <= _NOISE
         # a double solution halves the distance at every step

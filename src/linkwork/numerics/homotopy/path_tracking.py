@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
+from linkwork.foundation.stacked_systems import solutions
 from linkwork.marching.solution_path import (
     ARRIVED,
     FIRST_STEP,
@@ -29,7 +30,6 @@ from linkwork.marching.solution_path import (
     step_factor,
 )
 from linkwork.marching.step_size import HALF
-from linkwork.numerics.homotopy.polynomial_system import solve_linear
 
 __all__ = ["Homotopy", "Paths", "relative_size", "track"]
 
@@ -84,7 +84,7 @@ class _Tracker:
         self.sigma = np.ones(count)
         self.step = np.full(count, FIRST_STEP)
         _, jacobian, change = homotopy.evaluate(start, self.sigma)
-        slope = -solve_linear(jacobian, change[:, :, None])[:, :, 0]  # eq. (49)
+        slope = -solutions(jacobian, change[:, :, None])[:, :, 0]  # eq. (49)
         # points and slopes: here, there, before, there
         self.path = np.stack([start, slope, start, slope])
         self.gone = np.zeros(count)  # length of the last step, 0 before the first
@@ -118,12 +118,12 @@ class _Tracker:
         goal = np.where(self.sigma <= self.step, 0.0, self.sigma - h)
         guess = self._predict(h)
         f, jacobian, _ = evaluate(guess, goal)
-        first = solve_linear(jacobian, f[:, :, None])[:, :, 0]
+        first = solutions(jacobian, f[:, :, None])[:, :, 0]
         w = guess - first
         e1 = relative_size(first, w, options.floor)
         f, jacobian, change = evaluate(w, goal)
         # one factorisation serves the second correction and the slope
-        both = solve_linear(jacobian, np.stack([f, change], axis=2))
+        both = solutions(jacobian, np.stack([f, change], axis=2))
         w -= both[:, :, 0]
         e2 = relative_size(both[:, :, 0], w, options.floor)
         error, contraction, rounding = options.error, options.contraction, options.rounding

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.foundation.arrays import ComplexArray, CountArray
+from linkwork.foundation.stacked_systems import solutions
 
 __all__ = [
     "SAME_ROOT",
@@ -17,7 +18,6 @@ __all__ = [
     "distinct_solutions",
     "nearest_solution",
     "polish_roots",
-    "solve_linear",
 ]
 
 SAME_ROOT = 1e-6  # two solutions are the same one
@@ -73,7 +73,7 @@ def polish_roots(system: PolynomialSystem, x: ComplexArray) -> tuple[ComplexArra
     last = np.full(len(x), np.inf)
     for k in range(_POLISH):
         f, j = system.residual_and_jacobian(x[live])
-        change = solve_linear(j, f[:, :, None])[:, :, 0]
+        change = solutions(j, f[:, :, None])[:, :, 0]
         x[live] -= change
         size = np.abs(change).max(axis=1, initial=0.0)
         size /= 1.0 + np.abs(x[live]).max(axis=1, initial=0.0)
@@ -95,20 +95,6 @@ def distinct_solutions(x: ComplexArray, same: float = SAME_ROOT) -> ComplexArray
         if not kept or np.abs(x[kept] - x[k]).max(axis=1).min() >= same * size:
             kept.append(k)
     return x[kept]
-
-
-def solve_linear(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Solutions per lane of (B, n, n) and (B, n, k); NaN where a matrix is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
-    except np.linalg.LinAlgError:
-        found = np.full(right.shape, np.nan, dtype=complex)
-        for lane in range(len(matrix)):
-            try:
-                found[lane] = np.linalg.solve(matrix[lane], right[lane])
-            except np.linalg.LinAlgError:
-                continue
-        return found
 
 
 def nearest_solution(system: PolynomialSystem, x: ComplexArray, steps: int) -> ComplexArray:
