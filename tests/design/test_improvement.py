@@ -89,6 +89,32 @@ def test_a_mechanism_that_cannot_reach_all_points_yet_is_improved_until_it_does(
     assert repr(best) == f"<ImprovedDesign: total {best.total:.4g}, all rows are proved>"
 
 
+def test_starts_that_cannot_be_built_are_left_out() -> None:
+    """With a shorter side the coupler is no triangle any more."""
+    points = {"A0": (0, 0), "A": (20, 5), "B": (80, 60), "B0": (100, 0), "P": (60, 70)}
+    bar = lw.linkage(
+        points=points, lengths={"A0 A": 25, "A B": 80, "B0 B": 60, "A P": 60, "B P": 30},
+        links={"ground": ["A0", "B0"], "crank": ["A0", "A"], "coupler": ["A", "B", "P"],
+               "rocker": ["B0", "B"]},
+        inputs=lw.Input(link="crank", start=0, stop=350, step=10),
+    )  # fmt: skip
+    motion = bar.with_dimensions({"A P": 62.0}).sweep()
+    path = motion.trace("P")
+    goal = {
+        "point": "P",
+        "points": np.stack([path.real, path.imag], axis=1),
+        "inputs": motion.inputs["crank"],
+    }
+    found = bar.improve(goal, vary=["A P", "B P"], starts=12, spread=0.6)
+    assert found[0].numbers == pytest.approx({"A P": 62.0, "B P": 30.0}, abs=1e-9)
+    assert all(design.motion is not None for design in found)
+
+
+def test_a_mechanism_without_unknowns_is_improved() -> None:
+    best = lw.example("pendulum").improve({"of": "max(A.x)", "target": 0.5}, vary=["O A"])[0]
+    assert best.numbers["O A"] == pytest.approx(0.5)
+
+
 def test_goals_without_a_meaning_are_refused() -> None:
     bar = lw.example("four-bar")
     with pytest.raises(MechanismError, match="has no target"):

@@ -144,7 +144,6 @@ class _RecordedNumber(_Unread, TapedNumber):  # type: ignore[misc]  # no values
     """A number on a record."""
 
     __slots__ = ("own",)
-    __hash__ = object.__hash__
 
     def __init__(self, values: AnyArray, record: RecordedTape, node: int) -> None:
         self.own, self.arithmetic, self.node = values, record, node

@@ -264,7 +264,6 @@ class Tape(Consensus):
                     part = _product(a, rates[parent])
                     if b is not None:
                         part = part + _product(b, np.conj(rates[parent]))
-                    # the first part is no sum yet
                     total = total + part
                 rates[node] = np.asarray(np.real(total) if self._real[node] else total)
         return [rates[x.node] if isinstance(x, TapedNumber) else nothing for x in results]
