@@ -195,6 +195,16 @@ def test_a_load_that_switches_is_met_when_it_does() -> None:
     assert after == pytest.approx([0.0, 0.0], abs=1e-13)
 
 
+@pytest.mark.parametrize("force", ["10*(d < {})", "10*(d.velocity < {} - 2)"])
+def test_rows_of_switches_have_the_load_after_them(force: str) -> None:
+    for place in np.linspace(3.03, 3.4, 12):
+        push = lw.Load(point="B", link="block", force=(force.format(place), 0))
+        motion = lw.linkage(**SLIDER, loads=[push]).simulate(1, step=0.25)
+        (event,) = np.flatnonzero([word == "switch" for word in motion.limit])
+        assert motion["B.load.x"][event] == 0.0, place
+        assert motion["d.acceleration"][event] == pytest.approx(0.0, abs=1e-13)
+
+
 def test_a_mass_bounces_on_a_stop_and_comes_to_rest() -> None:
     stop = lw.Stop(of="d", stop=3.2, restitution=0.5)
     push = lw.Load(point="B", link="block", force=(10, 0))

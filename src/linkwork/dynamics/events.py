@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 from linkwork.results.quantities.asked import Asked
 
-__all__ = ["Bound", "Event", "first_event", "margins_on", "shorter_step"]
+__all__ = ["Bound", "Event", "first_event", "just_behind", "margins_on", "shorter_step"]
 
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of the leg: so is a lower one, whose margin is rounding
@@ -25,7 +25,10 @@ _TOUCHES = 1e-9  # of the leg: a stop so near is touched
 _LOOKS = 24  # places of a step at which signs are compared
 _STEP_LOOKS = 33  # at which a step may have left its leg
 _ROUNDS = 60  # halvings are the worst case
+_BEHIND = 8.0  # roundoffs of a state that is computed again
 _NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next one is looked for
+
+_T = TypeVar("_T", float, Array)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -170,6 +173,17 @@ def first_event(step: Between, end: float, margins: Margins, comparisons: int) -
     ]
     before, after, number = min(found)
     return Event(number=number, before=before, after=after, falls=bool(falling[number]))
+
+
+def just_behind(place: _T, speed: _T, acceleration: _T, size: _T) -> tuple[_T, _T]:
+    """Place and speed behind a switch, some roundoffs further.
+
+    Rounding depends on how many states are computed together, and positions are solved again for
+    their rows: all must find this state behind the switch. ``acceleration``: that in front of it.
+    """
+    further = _BEHIND * EPSILON
+    place = place + further * size * np.sign(speed)
+    return place, speed + further * np.abs(speed) * np.sign(acceleration)
 
 
 def _located(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.dynamics.events import Bound, Event, first_event
+from linkwork.dynamics.events import Bound, Event, first_event, just_behind
 from linkwork.dynamics.input_dynamics import InputDynamics
 from linkwork.dynamics.pace import Pace
 from linkwork.dynamics.reduction import FAR, NEAR
@@ -112,6 +112,9 @@ class InputTravel:
             self._hit(event.number)
             return
         # the row has the loads, and so the accelerations, after the switch
+        q, size = self.q, np.maximum(np.abs(self.q), 1.0)
+        before = self.dynamics.acceleration(q[None], self.speed[None], self._now)[0]
+        self.q, self.speed = just_behind(q, self.speed, before, size)
         self._switch()
         self._record_here("switch")
         limit = self.t - _CHATTER * self.until

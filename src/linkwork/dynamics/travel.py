@@ -10,7 +10,14 @@ import numpy as np
 
 from linkwork.dynamics.collocation import Step, try_step
 from linkwork.dynamics.curve import PositionCurve
-from linkwork.dynamics.events import Bound, Event, first_event, margins_on, shorter_step
+from linkwork.dynamics.events import (
+    Bound,
+    Event,
+    first_event,
+    just_behind,
+    margins_on,
+    shorter_step,
+)
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.pace import Pace
 from linkwork.dynamics.reduced_leg import ReducedLeg
@@ -201,10 +208,18 @@ class Travel:
             self._hold()
         else:
             # the row has the loads, and so the acceleration, after the switch
+            self._pass_switch()
             self._switch()
             self._hold()
             self._record(self.t, self.s, self.speed, self._now(), "switch")
             self._check_chatter()
+
+    def _pass_switch(self) -> None:
+        """Come to the other side of a switch, whatever rounding says."""
+        low, high = self.leg.table.edges[[0, -1]].tolist()
+        size = max(abs(self.s), high - low)
+        place, self.speed = just_behind(self.s, self.speed, self._now(), size)
+        self.s = float(np.clip(place, low, high))
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
