@@ -28,6 +28,7 @@ __all__ = [
     "SPEED",
     "C",
     "Step",
+    "shorter_step",
     "try_step",
 ]
 
@@ -37,6 +38,7 @@ _SETTLED = 1e-15  # of the accelerations: a change that is rounding
 _TOLERANCE = 1e-13  # of the speed: error of the polynomial between the ends of a step
 _ROUNDING, _GROWTH = 1e-9, 1.5  # of the accelerations: more is none; of steps with it
 _LARGEST, _SMALLEST, _SAFETY = 3.0, 0.2, 0.8
+_LOOKS = 33  # places of a step at which it may have left its leg
 NOISE = 16.0  # roundings of a place in an acceleration
 
 _x, _w = legendre.leggauss(POINTS)
@@ -177,3 +179,16 @@ def _linearise(
         np.eye(POINTS) - by_place[:, None] * (h**2 * AT_PLACE) - by_speed[:, None] * (h * AT_SPEED)
     )
     return many[0], jacobian, float(np.abs(by_place).max())
+
+
+def shorter_step(step: Step, low: float, high: float) -> float | None:
+    """The length that leads just beyond the ends of a leg, of a step that goes on further."""
+    times = np.linspace(step.t, step.t + step.h, _LOOKS)
+    s = step.at(times)[0]
+    outside = np.flatnonzero((s < low) | (s > high))
+    if not len(outside):
+        return None
+    # between the last place that is known and the first one that is not
+    k = int(outside[0])
+    within = float(times[k - 1] - step.t) if k > 1 else 0.0
+    return max(within, 0.5 * float(times[k] - step.t))

@@ -9,21 +9,19 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from linkwork.dynamics.collocation import Step
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.reduced_leg import ReducedLeg
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 from linkwork.results.quantities.asked import Asked
 
-__all__ = ["Bound", "Event", "first_event", "just_behind", "margins_on", "shorter_step"]
+__all__ = ["Bound", "Event", "first_event", "just_behind", "margins_on"]
 
 _RESTS = 1e-8  # of the whole time: a shorter bounce is rest
 _LOW = 1e-12  # of the leg: so is a lower one, whose margin is rounding
 _NEXT = 1e-6  # of the leg: places on both sides of one, for slopes
 _TOUCHES = 1e-9  # of the leg: a stop so near is touched
 _LOOKS = 24  # places of a step at which signs are compared
-_STEP_LOOKS = 33  # at which a step may have left its leg
 _ROUNDS = 60  # halvings are the worst case
 _BEHIND = 8.0  # roundoffs of a state that is computed again
 _NEAR = 1e-4  # of a bracket: around the straight line's zero, where the next one is looked for
@@ -134,19 +132,6 @@ def margins_on(
         return np.stack(found, axis=1)
 
     return margins
-
-
-def shorter_step(step: Step, low: float, high: float) -> float | None:
-    """The length that leads just beyond the ends of a leg, of a step that goes on further."""
-    times = np.linspace(step.t, step.t + step.h, _STEP_LOOKS)
-    s = step.at(times)[0]
-    outside = np.flatnonzero((s < low) | (s > high))
-    if not len(outside):
-        return None
-    # between the last place that is known and the first one that is not
-    k = int(outside[0])
-    within = float(times[k - 1] - step.t) if k > 1 else 0.0
-    return max(within, 0.5 * float(times[k] - step.t))
 
 
 def first_event(step: Between, end: float, margins: Margins, comparisons: int) -> Event | None:

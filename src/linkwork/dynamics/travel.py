@@ -8,16 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.dynamics.collocation import Step, try_step
+from linkwork.dynamics.collocation import Step, shorter_step, try_step
 from linkwork.dynamics.curve import PositionCurve
-from linkwork.dynamics.events import (
-    Bound,
-    Event,
-    first_event,
-    just_behind,
-    margins_on,
-    shorter_step,
-)
+from linkwork.dynamics.events import Bound, Event, first_event, just_behind, margins_on
 from linkwork.dynamics.joint_friction import Rubbing
 from linkwork.dynamics.pace import Pace
 from linkwork.dynamics.reduced_leg import ReducedLeg
@@ -208,18 +201,12 @@ class Travel:
             self._hold()
         else:
             # the row has the loads, and so the acceleration, after the switch
-            self._pass_switch()
+            size = abs(self.s) + float(np.ptp(self.leg.table.edges))
+            self.s, self.speed = just_behind(self.s, self.speed, self._now(), size)
             self._switch()
             self._hold()
             self._record(self.t, self.s, self.speed, self._now(), "switch")
             self._check_chatter()
-
-    def _pass_switch(self) -> None:
-        """Come to the other side of a switch, whatever rounding says."""
-        low, high = self.leg.table.edges[[0, -1]].tolist()
-        size = max(abs(self.s), high - low)
-        place, self.speed = just_behind(self.s, self.speed, self._now(), size)
-        self.s = float(np.clip(place, low, high))
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
@@ -242,9 +229,15 @@ class Travel:
             self.holder = "a load that switches there"
             chatter = [k for k in self.samples if k.event == "switch" and k.t > self.held]
             self.samples = [k for k in self.samples if k not in chatter]
-            for t in self.times[self.taken :]:
-                self._record(float(t), self.s, 0.0, 0.0)
-            self.taken, self.t = len(self.times), self.until
+            self._stay(self.until)
+
+    def _stay(self, until: float) -> None:
+        """Remain at rest up to a time."""
+        times = self.times[self.taken :]
+        for t in times[times <= until]:
+            self._record(float(t), self.s, 0.0, 0.0)
+            self.taken += 1
+        self.t = until
 
     def _is_outside(self) -> bool:
         """Whether the leg ended at another event, to rounding; the motion is then on the next."""
@@ -338,11 +331,7 @@ class Travel:
         self.resting = None
         if until <= self.t:
             return False
-        times = self.times[self.taken :]
-        for t in times[times <= until]:
-            self._record(float(t), self.s, 0.0, 0.0)
-            self.taken += 1
-        self.t = until
+        self._stay(until)
         self._switch()
         return True
 
@@ -379,11 +368,7 @@ class Travel:
         self.reduction.switches = FrozenDict()
         starts = release(self.leg, self.s, self.t, self.until, self.gain)
         begin, end = self.t, self.until if starts is None else starts
-        times = self.times[self.taken :]
-        for t in times[times <= end]:
-            self._record(float(t), self.s, 0.0, 0.0)
-            self.taken += 1
-        self.t = end
+        self._stay(end)
         self._switch()
         if starts is None:
             self.held, self.holder = begin, "friction"
