@@ -403,13 +403,36 @@ def test_a_formula_whose_ranges_begin_anywhere_is_met_at_five_points(mechanism: 
     (design,) = found.delivered
     share = 0.5 - 0.5 * np.cos((2 * np.arange(1, 6) - 1) * np.pi / 10)
     bar, output = lw.api.Mechanism(design.linkage), {"four-bar": "rocker", "slider-crank": "slide"}
-    values = np.array([bar.solve(at=float(a))[output[mechanism]] for a in design.inputs])
+    positions = [bar.solve(at=float(a)) for a in design.inputs]
+    values = np.array([position[output[mechanism]] for position in positions])
+    assert [p["structural_error"] for p in positions] == pytest.approx([0.0] * 5, abs=1e-9)
     assert np.diff(design.inputs) == pytest.approx(60.0 * np.diff(share), abs=1e-9)
     assert np.diff(values) == pytest.approx(50.0 * np.diff(np.log2(1.0 + share)), abs=1e-6)
     fitted = lw.Task.function("log10(x)", fit="minimax", **spans).solve()
     assert min(d.error for d in fitted.delivered) < 0.01
     sizes = np.sort([d.size for d in fitted.designs])
     assert (np.diff(sizes) > 1e-3 * sizes[:-1]).all()  # ends in one valley count once
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+@pytest.mark.parametrize(
+    ("mechanism", "wanted", "begin"),
+    [
+        ("four-bar", {}, (0.0, 360.0)),
+        ("four-bar", {"input": {"from": -40.0, "to": 20.0}}, (-40.0, -40.0)),
+        ("slider-crank", {}, (0.0, 360.0)),
+    ],
+)
+def test_a_fit_whose_start_angles_were_found_has_its_structural_error(
+    mechanism: str, wanted: dict[str, Any], begin: tuple[float, float], fit: str
+) -> None:
+    spans = {"x": (1, 2), "input": 60, "output": 50, "mechanism": mechanism, "wanted": wanted}
+    found = lw.Task.function("log10(x)", fit=fit, **spans).solve()
+    assert found.delivered
+    for design in found.delivered:
+        motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+        assert np.abs(motion["structural_error"]).max() == pytest.approx(design.error, rel=2e-3)
+        assert begin[0] - 1e-9 <= motion.inputs["crank"][0] <= begin[1] + 1e-9
 
 
 @pytest.mark.parametrize(

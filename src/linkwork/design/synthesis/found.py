@@ -34,9 +34,10 @@ class Found:
         Triples of cognates, for tasks whose solutions are counted so.
     drives : tuple of Drive
         The links that may be driven.
-    zero : (float, float), optional
-        The angles of crank and rocker at the first position as the task measures them [rad]; a link
-        that points the other way is measured from its moving pivot.
+    zeros : tuple of (float, float)
+        Of each container, or none: the angles of crank and rocker, or the displacement of a slider,
+        that the task has at the first position [rad or length]; a link that points the other way is
+        measured from its moving pivot.
     output : str
         The name of the output link or slider of a function; "" for other tasks.
     starts : int
@@ -54,7 +55,7 @@ class Found:
     dyads: DyadSet | None = None
     triples: int = 0
     drives: tuple[Drive, ...] = tuple(Drive)
-    zero: tuple[float, float] | None = None
+    zeros: tuple[tuple[float, float], ...] = ()
     output: str = ""
     starts: int = 0
     interrupted: bool = False

@@ -208,6 +208,20 @@ class FunctionGoal:
         """Whether the start angles are given."""
         return not self.free and (self.input is not None or self.output is not None)
 
+    def begun_at(self, inputs: float, outputs: float) -> FunctionGoal:
+        """The function whose first point is at this input and output, with given start angles."""
+        first, second = (float(values[0]) for values in self.points())
+        return replace(
+            self,
+            input=_moved(self.input, inputs - first),
+            output=_moved(self.output, outputs - second),
+            free=(),
+        )
+
+    def points(self) -> tuple[Array, Array]:
+        """Inputs and outputs (K,) that a design meets, or a fit follows."""
+        return self.dense_points() if self.fit else self.precision_points()
+
     def precision_points(self) -> tuple[Array, Array]:
         """Inputs and outputs (K,) of the precision points, in order."""
         if self.pairs:
@@ -280,6 +294,10 @@ class FunctionGoal:
     def _evaluated(self, x: float) -> float:
         # functions of x are those of mathematics: radians
         return value(self._tree, {_VARIABLE: float(x)}, AngleUnit.RADIAN, self.of)
+
+
+def _moved(ends: Pair | None, shift: float) -> Pair | None:
+    return ends and (ends[0] + shift, ends[1] + shift)
 
 
 def _within_half_a_turn(angle: str) -> str:

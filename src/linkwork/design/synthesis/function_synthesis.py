@@ -21,6 +21,7 @@ from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.loop_limits import cross
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
+from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
@@ -44,7 +45,7 @@ def solve_function(
     goal = task.function
     assert goal is not None, "a task of functions has one"
     slides = task.mechanisms[0] == "slider-crank"
-    inputs, outputs = goal.dense_points() if goal.fit else goal.precision_points()
+    inputs, outputs = goal.points()
     u = np.array([inputs * task.angle.radians])
     v = np.array([outputs * (1.0 if slides else task.angle.radians)])
     if not goal.starts_fixed:
@@ -53,8 +54,8 @@ def solve_function(
         return _fitted(task, wishes, u[0], v[0], slides, progress)
     if goal.starts_fixed:
         made, determined = _through_three(u, v, slides)
-        zero = float(u[0, 0]), 0.0 if slides else float(v[0, 0])
-        return _found(task, made, complete=1 if determined.all() else -1, zero=zero)
+        zeros = ((float(u[0, 0]), float(v[0, 0])),) * len(made)
+        return _found(task, made, complete=1 if determined.all() else -1, zeros=zeros)
     if u.shape[1] == _FIVE:
         return _through_five(task, u, v, slides)
     if u.shape[1] == _FOUR:
@@ -242,11 +243,14 @@ def _fitted(
         progress=progress,
     )
     made: list[Candidates] = []
+    zeros: list[tuple[float, float]] = []
     for own, wrong in zip(fits.x, fits.wrong, strict=True):
         miss = float(np.abs(wrong).max())
+        # without bounds in the first turn
+        begin = own[3] if first is None or np.isfinite(first[0]) else own[3] % FULL_TURN
         made += _fit_design(u + own[3], v + own[4] + wrong, own[:3], slides, miss)
-    zero = (float(u[0]), 0.0 if slides else float(v[0])) if goal.starts_fixed else None
-    found = _found(task, made, complete=0, zero=zero)
+        zeros.append((float(u[0] + begin), float(v[0] + own[4])))
+    found = _found(task, made, complete=0, zeros=tuple(zeros))
     told = f"1 {goal.fit} fit" if len(made) == 1 else f"{len(made)} different {goal.fit} fits"
     message = f"a sample: {told} from {len(x)} starts"
     if not made:
@@ -316,7 +320,7 @@ def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -
 
 
 def _found(
-    task: Task, made: list[Candidates], complete: int, zero: tuple[float, float] | None = None
+    task: Task, made: list[Candidates], complete: int, zeros: tuple[tuple[float, float], ...] = ()
 ) -> Found:
     """Scaled to the ground that the task gives; ``complete``: how many solutions are all of them,
     negative if this is not proved, 0 for a sample.
@@ -340,7 +344,7 @@ def _found(
         completeness=grade,
         message=message,
         drives=(Drive.A0,),
-        zero=zero,
+        zeros=zeros,
         output="slide" if slides else "rocker",
     )
 

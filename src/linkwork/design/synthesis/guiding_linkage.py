@@ -50,6 +50,9 @@ class Design:
         The driven range [rad or length].
     backward : tuple of Drive
         Links whose angle is measured from the moving pivot to the fixed one.
+    output : float, optional
+        What a function has for the output at the first position, if that is not the output of the
+        design [rad or length].
     """
 
     kind: LoopKind
@@ -59,6 +62,7 @@ class Design:
     start: float
     stop: float
     backward: tuple[Drive, ...] = ()
+    output: float | None = None
 
     @classmethod
     def of(
@@ -74,7 +78,7 @@ class Design:
 
         ``inputs`` (N,), ``ends`` (2,): at the positions, and of the driven range; ``zero``: the
         angles of crank and rocker at the first position as a task measures them, opposite to the
-        links where a length is negative [rad].
+        links where a length is negative, or the displacement of a slider [rad or length].
         """
         points = {
             "A0": given.fixed_a[k],
@@ -125,6 +129,7 @@ class Design:
             start=float(ends[0]),
             stop=float(ends[1]),
             backward=tuple(backward),
+            output=zero and zero[1],
         )
 
 
@@ -168,9 +173,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         del links["rocker"]
         links |= {GROUND: ("A0", "S", "T"), "block": ("B",)}
         sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),)
-    formula = ""
-    if output and task.function is not None and design.drive is Drive.A0:
-        formula = task.function.formula("crank", _GUIDE if sliders else output, task.angle)
+    formula = _error_formula(design, task, output)
     return Linkage(
         name=name,
         purpose=_purpose(design, task),
@@ -184,6 +187,27 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         trace=(guided,),
         outputs={"structural_error": formula} if formula else {},
     )
+
+
+def _error_formula(design: Design, task: Task, output: str) -> str:
+    """The structural error of a function, whose start angles may have been found."""
+    goal, unit = task.function, task.angle.from_radians
+    if not output or goal is None or design.drive is not Drive.A0:
+        return ""
+    if goal.free:
+        begin = _first_output(design) if design.output is None else design.output
+        begin = begin if design.kind is LoopKind.SLIDER_CRANK else unit(begin)
+        goal = goal.begun_at(unit(design.inputs[0]), begin)
+    return goal.formula("crank", output, task.angle)
+
+
+def _first_output(design: Design) -> float:
+    """The angle of the rocker, or the displacement of the slider [rad or length]."""
+    z = design.points
+    if design.kind is LoopKind.FOUR_BAR:
+        return float(np.angle(z["B"] - z["B0"]))
+    line = z["T"] - z["S"]
+    return float(dot(np.asarray(line / abs(line)), np.asarray(z["B"] - z["S"])))
 
 
 def _guided(design: Design, task: Task, name: str) -> Linkage:

@@ -98,7 +98,7 @@ class Dyad:
 class JudgedDesigns:
     """Designs of one kind with one driven link, and the verdicts on them.
 
-    ``zero`` and ``output`` are those of :class:`Found`.
+    ``zero``, one of ``zeros``, and ``output`` are those of :class:`Found`.
     """
 
     task: Task

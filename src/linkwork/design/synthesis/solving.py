@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import zip_longest
 from typing import TypeVar
 
 import numpy as np
@@ -75,12 +76,12 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
             task=task,
             given=part,
             drive=drive,
-            wishes=(wishes := _measured(wishes_of(task, drive), part, found.zero)),
+            wishes=(wishes := _measured(wishes_of(task, drive), part, zero)),
             verdicts=judge(part, drive, wishes),
-            zero=found.zero,
+            zero=zero,
             output=found.output,
         )
-        for part in found.candidates
+        for part, zero in zip_longest(found.candidates, found.zeros)
         for drive in part.drives
         if drive in found.drives
     ]
