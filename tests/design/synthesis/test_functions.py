@@ -450,7 +450,11 @@ def test_a_fit_whose_start_angles_were_found_has_its_structural_error(
         ),
         (
             {**_LOGARITHM, "fit": "minimax", "wanted": {"input": {"from": 50, "to": 100}}},
-            "spans 50, but the given inputs span 60",
+            "from 50 to 100 leaves out the input 45 of the function",
+        ),
+        (
+            {**_LOGARITHM, "wanted": {"input": {"from": 410, "to": 460}}},
+            "from 410 to 460 leaves out the input 49.0192 of the function",
         ),
         ({**_LOGARITHM, "input": (0, 400)}, "input  spans inputs of more than a turn, 360"),
         ({**_LOGARITHM, "wanted": {"lengths": {"least": 50}}}, "exclude the ground, which is 1 l"),

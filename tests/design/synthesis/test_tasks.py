@@ -56,6 +56,23 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "least = 50 and most = 20 contradict each other"),
         (_MOTION + "[wanted]\nlengths = { most = 20 }\n", 10, "positions[3].point",
          "is 128.062 from position 1, out of reach of links of at most 20"),
+        (_MOTION + "[wanted]\nlengths = { least = -5 }\n", 19, "wanted.lengths.least",
+         "must not be negative, got -5"),
+        (_MOTION + "[wanted]\nlengths = { most = 100 }\n"
+         "fixed_pivots = { inside = [[300, 0], [310, 0], [300, 10]] }\n", 20,
+         "wanted.fixed_pivots.inside",
+         "is 300 from position 1, out of reach of links of at most 100: crank and arm reach 200"),
+        (_MOTION + "[wanted]\nclear_of = [[300, 0, 20]]\n"
+         "fixed_pivots = { inside = [[300, 0], [310, 0], [300, 10]] }\n", 20,
+         "wanted.fixed_pivots.inside", "is in circle 1 of clear_of, so no design can be clear"),
+        (_points(4) + "[given]\nfixed_pivots = [[99, 0]]\n[wanted]\nlengths = { most = 40 }\n", 12,
+         "given.fixed_pivots[1]", "is 99 from position 1, out of reach of links of at most 40"),
+        (_points(4) + "[given]\nlengths = { 'A0 A' = 2, 'A B' = 9 }\n"
+         "[wanted]\nlengths = { ratio = 4 }\n", 14, "wanted.lengths.ratio",
+         'excludes "A B" = 9 with "A0 A" = 2, which are given: change one of them'),
+        (_points(2) + "[given]\nfixed_pivots = [[0, 9], [9, 9]]\n"
+         "lengths = { 'A0 A' = 2, 'A B' = 3, 'B0 B' = 4 }\n", 9, "given.lengths",
+         'close no loop: "A0 B0" is as long as the others together, or longer: change one'),
         (_MOTION + "[wanted]\ntransmission = { least = 90 }\n", 19, "wanted.transmission.least",
          "must be at least 0 and below 90, got 90"),
         (_MOTION + "[wanted]\ninput = { from = 20, to = 20 }\n", 19, "wanted.input",
@@ -207,3 +224,17 @@ def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
     places = [legs.solve(at=angle).points[point] for angle in inputs]
     monkeypatch.setattr(by_circuits, "FollowedCircuit", lambda *_: pytest.fail("not needed"))
     assert lw.Task.path(places).defects_of(legs, inputs, point=point) == ()
+
+
+def test_bounds_of_lengths_refuse_no_places_that_other_kinds_of_links_reach() -> None:
+    """Guides are endless, and mechanisms that are improved have more links than a crank and arm."""
+    short = "[wanted]\nlengths = { most = 20 }\n"
+    read_task_text(_MOTION.replace("'motion'", "'motion'\nmechanism = 'double-slider'") + short)
+    read_task_text(_points(20).replace("'path'", "'improve'\nmechanism = 'klann-leg'") + short)
+
+
+def test_a_fit_to_given_lengths_that_close_no_loop_has_no_design() -> None:
+    given = {"lengths": {"A0 A": 2.0, "A B": 3.0, "B0 B": 4.0}, "fixed_pivots": [(0, 9), (90, 9)]}
+    points, improve = [(0, 0), (1, 1), (4, 2), (9, 3)], {"starts": 40}
+    found = lw.Task.path(points, given=given, improve=improve).solve()
+    assert {design.mechanism for design in found.designs} <= {"slider-crank"}

@@ -195,6 +195,8 @@ class _Problem:
         tell: Callable[[float], None],
     ) -> LaneFit:
         """Lanes after some steps; an interruption by ``tell`` leaves all of them where they are."""
+        if not len(fit):  # no start closes
+            return fit
         # parts of one size, so that results do not depend on the number of threads
         parts = [np.arange(k, min(k + _PART, len(fit))) for k in range(0, len(fit), _PART)]
         done: list[LaneFit] = [fit] * len(parts)

@@ -16,6 +16,7 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.foundation.rounding import EQUAL_ROWS
 
 __all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 
@@ -192,6 +193,17 @@ class FunctionGoal:
                         ("function", key),
                         f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}",
                     )
+
+    def range_problems(
+        self, ends: Pair, turn: float
+    ) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """An input that a driven range leaves out, in whatever turn the range is."""
+        inputs, (low, high) = self.points()[0], sorted(ends)
+        slack = EQUAL_ROWS * turn
+        turned = math.ceil((low - slack - inputs.min()) / turn) * turn
+        for outside in inputs[inputs + turned > high + slack][:1]:
+            told = f"from {low:g} to {high:g} leaves out the input {outside:.6g} of the function"
+            yield ("wanted", "input"), f"{told}: move or widen it"
 
     @property
     def _count(self) -> int:

@@ -6,19 +6,24 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import combinations, islice, pairwise
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement
+from linkwork.design.synthesis.candidates import GUIDED
+from linkwork.design.synthesis.contradictions import (
+    length_contradictions,
+    place_contradictions,
+    unreached_places,
+)
 from linkwork.design.synthesis.curve_file import Curve
 from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.task_conditions import (
     LENGTHS,
     Given,
-    Point,
     PrecisionPosition,
     Ranking,
     Wanted,
@@ -30,7 +35,6 @@ from linkwork.design.synthesis.wanted_mechanisms import (
     mechanism_problems,
     watt_pivot_problems,
 )
-from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import AngleUnit, least_arc
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
@@ -43,6 +47,7 @@ _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
+_SIDES = 4  # of the lengths that may be given: a four-bar's
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
 
 _Item = TypeVar("_Item")
@@ -277,7 +282,7 @@ class Task:
             if max(given) - min(given) > self.angle.turn:
                 key = "pairs" if self.function.pairs else "input"
                 yield ("function", key), f"spans inputs of more than a turn, {self.angle.turn:g}"
-            elif self.function.fit or not self.function.starts_fixed:
+            elif not self.function.starts_fixed:
                 timed = [*given]
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
@@ -288,68 +293,25 @@ class Task:
                     ("wanted", "input"),
                     f"spans {asked:g}, but the given inputs span {span:g}: widen it",
                 )
-        if not 0 <= wanted.shortest <= wanted.longest or wanted.longest <= 0:
-            yield (
-                ("wanted", "lengths"),
-                f"least = {wanted.shortest:g} and most = {wanted.longest:g} contradict each other",
-            )
-        if wanted.ratio < 1:
-            yield ("wanted", "lengths", "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
-        for k, (x, y, radius) in enumerate(wanted.obstacles):
-            if radius < 0:
-                yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
-            for j, position in enumerate(self.positions):
-                away = math.hypot(position.point[0] - x, position.point[1] - y)
-                if away <= radius + position.tolerance and position.tolerance == 0:
-                    yield (
-                        ("wanted", "clear_of", k),
-                        f"contains the point of position {j + 1}, so no design can be clear of it",
-                    )
-        for (j, one), (k, other) in combinations(enumerate(self.positions), 2):
-            apart = math.dist(one.point, other.point)
-            if apart - one.tolerance - other.tolerance > 4 * wanted.longest:
-                yield (
-                    ("positions", k, "point"),
-                    f"is {apart:g} from position {j + 1}, out of reach of links of at most "
-                    f"{wanted.longest:g}: two arms reach {4 * wanted.longest:g}",
-                )
-                break  # farther ones say the same
-        if wanted.region and _area(wanted.region) == 0:
-            yield ("wanted", "fixed_pivots", "inside"), "encloses no area"
-        else:
-            yield from self._pivot_problems()
+        goal, ends = self.function, wanted.range
+        if goal is not None and ends and goal.starts_fixed and not [*goal.problems()]:
+            yield from goal.range_problems(ends, self.angle.turn)
+        yield from length_contradictions(wanted, self._given_sides())
+        yield from place_contradictions(wanted, self.given, self.positions)
+        if self.kind != "improve" and not {*GUIDED} & {*self.mechanisms}:
+            # farther places say the same
+            yield from islice(unreached_places(wanted, self.given, self.positions), 1)
 
-    def _pivot_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
-        """Given fixed pivots that a wish excludes."""
-        pivots, wanted = self.given.fixed_pivots, self.wanted
-        region = np.array([complex(*corner) for corner in wanted.region])
-        inside = Wishes(region=region).within_region(
-            np.array([complex(*pivot) for pivot in pivots]), np.zeros(len(pivots))
-        )
-        for k, pivot in enumerate(pivots):
-            if not inside[k]:
-                yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
-            for j, (x, y, radius) in enumerate(wanted.obstacles):
-                if math.hypot(pivot[0] - x, pivot[1] - y) <= radius:
-                    yield (
-                        ("given", "fixed_pivots", k),
-                        f"is in circle {j + 1} of clear_of, so no design can be clear of it",
-                    )
-        ground = math.dist(*pivots) if len(pivots) == 2 else 1.0
-        loop = self.kind == "function" and self.mechanisms[0] == "four-bar"
-        if loop and not wanted.shortest <= ground <= wanted.longest:
-            yield (
-                ("wanted", "lengths"),
-                f"exclude the ground, which is {ground:g} long; [given] fixed_pivots changes that",
-            )
-        if len(pivots) == 2 and self.kind != "function":
-            apart = math.dist(*pivots)
-            if not wanted.shortest <= apart <= wanted.longest:
-                yield (
-                    ("given", "fixed_pivots", 1),
-                    f"is {apart:g} from the other one, but lengths are wanted from "
-                    f"{wanted.shortest:g} to {wanted.longest:g}",
-                )
+    def _given_sides(self) -> dict[str, float]:
+        """The sides of a four-bar that are given, if the task makes no other loops."""
+        pivots, lengths = self.given.fixed_pivots, self.given.lengths
+        sides = {name: lengths[name] for name in LENGTHS[:_SIDES] if name in lengths}
+        if self.is_approximate and "slider-crank" in self.mechanisms:
+            sides = {}
+        if len(pivots) == 2:
+            return {**sides, "A0 B0": math.dist(*pivots)}
+        unit = self.kind == "function" and self.mechanisms[0] == "four-bar"
+        return {**sides, "A0 B0": 1.0} if unit else sides
 
     @property
     def is_six_bar(self) -> bool:
@@ -392,8 +354,3 @@ def _curve_positions(curve: Curve) -> Iterator[PrecisionPosition]:
 
 def _neighbours(positions: Iterable[_Item], _count: int) -> Iterator[tuple[_Item, _Item]]:
     return pairwise(positions)
-
-
-def _area(corners: Sequence[Point]) -> float:
-    pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
-    return sum(x * v - u * y for (x, y), (u, v) in pairs) / 2

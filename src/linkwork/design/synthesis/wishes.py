@@ -77,7 +77,7 @@ class Wishes:
         spans = (start.imag > z.imag) != (end.imag > z.imag)
         with np.errstate(all="ignore"):
             along = (z.imag - start.imag) / (end.imag - start.imag)
-        crosses = spans & (z.real < start.real + along * (end.real - start.real))
+            crosses = spans & (z.real < start.real + along * (end.real - start.real))
         inside = crosses.sum(axis=1) % 2 == 1
         return np.asarray(inside | (distances_to_segments(z, start, end).min(axis=1) <= error))
 

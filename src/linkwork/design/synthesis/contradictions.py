@@ -1,0 +1,106 @@
+"""Wishes and given numbers of a task that no design has together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
+from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+
+__all__ = ["length_contradictions", "place_contradictions", "unreached_places"]
+
+_Problems = Iterator[tuple[tuple[str | int, ...], str]]
+_LENGTHS = ("wanted", "lengths")
+_REGION = ("wanted", "fixed_pivots", "inside")
+
+
+def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> _Problems:
+    """Bounds that exclude each other, or sides of a four-bar that are given, its ground too."""
+    least, most = wanted.shortest, wanted.longest
+    if least < 0:
+        yield (*_LENGTHS, "least"), f"must not be negative, got {least:g}"
+    elif not least <= most or most <= 0:
+        yield _LENGTHS, f"least = {least:g} and most = {most:g} contradict each other"
+    if wanted.ratio < 1:
+        yield (*_LENGTHS, "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
+    ground = sides.get("A0 B0")
+    if ground is not None and not least <= ground <= most:
+        told = f"exclude the ground, which is {ground:g} long; [given] fixed_pivots changes that"
+        yield _LENGTHS, told
+    if len(sides) < 2 or min(sides.values()) <= 0:
+        return
+    short, *_, long = sorted(sides, key=lambda name: sides[name])
+    if sides[long] > wanted.ratio * sides[short]:
+        told = f'excludes "{long}" = {sides[long]:g} with "{short}" = {sides[short]:g}'
+        yield (*_LENGTHS, "ratio"), f"{told}, which are given: change one of them"
+    if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
+        told = f'close no loop: "{long}" is as long as the others together, or longer: change one'
+        yield ("given", "lengths"), told
+
+
+def place_contradictions(
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
+) -> _Problems:
+    """Places in obstacles, and pivots outside their region."""
+    if wanted.region and _area(wanted.region) == 0:
+        yield _REGION, "encloses no area"
+        return
+    for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
+        if _away(pivot, wanted.region):
+            yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
+    for k, (x, y, radius) in enumerate(wanted.obstacles):
+        if radius < 0:
+            yield ("wanted", "clear_of", k), f"has the negative radius {radius:g}"
+        for j, position in enumerate(positions):
+            if math.dist(position.point, (x, y)) + position.tolerance <= radius:
+                told = f"contains the point of position {j + 1}, so no design can be clear of it"
+                yield ("wanted", "clear_of", k), told
+        for key, corners in _pivots(wanted, given):
+            if all(math.dist(corner, (x, y)) <= radius for corner in corners):
+                yield key, f"is in circle {k + 1} of clear_of, so no design can be clear of it"
+
+
+def unreached_places(
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
+) -> _Problems:
+    """Positions too far from each other, or from pivots, for a crank and an arm of the coupler."""
+    for j, one in enumerate(positions if math.isfinite(wanted.longest) else ()):
+        others = [
+            (("positions", k, "point"), (other.point,), 4 * wanted.longest + other.tolerance)
+            for k, other in enumerate(positions[j + 1 :], start=j + 1)
+        ]
+        pivots = [(*own, 2 * wanted.longest) for own in _pivots(wanted, given)]
+        for key, corners, reach in (*others, *pivots):
+            apart = _away(one.point, corners)
+            if apart - one.tolerance > reach:
+                told = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
+                arms = "two arms reach" if key[0] == "positions" else "crank and arm reach"
+                yield key, f"{told}{wanted.longest:g}: {arms} {reach:g}"
+
+
+def _pivots(
+    wanted: Wanted, given: Given
+) -> Iterator[tuple[tuple[str | int, ...], Sequence[Point]]]:
+    """Given fixed pivots, and the corners of the region of others."""
+    for k, pivot in enumerate(given.fixed_pivots):
+        yield ("given", "fixed_pivots", k), (pivot,)
+    if wanted.region:
+        yield _REGION, wanted.region
+
+
+def _away(place: Point, corners: Sequence[Point]) -> float:
+    """The distance of a place from a polygon; 0 inside."""
+    if len(corners) == 1:
+        return math.dist(place, corners[0])
+    region, z = np.array([complex(*corner) for corner in corners]), np.array([complex(*place)])
+    if Wishes(region=region).within_region(z, np.zeros(1))[0]:
+        return 0.0
+    return float(distances_to_segments(z, region, np.roll(region, -1)).min())
+
+
+def _area(corners: Sequence[Point]) -> float:
+    pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
+    return sum(x * v - u * y for (x, y), (u, v) in pairs) / 2
