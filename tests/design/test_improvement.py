@@ -131,6 +131,8 @@ def test_goals_without_a_meaning_are_refused() -> None:
         bar.improve({"of": "rocker", "taget": 1.0})
     with pytest.raises(InputError, match="mixes numbers of the motion"):
         bar.improve({"of": "stroke(rocker) - rocker", "target": 1.0})
+    with pytest.raises(InputError, match="has dimensions that are solved together"):
+        lw.example("chebyshev").improve({"of": "max(P.y)", "target": 5.0})
 
 
 def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(

@@ -136,6 +136,31 @@ def test_a_wished_range_is_the_table_of_the_designs() -> None:
 
 
 @pytest.mark.parametrize(
+    ("mechanism", "point", "rows"),
+    [("whitworth", "A", 361), ("pendulum", "A", 73), ("double-pendulum", "B", 37)],
+)
+def test_turning_fully_is_wished_of_mechanisms_of_all_kinds(
+    mechanism: str, point: str, rows: int
+) -> None:
+    """Without pins of two links, without loops, and with inputs that move in lock-step."""
+    goal = {"of": f"max({point}.x)", "least": -1e6}
+    task = lw.Task.improve(mechanism, goals=[goal], starts=1, wanted={"input": "turns fully"})
+    (design,) = task.solve().delivered
+    motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+    lead = next(iter(motion.inputs.values()))
+    assert len(motion) == rows
+    assert abs(lead[-1] - lead[0]) == pytest.approx(360.0)
+    assert np.isnan(design.transmission)
+
+
+def test_an_input_that_does_not_turn_fully_is_a_defect() -> None:
+    goal = {"of": "max(P.x)", "target": 1.2}
+    task = lw.Task.improve("evans", goals=[goal], starts=1, wanted={"input": "turns fully"})
+    (design,) = task.solve().designs
+    assert design.defects[0].message.startswith("the input does not turn fully: ")
+
+
+@pytest.mark.parametrize(
     ("text", "line", "message"),
     [
         (_HEAD + '[improve]\nvary = ["A B", "A X"]\n' + _GOAL, 5, '"A X" is not a number'),

@@ -25,6 +25,7 @@ from linkwork.foundation.errors import (
     choices,
 )
 from linkwork.foundation.names import GROUND, find_spelling
+from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.motion.model import Model
@@ -72,7 +73,13 @@ def improved_designs(
     if not numbers:
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
-    fits = _fits(model, numbers, box, points, others, settings, progress)
+    try:
+        fits = _fits(model, numbers, box, points, others, settings, progress)
+    except NotElementwise:
+        raise InputError(
+            f'a link of "{model.description.name}" has dimensions that are solved together, which '
+            "fits do not follow: give those from which its points follow one after another"
+        ) from None
     if settings.front:
         return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
     best = sorted(

@@ -140,7 +140,7 @@ class ImprovedMechanism(SweptDesign):
         least one in its rows where that is not proved; NaN without dyads [file's angle unit].
         """
         whole, motion = self.improved.whole_motion, self._motion
-        if whole is not None:
+        if whole is not None and whole.dyads:
             least = whole.least_transmission(self.wishes.transmission)
             return self.task.angle.from_radians(least.low)
         if motion is None or not motion.found.any():
@@ -208,7 +208,8 @@ class ImprovedMechanism(SweptDesign):
             return
         lost = int(np.count_nonzero(~motion.found))
         if lost:
-            yield DefectKind.RANGE, f"{lost} of {len(motion)} rows have no position"
+            told = "the input does not turn fully: " if task.wanted.turns_fully else ""
+            yield DefectKind.RANGE, f"{told}{lost} of {len(motion)} rows have no position"
         elif not motion.certified.all():
             unproved = int(np.count_nonzero(~motion.certified))
             yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"

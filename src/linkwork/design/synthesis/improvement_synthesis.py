@@ -151,13 +151,13 @@ def _driven(description: Description, task: Task) -> Description:
         told = "has no effect on a mechanism that is driven by a law of time: leave it out"
     if told:
         _refuse(task, [Problem(key=("wanted", "input"), message=told)])
-    if wanted.range is not None:
-        start, stop = wanted.range
-    else:
-        start = description.numbers(driven.start) if driven.start is not None else 0.0
-        stop = start + turn
+    ends = (driven.start, driven.stop)
+    begin, end = (0.0 if own is None else description.numbers(own) for own in ends)
+    start, stop = wanted.range or (begin, begin + turn)
     usual = turn / _ROWS if is_angle else abs(stop - start) / _PARTS
     step = abs(description.numbers(driven.step)) if driven.step is not None else usual
+    if len(description.inputs) > 1 and begin != end:
+        step *= abs((stop - start) / (end - begin))  # as many rows as the other inputs have
     count = max(1, math.ceil(abs(stop - start) / step * (1.0 - EQUAL_ROWS)))
     ranged = replace(driven, start=start, stop=stop, step=(stop - start) / count)
     return replace(description, inputs=(ranged, *description.inputs[1:]))
