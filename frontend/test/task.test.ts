@@ -41,8 +41,6 @@ describe("the goals of an improvement", () => {
     const entries = { "improve.goals.0.of": "stroke(d)", "improve.goals.0.target": 70, "improve.goals.1.of": "B.y", "improve.goals.1.values.0": 1, "improve.goals.1.values.1": 2, "improve.goals.1.at.0": 10, "improve.goals.1.at.1": 20, "improve.vary": "O2 A, A B" };
     expect(goalsOf({ entries })).toEqual(["Goal: stroke(d) = 70", "Goal: B.y = 1, 2 at 10, 20", "Varied: O2 A, A B"]);
     expect(goalsOf({ entries: {} })).toEqual([]);
-    const pairs = { "function.pairs.0.0": 0, "function.pairs.0.1": 0, "function.pairs.1.0": 20, "function.pairs.1.1": 10.5 };
-    expect(goalsOf({ entries: pairs })).toEqual(["Pairs of input and output: 0 → 0, 20 → 10.5"]);
   });
 });
 

@@ -1,7 +1,7 @@
 // The numbers and wishes of a task as fields, and its text.
 
 import { fill } from "../live/fields";
-import type { LiveRequest, TaskState } from "../messages";
+import type { LiveRequest, PositionShown, TaskState } from "../messages";
 import { shortNumber, trimmed } from "../numbers";
 import { html, say } from "../svg";
 import type { Thing } from "./handles";
@@ -92,13 +92,14 @@ export class TaskForm {
     const functions = task.task === "function";
     this.functions.hidden = this.fit.parentElement!.hidden = !functions;
     this.fit.value = String(entries["function.fit"] ?? "");
-    this.positions.hidden = this.order.parentElement!.hidden = functions;
+    this.order.parentElement!.hidden = functions;
+    this.positions.hidden = functions && !pairsOf(task);
     this.mechanism.parentElement!.hidden = ["path", "mixed", "improve"].includes(task.task);
     this.improved.hidden = task.task !== "improve";
     this.goals.replaceChildren(...goalsOf(task).map((goal) => html("li", {}, undefined, goal)));
     for (const [key, { input, unit, kind }] of this.fields) {
       const value = entries[key];
-      input.parentElement!.hidden = "function.pairs.0.0" in entries && /^function\.(of|x)/.test(key);
+      input.parentElement!.hidden = pairsOf(task) > 0 && /^function\.(of|x)/.test(key);
       fill(input, value === undefined ? "" : typeof value === "number" ? plain(value) : value);
       say(unit, kind === "angle" ? (task.angle_unit === "deg" ? "°" : "rad") : kind === "length" ? task.length_unit : "");
     }
@@ -134,52 +135,76 @@ export class TaskForm {
     this.fields.set(key, { input, unit, kind });
   }
 
-  /** Positions as rows of fields; kept while their number stays, so that the focus does. */
+  /** Positions, or pairs of a function, as rows of fields; kept while their number stays, so that the focus does. */
   private table(task: TaskState): void {
+    const functions = task.task === "function";
     const posed = task.task === "motion" || task.positions.some(({ angle }) => angle !== null);
-    const made = `${task.positions.length} ${posed} ${task.length_unit} ${task.angle_unit} ${task.positions_from_file}`;
-    if (made !== this.rows) this.tableAnew(task, posed);
+    const names: readonly Column[] = functions ? ["input", "output"] : posed ? ["x", "y", "angle", "tolerance"] : ["x", "y", "tolerance"];
+    // a row of pairs more, for another one
+    const count = functions ? pairsOf(task) + 1 : task.positions.length;
+    const made = `${count} ${names.join(" ")} ${task.length_unit} ${task.angle_unit} ${task.entries.mechanism} ${task.positions_from_file}`;
+    if (made !== this.rows) this.tableAnew(task, names, count);
     this.rows = made;
-    task.positions.forEach(({ x, y, angle }, k) => {
-      for (const [name, value] of Object.entries({ x, y, angle })) {
+    for (let k = 0; k < count; k++)
+      for (const name of names) {
+        const value = functions ? task.entries[keyOf(name, k)] : (task.positions[k]![name as keyof PositionShown] ?? "");
         const input = this.positions.querySelector<HTMLInputElement>(`tr[data-index="${k}"] input[data-name=${name}]`);
-        if (input) fill(input, value === null ? "" : plain(value));
+        if (input) fill(input, typeof value === "number" && !(name === "tolerance" && value === 0) ? plain(value) : "");
       }
-    });
   }
 
-  private tableAnew(task: TaskState, posed: boolean): void {
+  private tableAnew(task: TaskState, names: readonly Column[], count: number): void {
     this.positions.replaceChildren();
-    const names = posed ? ["x", "y", "angle"] : ["x", "y"];
     const head = html("tr", {}, html("thead", {}, this.positions));
     html("td", {}, head);
-    for (const name of names) html("th", { scope: "col" }, head, name === "angle" ? `angle [${task.angle_unit === "deg" ? "°" : "rad"}]` : `${name} [${task.length_unit}]`);
+    for (const name of names) html("th", { scope: "col" }, head, `${name === "tolerance" ? "±" : name}${unitOf(name, task)}`);
     html("td", {}, head);
     const body = html("tbody", {}, this.positions);
-    task.positions.forEach((_, k) => this.position(body, k, names, task.positions_from_file));
+    for (let k = 0; k < count; k++) this.row(body, k, names, task, k === count - 1);
   }
 
-  private position(body: Element, index: number, names: readonly string[], fixed: boolean): void {
+  private row(body: Element, index: number, names: readonly Column[], task: TaskState, last: boolean): void {
+    const functions = names[0] === "input";
+    const what = `${functions ? "pair" : "position"} ${index + 1}`;
+    const fixed = task.positions_from_file;
     const row = html("tr", { "data-index": index }, body);
-    html("th", { scope: "row" }, row, String(index + 1));
+    html("th", { scope: "row" }, row, functions && last ? "+" : String(index + 1));
     for (const name of names) {
-      const input = html("input", { type: "text", class: "lw-field", inputmode: "decimal", "data-name": name, "aria-label": `${name} of position ${index + 1}` }, html("td", {}, row));
+      const input = html("input", { type: "text", class: "lw-field", inputmode: "decimal", "data-name": name, "aria-label": `${name} of ${what}` }, html("td", {}, row));
       input.disabled = fixed;
-      input.addEventListener("focus", () => this.pick({ of: "position", index, knob: false }));
-      const key = name === "angle" ? `positions.${index}.angle` : `positions.${index}.point.${name === "x" ? 0 : 1}`;
-      input.addEventListener("change", () => this.set(key, number(input.value)));
+      if (!functions) input.addEventListener("focus", () => this.pick({ of: "position", index, knob: false }));
+      input.addEventListener("change", () => this.set(keyOf(name, index), number(input.value)));
     }
     const cell = html("td", {}, row);
-    if (fixed) return;
-    const gone = html("button", { type: "button", class: "lw-close", "aria-label": `Remove position ${index + 1}` }, cell, "×");
-    gone.addEventListener("click", () => this.ask({ kind: "remove_task_point", of: "position", index }));
+    if (fixed || (functions && last)) return;
+    const gone = html("button", { type: "button", class: "lw-close", "aria-label": `Remove ${what}` }, cell, "×");
+    gone.addEventListener("click", () => (functions ? this.set(keyOf("input", index), null) : this.ask({ kind: "remove_task_point", of: "position", index })));
   }
 }
 
-/** The goals of an improvement in words, and what varies; the pairs of a function. */
+type Column = "x" | "y" | "angle" | "tolerance" | "input" | "output";
+const PLACES: Readonly<Partial<Record<Column, number>>> = { x: 0, y: 1, input: 0, output: 1 };
+
+/** The key of a number in a row of the table. */
+function keyOf(name: Column, index: number): string {
+  if (name === "input" || name === "output") return `function.pairs.${index}.${PLACES[name]}`;
+  return `positions.${index}.${name in PLACES ? `point.${PLACES[name]}` : name}`;
+}
+
+/** How many pairs a function has. */
+function pairsOf({ entries }: Pick<TaskState, "entries">): number {
+  let count = 0;
+  while (keyOf("input", count) in entries) count++;
+  return count;
+}
+
+function unitOf(name: Column, task: TaskState): string {
+  const angles = name === "angle" || name === "input" || (name === "output" && task.entries.mechanism !== "slider-crank");
+  return ` [${angles ? (task.angle_unit === "deg" ? "°" : "rad") : task.length_unit}]`;
+}
+
+/** The goals of an improvement in words, and what varies. */
 export function goalsOf({ entries }: Pick<TaskState, "entries">): string[] {
-  const pairs: string[] = [];
-  for (let k = 0; `function.pairs.${k}.0` in entries; k++) pairs.push(`${entries[`function.pairs.${k}.0`]} → ${entries[`function.pairs.${k}.1`]}`);
   const goals = new Map<string, Record<string, string>>();
   for (const [key, value] of Object.entries(entries)) {
     const found = /^improve\.goals\.(\d+)\.(\w+)(?:\.\d+)?$/.exec(key);
@@ -192,7 +217,7 @@ export function goalsOf({ entries }: Pick<TaskState, "entries">): string[] {
   const words = { target: "=", least: "≥", most: "≤", values: "=", at: "at", weight: "· weight" } as const;
   const lines = [...goals.values()].map((goal) => [goal.of ?? "?", ...Object.entries(words).flatMap(([name, word]) => (goal[name] === undefined ? [] : [`${word} ${goal[name]}`]))].join(" "));
   const varied = entries["improve.vary"];
-  return [pairs.length ? `Pairs of input and output: ${pairs.join(", ")}` : "", ...lines.map((line) => `Goal: ${line}`), varied === undefined ? "" : `Varied: ${varied}`].filter(Boolean);
+  return [...lines.map((line) => `Goal: ${line}`), varied === undefined ? "" : `Varied: ${varied}`].filter(Boolean);
 }
 
 /** What is typed: a number with comma or point, nothing, or a text that the reader refuses with its reason. */

@@ -144,6 +144,45 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     assert page.locator(".lw-task .lw-save").is_disabled()
 
 
+_PAIRS = """format = 1
+task = "function"
+mechanism = "four-bar"
+[function]
+pairs = [[0, 0], [20, 10], [45, 22]]
+fit = "minimax"
+"""
+_TEXT = "(told) => document.querySelector('textarea').value.includes(told)"
+
+
+def _typed(page: Any, name: str, value: str, told: str) -> None:
+    page.get_by_label(name, exact=True).fill(value)
+    page.get_by_label(name, exact=True).press("Tab")
+    page.wait_for_function(_TEXT, arg=told)
+
+
+def test_pairs_and_tolerances_are_fields_and_a_phone_has_the_file_in_one_row(
+    tmp_path: Path, serve: Serve, watched: Watched
+) -> None:
+    path = tmp_path / "pairs.toml"
+    path.write_text(_PAIRS, encoding="utf-8")
+    bench = Bench(MechanismFile(path), lw.loads, solve_task)
+    page = opened(serve(bench), watched, viewport={"width": 390, "height": 844})
+    page.get_by_role("tab", name="Task").click()
+    _typed(page, "input of pair 4", "60", "[60.0, 60.0]]")
+    _typed(page, "output of pair 4", "28", "[60.0, 28.0]]")
+    _typed(page, "output of pair 2", "9.5", "[20, 9.5]")
+    page.get_by_label("Remove pair 1", exact=True).click()
+    page.wait_for_function(_TEXT, arg="pairs = [[20, 9.5], ")
+    assert page.locator(".lw-t-positions tbody tr").count() == 4
+    buttons = page.locator(".lw-task .lw-bar button:not([hidden])")
+    assert buttons.count() == 6
+    tops = buttons.evaluate_all("(all) => all.map((b) => b.getBoundingClientRect().top)")
+    assert len(set(tops)) == 1
+    poses = opened(serve(task(tmp_path, "five-poses")), watched)
+    poses.get_by_role("tab", name="Task").click()
+    _typed(poses, "tolerance of position 2", "0.5", "tolerance = 0.5")
+
+
 @pytest.mark.extended
 @pytest.mark.parametrize("name", ["three-poses", "function", "curve"])
 @pytest.mark.parametrize("width", [390, 1280])
