@@ -95,7 +95,8 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
     if as_json:
         print_json({"paths": len(made), "file": output, "unfinished": list(made.unfinished)})
         return
-    shown = "1 store" if len(stores) == 1 else f"{len(stores)} stores"
+    count = len({as_path(store).resolve() for store in stores})
+    shown = "1 store" if count == 1 else f"{count} stores"
     print_lines(wrapped(f"Wrote {len(made):,} paths of {shown} to {output}."))
     for told in made.unfinished:
         print_lines(wrapped(f"{told}. Finish it and repeat this command for the others."))

@@ -130,8 +130,11 @@ def test_an_atlas_is_made_of_the_stores_of_studies(tmp_path: Path) -> None:
     few = plan.replace("1_000_000", "60")
     store, file = tmp_path / "few.zarr", tmp_path / "few.npz"
     run_study(read_plan_text(few, folder=_PLANS), store, workers=1)
-    done = CliRunner().invoke(linkwork, ["atlas", "--index", str(store), "-o", str(file)])
+    twice = [str(store), f"{store.parent / 'other' / '..' / store.name}/"]
+    (tmp_path / "other").mkdir()
+    done = CliRunner().invoke(linkwork, ["atlas", "--index", *twice, "-o", str(file)])
     assert done.exit_code == 0, done.output
+    assert "paths of 1 store to" in " ".join(done.stdout.split())
     (made,), shipped = read_atlas(file).families, read_atlas().families[1]
     assert 40 < len(made) < 60
     assert made.mechanism == shipped.mechanism

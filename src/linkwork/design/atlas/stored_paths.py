@@ -26,7 +26,8 @@ def atlas_of_stores(
 ) -> PathAtlas:
     """The atlas of studies that keep the path of a point over a whole turn.
 
-    ``progress``: called with the finished fraction; may raise an error to end the work.
+    A store that is named twice counts once. ``progress``: called with the finished fraction; may
+    raise an error to end the work.
 
     Raises
     ------
@@ -34,6 +35,7 @@ def atlas_of_stores(
         If a store is damaged, keeps no path, or has no closed path.
     """
     check_packages()
+    stores = [*{path.resolve(): path for path in stores}.values()]  # each of them once
     # wrong stores are refused before the first one is read
     known = [_checked(path) for path in stores]
     entries = [_entries(path) for path in stores]
