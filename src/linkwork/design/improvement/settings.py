@@ -177,10 +177,8 @@ class Improvement:
         if self.front < 0 or self.front == 1:
             yield ("front",), f"must be 2 designs or more, got {self.front}"
         if self.front and self.fit == "minimax":
-            yield (
-                ("goal",),
-                "has no effect on a front, whose goals count by themselves: leave it out",
-            )
+            told = "has no effect on a front, whose goals count by themselves: leave it out"
+            yield ("goal",), told
         for name, (low, high) in self.bounds.items():
             if not low <= high:
                 yield ("bounds", name), f"from {low:g} to {high:g} hold no number"

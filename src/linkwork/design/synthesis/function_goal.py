@@ -112,10 +112,8 @@ class FunctionGoal:
         if self.fit and not self.exact.fits:
             yield ("function", "fit"), f"has no effect on {self.exact.mechanism}: leave it out"
         if len(self.free) == 1:
-            yield (
-                ("function", self.free[0]),
-                "has no start, unlike the other one: give both or none",
-            )
+            told = "has no start, unlike the other one: give both or none"
+            yield ("function", self.free[0]), told
         for key in ("input", "output"):
             ends = getattr(self, key)
             if ends is not None and ends[0] == ends[1]:
@@ -134,10 +132,8 @@ class FunctionGoal:
             yield ("function", "of"), str(error)
             return
         if ends[0] == ends[1]:
-            yield (
-                ("function", "of"),
-                f"has the value {ends[0]:g} at both ends, so that the output has no range",
-            )
+            told = f"has the value {ends[0]:g} at both ends, so that the output has no range"
+            yield ("function", "of"), told
         steps = np.abs(np.diff(values))
         if steps.max() > _LARGEST_STEP * np.ptp(values) > 0.0:
             place = self._x(_DENSE)[steps.argmax()]
@@ -171,17 +167,13 @@ class FunctionGoal:
             yield ("function", "pairs"), f"{count} given: give {exact.least} or more"
         fixed, most = self.starts_fixed, self._most
         if count > most and not self.fit:
-            yield (
-                ("function", "pairs"),
-                f"{count} pairs leave no {exact.mechanism} in general: keep {exact.told(most)}",
-            )
+            told = f"{count} pairs leave no {exact.mechanism} in general: keep {exact.told(most)}"
+            yield ("function", "pairs"), told
         for k, one in enumerate(self.pairs):
             for j in range(k):
                 if one[0] == self.pairs[j][0]:
-                    yield (
-                        ("function", "pairs", k),
-                        f"has the input {one[0]:g} of pair {j + 1}: leave one out",
-                    )
+                    told = f"has the input {one[0]:g} of pair {j + 1}: leave one out"
+                    yield ("function", "pairs", k), told
         for key, place in (("input", 0), ("output", 1)):
             ends = getattr(self, key)
             if (ends is None) != (not fixed):
@@ -189,10 +181,8 @@ class FunctionGoal:
             elif ends is not None and count:
                 span = self.pairs[-1][place] - self.pairs[0][place]
                 if not math.isclose(ends[1] - ends[0], span, rel_tol=1e-9, abs_tol=1e-9):
-                    yield (
-                        ("function", key),
-                        f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}",
-                    )
+                    told = f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}"
+                    yield ("function", key), told
 
     def range_problems(
         self, ends: Pair, turn: float

@@ -137,10 +137,8 @@ class Task:
             if self.improvement.front and self.kind != "improve":
                 yield ("improve", "front"), 'belongs to task = "improve": leave it out'
             if self.improvement.front and self.rank != Ranking():
-                yield (
-                    ("rank",),
-                    "has no effect on a front, which is delivered as a whole: leave it out",
-                )
+                told = "has no effect on a front, which is delivered as a whole: leave it out"
+                yield ("rank",), told
         yield from self._given_problems()
         yield from self._wish_problems()
         yield from self.rank.problems()
@@ -154,20 +152,16 @@ class Task:
             if self.kind == "motion" and position.angle is None:
                 yield ("positions", k, "angle"), "is missing: a motion task is a list of poses"
             if self.kind in ("path", "improve") and position.angle is not None:
-                yield (
-                    ("positions", k, "angle"),
-                    'belongs to poses: leave it out, or write task = "mixed" or "motion"',
-                )
+                told = 'belongs to poses: leave it out, or write task = "mixed" or "motion"'
+                yield ("positions", k, "angle"), told
             for name in ("tolerance", "angle_tolerance"):
                 if getattr(position, name) < 0:
                     yield ("positions", k, name), "must not be negative"
         yield from self._repeated_positions()
         bare = [k for k, position in enumerate(self.positions) if not position.tolerance]
         if self.is_approximate and 0 < len(bare) < count:
-            yield (
-                ("positions", bare[0], "tolerance"),
-                "is missing: points that are met by least squares all have tolerances, or none",
-            )
+            told = "is missing: points that are met by least squares all have tolerances, or none"
+            yield ("positions", bare[0], "tolerance"), told
         exact = all(p.tolerance == p.angle_tolerance == 0 for p in self.positions)
         if self.kind == "motion" and count > _MOST_EXACT and exact:
             yield (
@@ -209,10 +203,8 @@ class Task:
         if moving and (self.kind != "motion" or timed):
             yield ("given", "moving_pivots"), "belongs to poses without timing: leave it out"
         if self.kind == "motion" and timed and count > _MOST_TIMED:
-            yield (
-                ("positions", 0, "input"),
-                f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}",
-            )
+            told = f"{count} poses leave no freedom to time the crank: time at most {_MOST_TIMED}"
+            yield ("positions", 0, "input"), told
         if self.kind in ("path", "mixed", "improve"):
             for k, position in enumerate(self.positions):
                 refused = {"input": not self.is_approximate}
@@ -270,10 +262,8 @@ class Task:
         wanted = self.wanted
         right = self.angle.turn / 4
         if not 0 <= wanted.transmission < right:
-            yield (
-                ("wanted", TRANSMISSION_ANGLE.word, "least"),
-                f"must be at least 0 and below {right:g}, got {wanted.transmission:g}",
-            )
+            told = f"must be at least 0 and below {right:g}, got {wanted.transmission:g}"
+            yield ("wanted", TRANSMISSION_ANGLE.word, "least"), told
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
         timed = [p.input for p in self.positions if p.input is not None]
@@ -289,10 +279,8 @@ class Task:
             _, span = least_arc(np.array(timed, dtype=float), self.angle.turn)
             asked = abs(wanted.range[1] - wanted.range[0])
             if span > asked * (1.0 + EQUAL_ROWS):
-                yield (
-                    ("wanted", "input"),
-                    f"spans {asked:g}, but the given inputs span {span:g}: widen it",
-                )
+                told = f"spans {asked:g}, but the given inputs span {span:g}: widen it"
+                yield ("wanted", "input"), told
         goal, ends = self.function, wanted.range
         if goal is not None and ends and goal.starts_fixed and not [*goal.problems()]:
             yield from goal.range_problems(ends, self.angle.turn)
