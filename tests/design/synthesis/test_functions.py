@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
+from linkwork.design.synthesis.advice import remarks_on
 from linkwork.design.synthesis.function_synthesis import freudenstein
 from linkwork.design.synthesis.function_wishes import FunctionWishes
 from linkwork.design.synthesis.structural_error import (
@@ -253,12 +254,32 @@ def test_a_wanted_range_bounds_a_free_start_angle() -> None:
     wanted = {"input": {"from": 100.0, "to": 200.0}}
     task = {"fit": "minimax", "mechanism": "four-bar"}
     found = lw.Task.function(_STEP, wanted=wanted, **task).solve()
-    assert min(design.error for design in found.delivered) < 4.0
+    assert min(design.error for design in found.delivered) < 5.0
     for design in found.delivered:
         assert min(design.inputs) >= 100.0 - 1e-9
         assert max(design.inputs) <= 200.0 + 1e-9
     with pytest.raises(MechanismError, match="spans 80, but the given inputs span 90"):
         lw.Task.function(_STEP, wanted={"input": {"from": 100.0, "to": 180.0}}, **task)
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+def test_links_of_a_fit_without_wishes_for_lengths_are_in_proportion(fit: str) -> None:
+    task = {"x": (0, 1.57), "input": (97, 187), "output": (60, 150), "mechanism": "four-bar"}
+
+    def ratios(**tables: Any) -> tuple[str, list[float]]:
+        found = lw.Task.function("sin(x)", fit=fit, **task, **tables).solve()
+        told = " ".join([found.message, *remarks_on(found)])
+        return told, [design.size / design.shortest for design in found.delivered]
+
+    message, usual = ratios()
+    assert "; lengths up to 20 times the shortest unless [wanted] bounds them" in message
+    assert "a longest link at the usual 20 times the shortest: 2. [wanted] lengths = {" in message
+    assert max(usual) == pytest.approx(20.0, rel=1e-3)
+    assert max(ratios(wanted={"lengths": {"ratio": 40}})[1]) == pytest.approx(40.0, rel=1e-3)
+    message, any_size = ratios(rank={"by": {"error": 1}})
+    assert "a longest link over 20 times the shortest: " in message
+    assert "unless [wanted]" not in message
+    assert max(any_size) > 1000.0
 
 
 @pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
@@ -325,9 +346,7 @@ def _wrong(design: Any, u: Array, v: Array) -> Array:
 def test_a_fit_that_ends_where_its_loop_hardly_closes_may_be_no_local_minimum(fit: str) -> None:
     found = lw.Task.function("x^2", fit=fit, input=(0, 90), **_SQUARE).solve()
     (design,) = found.designs
-    assert found.message.endswith(
-        "the loop of the best one hardly closes: it may be no local minimum"
-    )
+    assert "the loop of the best one hardly closes: it may be no local minimum" in found.message
     assert (found.starts, found.outcome) == (75, "fits")
     assert design.transmission < 1.0
 

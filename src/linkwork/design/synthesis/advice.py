@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from linkwork.design.synthesis.curve_synthesis import usual_longest
+from linkwork.design.synthesis.function_synthesis import USUAL_RATIO, has_usual_ratio
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
@@ -19,7 +20,6 @@ __all__ = ["advice_of", "remark_on", "remarks_on"]
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
 _AT_BOUND = 0.999  # of the longest link
-_MOST_RATIO = 20.0  # the longest over the shortest length of links that fit one drawing
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
 
@@ -61,10 +61,13 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
             lambda design: design.transmission < least,
         )
     if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
+        usual = has_usual_ratio(task)
+        bound = USUAL_RATIO * (_AT_BOUND if usual else 1.0)
+        told, ratio = ("at the usual", "…") if usual else ("over", f"{USUAL_RATIO:g}")
         yield _Doubt(
-            f"a longest link over {_MOST_RATIO:g} times the shortest",
-            f"[wanted] lengths = {{ ratio = {_MOST_RATIO:g} }}",
-            lambda design: design.size > _MOST_RATIO * design.shortest,
+            f"a longest link {told} {USUAL_RATIO:g} times the shortest",
+            f"[wanted] lengths = {{ ratio = {ratio} }}",
+            lambda design: design.size > bound * design.shortest,
         )
     longest = usual_longest(task) if task.kind == "path" and task.is_approximate else math.inf
     if longest < math.inf:

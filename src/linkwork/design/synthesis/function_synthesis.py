@@ -26,7 +26,10 @@ from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArra
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 
-__all__ = ["freudenstein", "solve_function"]
+__all__ = ["USUAL_RATIO", "freudenstein", "has_usual_ratio", "solve_function"]
+
+#: Of the longest to the shortest link of fits without wishes for lengths: links of one drawing.
+USUAL_RATIO = 20.0
 
 _LOSS = 16.0 * UNIT_ROUNDOFF  # of angles, their sines, and sums of few of them
 _SMALL = 0.05  # relative errors up to which a quotient's error is at most 1.1 times its first order
@@ -239,7 +242,7 @@ def _fitted(
         slides=slides,
         minimax=goal.fit == "minimax",
         first=first,
-        held=partial(FunctionWishes, wishes, u, size, slides),
+        held=partial(FunctionWishes, _in_proportion(task, wishes), u, size, slides),
         progress=progress,
     )
     made: list[Candidates] = []
@@ -259,7 +262,20 @@ def _fitted(
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     if not fits.closes.all():
         message += "; the loop of the best one hardly closes: it may be no local minimum"
+    if has_usual_ratio(task):
+        message += f"; lengths up to {USUAL_RATIO:g} times the shortest unless [wanted] bounds them"
     return replace(found, message=message, starts=len(x))
+
+
+def has_usual_ratio(task: Task) -> bool:
+    """Whether the lengths of a fit are bounded though its task bounds none, but counts size."""
+    goal, wanted = task.function, task.wanted
+    bounded = wanted.shortest > 0.0 or min(wanted.longest, wanted.ratio) < math.inf
+    return goal is not None and bool(goal.fit and task.rank.size) and not bounded
+
+
+def _in_proportion(task: Task, wishes: Wishes) -> Wishes:
+    return replace(wishes, ratio=USUAL_RATIO) if has_usual_ratio(task) else wishes
 
 
 def _first_inputs(task: Task, u: Array) -> tuple[float, float]:
