@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,8 +92,9 @@ def test_doubtful_designs_are_counted_with_the_wish_that_refuses_them() -> None:
 
 
 def test_if_no_wish_is_to_blame_changes_of_the_task_are_named(tmp_path: Path) -> None:
-    shown = " ".join(_printed(_FUNCTION, tmp_path, code=1).split())
-    assert 'or approximate the function, fit = "minimax".' in shown
+    same = _FUNCTION.replace("x^2", "x").replace("60, 150", "30, 120")
+    shown = " ".join(_printed(same, tmp_path, code=1).split())
+    assert "the task. Try to change the ranges of input and output." in shown
     poses = lw.Task.motion(
         [(0, 0, 90), (-400, 1100, 50), (-1300, 1500, 5)],
         mechanism="four-bar",
@@ -102,6 +104,46 @@ def test_if_no_wish_is_to_blame_changes_of_the_task_are_named(tmp_path: Path) ->
     told = advice_of(poses)
     for change in ('"slider-crank"', "enlarge the region", "a tolerance", "move a position"):
         assert change in told
+
+
+_STARTS = {"x": (0, 1), "input": (30, 120), "output": (60, 150)}
+_STEADY = [(0, 0), (30, 10), (60, 30), (90, 60)]
+_HALTING = [(0, 0), (40, 20), (80, 30), (120, 35), (160, 80), (200, 90)]
+
+
+@pytest.mark.parametrize(
+    ("function", "tables", "kind", "told"),
+    [
+        ("x^2", _STARTS, "BRANCH", "With input = 90 and output = 90, which leave the start angles"),
+        # a wish is to blame
+        (
+            "sqrt(x)",
+            {**_STARTS, "fit": "minimax", "wanted": {"transmission": {"least": 15}}},
+            "TRANSMISSION", "With input = 90 and output = 90, which leave the start angles free, ",
+        ),
+        (
+            "log10(x)",
+            {**_STARTS, "x": (1, 2), "wanted": {"transmission": {"least": 60}}},
+            "TRANSMISSION", 'With fit = "least squares" there is 1 design without defects.',
+        ),
+        # a pair is at a dead point
+        (
+            _STEADY, {"input": (30, 120), "output": (40, 100), "fit": "least squares"},
+            "NOT_PROVED", "Without input and output, which leave the start angles free, there are ",
+        ),
+        (
+            _HALTING, {"fit": "least squares"},
+            "NOT_PROVED", 'With fit = "minimax" there is 1 design without defects.',
+        ),
+    ],
+)  # fmt: skip
+def test_what_helps_a_function_is_tried(
+    function: Any, tables: dict[str, Any], kind: str, told: str
+) -> None:
+    found = lw.Task.function(function, mechanism="four-bar", **tables).solve()
+    assert [defect.name for defect in found.defects] == [kind]
+    assert (found.costliest is not None) == (kind == "TRANSMISSION")
+    assert advice_of(found).startswith(told)
 
 
 def test_if_a_wish_is_to_blame_it_is_named_instead(tmp_path: Path) -> None:

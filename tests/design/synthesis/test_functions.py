@@ -357,6 +357,9 @@ def test_a_function_that_no_single_four_bar_is_determined_by_says_so() -> None:
     found = lw.Task.function("x", **same).solve()
     assert found.completeness is lw.Completeness.NOT_PROVED
     assert not found.designs
+    same |= {"input": (30, 120), "output": (30, 120)}
+    fitted = lw.Task.function("x", fit="minimax", **same).solve()
+    assert fitted.message.startswith("nothing found: no loop through three of the pairs")
 
 
 def test_given_pivots_set_the_scale() -> None:

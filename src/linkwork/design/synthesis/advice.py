@@ -79,10 +79,14 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
 
 
 def advice_of(found: Synthesis) -> str:
-    """What could be changed in a task without a sound design that no relaxed wish would help; ""
-    if there is a sound design, or a wish to relax.
+    """What could be changed in a task without a sound design that no relaxed wish would help; of a
+    function also what else helps, which is tried. "" if there is a sound design.
     """
-    if found.sound or found.costliest is not None:
+    if found.sound:
+        return ""
+    if helps := found.what_helps():
+        return helps
+    if found.costliest is not None:
         return ""
     if found.task.kind == "improve":
         return "" if found.designs else _of_goals(found)
@@ -112,8 +116,6 @@ def _changes(found: Synthesis) -> Iterator[str]:
     task = found.task
     if task.function is not None:
         yield "change the ranges of input and output"
-        if not task.function.fit:
-            yield 'approximate the function, fit = "minimax"'
         return
     if task.kind == "motion" and not {*MECHANISMS} <= {*task.mechanisms}:
         other = next(name for name in MECHANISMS if name not in task.mechanisms)

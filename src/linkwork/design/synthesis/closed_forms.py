@@ -81,4 +81,5 @@ def solve_with_bound(matrix: Array, right: Array, doubt: Array) -> tuple[Array, 
 
 def _regular(matrix: Array) -> BoolArray:
     sizes = np.linalg.svd(matrix, compute_uv=False)
-    return np.asarray(sizes[..., -1] > UNIT_ROUNDOFF * sizes[..., 0])
+    # an elimination may find no pivot in what is singular to its rounding
+    return np.asarray(sizes[..., -1] > _LOSS * UNIT_ROUNDOFF * sizes[..., 0])

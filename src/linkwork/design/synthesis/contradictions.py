@@ -7,17 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from linkwork.design.improvement.settings import Problems
 from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 
 __all__ = ["length_contradictions", "place_contradictions", "unreached_places"]
 
-_Problems = Iterator[tuple[tuple[str | int, ...], str]]
+_Key = tuple[str | int, ...]
 _LENGTHS = ("wanted", "lengths")
 _REGION = ("wanted", "fixed_pivots", "inside")
 
 
-def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> _Problems:
+def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problems:
     """Bounds that exclude each other, or sides of a four-bar that are given, its ground too."""
     least, most = wanted.shortest, wanted.longest
     if least < 0:
@@ -43,7 +44,7 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> _Proble
 
 def place_contradictions(
     wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
-) -> _Problems:
+) -> Problems:
     """Places in obstacles, and pivots outside their region."""
     if wanted.region and _area(wanted.region) == 0:
         yield _REGION, "encloses no area"
@@ -65,7 +66,7 @@ def place_contradictions(
 
 def unreached_places(
     wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
-) -> _Problems:
+) -> Problems:
     """Positions too far from each other, or from pivots, for a crank and an arm of the coupler."""
     for j, one in enumerate(positions if math.isfinite(wanted.longest) else ()):
         others = [
@@ -81,9 +82,7 @@ def unreached_places(
                 yield key, f"{told}{wanted.longest:g}: {arms} {reach:g}"
 
 
-def _pivots(
-    wanted: Wanted, given: Given
-) -> Iterator[tuple[tuple[str | int, ...], Sequence[Point]]]:
+def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:
     """Given fixed pivots, and the corners of the region of others."""
     for k, pivot in enumerate(given.fixed_pivots):
         yield ("given", "fixed_pivots", k), (pivot,)

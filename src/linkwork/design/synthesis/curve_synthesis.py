@@ -23,7 +23,6 @@ from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
-from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.sharing import cores
 
@@ -111,8 +110,7 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
     low, high = goal.input_bounds
     if low > high:
         told = "leave no angle for the inputs of the positions in the wanted range: widen one"
-        problem = Problem(key=("improve", "bounds", INPUT), message=told)
-        raise MechanismError([problem], f'task "{task.name}"')
+        task.refuse([(("improve", "bounds", INPUT), told)])
     return goal
 
 
@@ -164,7 +162,7 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
         for key, entry in others.items():
             if entry:
                 told = 'belongs to task = "improve": leave it out'
-                raise MechanismError([Problem(key=("improve", key), message=told)], "the task")
+                task.refuse([(("improve", key), told)])
     placed = ("A0.x", "A0.y", "B0.x", "B0.y")[: 2 * len(task.given.fixed_pivots)]
     for name, (low, high) in given.items():
         told = ""
@@ -175,8 +173,7 @@ def _bounds(task: Task, wishes: Wishes) -> Iterator[tuple[str, tuple[float, floa
         elif name in LENGTHS and high <= 0.0:
             told = f"must allow lengths above 0, got {low:g} to {high:g}"
         if told:
-            problem = Problem(key=("improve", "bounds", name), message=told)
-            raise MechanismError([problem], f'task "{task.name}"')
+            task.refuse([(("improve", "bounds", name), told)])
         scale = task.angle.radians if name == INPUT else 1.0
         yield _BOUNDED[name], (low * scale, high * scale)
 

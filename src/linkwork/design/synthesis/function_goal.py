@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwork.design.improvement.settings import Problems
 from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import OF_ANGLE, TO_ANGLE, value
@@ -96,7 +96,7 @@ class FunctionGoal:
     fit: str = ""
     exact: ExactPairs = LOOP_PAIRS
 
-    def problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def problems(self) -> Problems:
         """What is wrong, with the key of each problem."""
         if bool(self.of) == bool(self.pairs):
             both = "are both given" if self.of else "are both missing"
@@ -119,7 +119,7 @@ class FunctionGoal:
             if ends is not None and ends[0] == ends[1]:
                 yield ("function", key), f"begins and ends at {ends[0]:g}: give a range"
 
-    def _formula_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _formula_problems(self) -> Problems:
         missing = [key for key in ("x", "input", "output") if getattr(self, key) is None]
         for key in missing:
             yield ("function", key), f"is missing: a formula needs the range of its {key}"
@@ -137,20 +137,16 @@ class FunctionGoal:
         steps = np.abs(np.diff(values))
         if steps.max() > _LARGEST_STEP * np.ptp(values) > 0.0:
             place = self._x(_DENSE)[steps.argmax()]
-            yield (
-                ("function", "of"),
-                f"jumps by {steps.max():.4g} near x = {place:.4g}: give a range without this place",
-            )
+            told = f"jumps by {steps.max():.4g} near x = {place:.4g}"
+            yield ("function", "of"), f"{told}: give a range without this place"
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
         exact, count, most = self.exact, self._count, self._most
         if count > most and not self.fit:
             given = "free" if self.free else "given"
-            yield (
-                ("function", "positions"),
-                f"{count} precision points leave no {exact.mechanism} with {given} start angles: "
-                f"keep {exact.told(most)}" + self._free_starts(count),
-            )
+            told = f"{count} precision points leave no {exact.mechanism} with {given} start angles"
+            most_told = f"keep {exact.told(most)}{self._free_starts(count)}"
+            yield ("function", "positions"), f"{told}: {most_told}"
         elif count < exact.least:
             yield ("function", "positions"), f"{count} given: give {exact.least} or more"
 
@@ -160,7 +156,7 @@ class FunctionGoal:
             return ""
         return f"; free start angles meet {count}: input = 60 is a range that begins anywhere"
 
-    def _pair_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _pair_problems(self) -> Problems:
         count = len(self.pairs)
         exact = self.exact
         if count < exact.least:
@@ -184,9 +180,7 @@ class FunctionGoal:
                     told = f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}"
                     yield ("function", key), told
 
-    def range_problems(
-        self, ends: Pair, turn: float
-    ) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def range_problems(self, ends: Pair, turn: float) -> Problems:
         """An input that a driven range leaves out, in whatever turn the range is."""
         inputs, (low, high) = self.points()[0], sorted(ends)
         slack = EQUAL_ROWS * turn
@@ -219,6 +213,14 @@ class FunctionGoal:
             output=_moved(self.output, outputs - second),
             free=(),
         )
+
+    @property
+    def freed(self) -> FunctionGoal:
+        """The same function without start angles."""
+        if self.pairs or self.input is None or self.output is None:
+            return replace(self, input=None, output=None)
+        u, v = self.input[1] - self.input[0], self.output[1] - self.output[0]
+        return replace(self, input=(0.0, u), output=(0.0, v), free=("input", "output"))
 
     def points(self) -> tuple[Array, Array]:
         """Inputs and outputs (K,) that a design meets, or a fit follows."""

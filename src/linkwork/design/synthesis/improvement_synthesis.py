@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -21,11 +21,11 @@ from linkwork.design.improvement.improving import (
     point_named,
 )
 from linkwork.design.improvement.reach import Reach
-from linkwork.design.improvement.settings import Goal, Improvement, Points
+from linkwork.design.improvement.settings import Goal, Improvement, Points, Problems
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
-from linkwork.foundation.errors import InputError, MechanismError, Problem, choices
+from linkwork.foundation.errors import InputError, choices
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.rounding import EQUAL_ROWS
@@ -84,25 +84,22 @@ def improve_description(
     """
     settings = task.improvement or Improvement()
     model = model_of(description)
-    _refuse(task, _name_problems(model, settings))
+    task.refuse(_name_problems(model, settings))
     numbers = numbers_to_vary(model, settings.vary)
-    bounds, problems = _bounds(description, wishes, numbers, settings)
-    _refuse(task, problems)
-    settings = replace(settings, bounds=bounds)
+    settings = replace(settings, bounds=_bounds(description, task, wishes, numbers))
     angles = list(_transmission_goals(model, task))
     if task.wanted.transmission and not angles:
         lacks = f'"{description.name}" has no dyad of pins and no transmission angle: leave it out'
-        _refuse(task, [Problem(key=("wanted", TRANSMISSION_ANGLE.word), message=lacks)])
+        task.refuse([(("wanted", TRANSMISSION_ANGLE.word), lacks)])
     goals: list[Goal | Points] = [*settings.goals, *angles]
     if task.positions:
         points = _points(task, settings)
         box = box_of(model, numbers, settings)
         reach = Reach(model.description, numbers, box)
         name = points.point or next(iter(description.trace), "")
-        _refuse(task, _unreached(reach, name, points))
+        task.refuse(_unreached(reach, name, points))
         goals.append(points)
-    told = settings.front_problems(goals)
-    _refuse(task, (Problem(key=("improve", *key), message=message) for key, message in told))
+    task.refuse((("improve", *key), told) for key, told in settings.front_problems(goals))
 
     def judged(design: ImprovedDesign) -> ImprovedMechanism:
         return ImprovedMechanism(task=task, improved=design, wishes=wishes)
@@ -115,16 +112,10 @@ def improve_description(
     return tuple(designs), settings.starts or STARTS, interrupted
 
 
-def _refuse(task: Task, problems: Iterable[Problem]) -> None:
-    found = tuple(problems)
-    if found:
-        raise MechanismError(found, f'task "{task.name}"')
-
-
 def _mechanism(task: Task) -> Description:
     if len(task.mechanisms) != 1:
         told = 'must be one mechanism, of the library or a file: "four-bar", "leg.toml"'
-        _refuse(task, [Problem(key=("mechanism",), message=told)])
+        task.refuse([(("mechanism",), told)])
     name = task.mechanisms[0]
     if name in examples():
         return read_text(example_text(name), f"{name}.toml").description
@@ -132,7 +123,7 @@ def _mechanism(task: Task) -> Description:
     if not path.is_file():
         known = choices("examples", examples(), name)
         told = f'"{name}" is no file in the folder of the task and no example {known}'
-        _refuse(task, [Problem(key=("mechanism",), message=told)])
+        task.refuse([(("mechanism",), told)])
     return read_text(text_of(bytes_of(path, str(path)), str(path)), str(path)).description
 
 
@@ -150,7 +141,7 @@ def _driven(description: Description, task: Task) -> Description:
     if driven.law is not None:
         told = "has no effect on a mechanism that is driven by a law of time: leave it out"
     if told:
-        _refuse(task, [Problem(key=("wanted", "input"), message=told)])
+        task.refuse([(("wanted", "input"), told)])
     ends = (driven.start, driven.stop)
     begin, end = (0.0 if own is None else description.numbers(own) for own in ends)
     start, stop = wanted.range or (begin, begin + turn)
@@ -163,7 +154,7 @@ def _driven(description: Description, task: Task) -> Description:
     return replace(description, inputs=(ranged, *description.inputs[1:]))
 
 
-def _name_problems(model: Model, settings: Improvement) -> Iterator[Problem]:
+def _name_problems(model: Model, settings: Improvement) -> Problems:
     """Names that the mechanism does not have, or that cannot vary or be goals."""
     there, one = np.ones(1, dtype=bool), np.zeros(1)
     asked: dict[tuple[str | int, ...], Callable[[], object]] = {}
@@ -180,27 +171,25 @@ def _name_problems(model: Model, settings: Improvement) -> Iterator[Problem]:
             ask()
         except InputError as error:
             told = str(error.args[0] if isinstance(error, KeyError) else error)
-            yield Problem(key=("improve", *key), message=told)
+            yield ("improve", *key), told
 
 
 def _bounds(
-    description: Description,
-    wishes: Wishes,
-    numbers: Sequence[VariedNumber],
-    settings: Improvement,
-) -> tuple[dict[str, tuple[float, float]], list[Problem]]:
-    """The bounds given, narrowed by those that are wanted, and contradictions between them."""
-    given = {number_named(description, name): pair for name, pair in settings.bounds.items()}
-    bounds, problems = dict(settings.bounds), []
+    description: Description, task: Task, wishes: Wishes, numbers: Sequence[VariedNumber]
+) -> dict[str, tuple[float, float]]:
+    """The bounds given, narrowed by those that are wanted; contradictions are refused."""
+    bounds, problems = dict((task.improvement or Improvement()).bounds), []
+    given = {number_named(description, name): pair for name, pair in bounds.items()}
     for number, (low, high) in _wanted_bounds(description, wishes, numbers):
         name = next((n for n in bounds if number_named(description, n) == number), number.name)
         least, most = given.get(number, (-math.inf, math.inf))
         least, most = max(least, low), min(most, high)
         if least > most:
             told = f"excludes {low:g} to {high:g}, which [wanted] asks for: widen one of them"
-            problems.append(Problem(key=("improve", "bounds", name), message=told))
+            problems.append((("improve", "bounds", name), told))
         bounds[name] = least, most
-    return bounds, problems
+    task.refuse(problems)
+    return bounds
 
 
 def _wanted_bounds(
@@ -236,7 +225,7 @@ def _points(task: Task, settings: Improvement) -> Points:
     )
 
 
-def _unreached(reach: Reach, name: str, points: Points) -> Iterator[Problem]:
+def _unreached(reach: Reach, name: str, points: Points) -> Problems:
     for k, place in enumerate(points.points):
         pivot, away, most = reach.missing(name, complex(*place))
         if pivot:
@@ -244,4 +233,4 @@ def _unreached(reach: Reach, name: str, points: Points) -> Iterator[Problem]:
                 f"is {away:g} from {pivot}, out of reach: {name} comes at most {most:g} away from "
                 "it; widen the bounds of lengths or move the position"
             )
-            yield Problem(key=("positions", k, "point"), message=told)
+            yield ("positions", k, "point"), told

@@ -26,7 +26,6 @@ from linkwork.design.synthesis.task import MECHANISMS, Task
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.completeness import Completeness
-from linkwork.foundation.errors import MechanismError, Problem
 
 __all__ = ["solve_path"]
 
@@ -212,8 +211,7 @@ def _check_lengths(task: Task, lengths: Sequence[GivenLength], near: _Near) -> N
     freedoms = near.given.problem.freedoms + len(lengths)
     if len(lengths) > freedoms:
         told = f"are {len(lengths)}, but positions and pivots leave {freedoms} freedoms"
-        problem = Problem(key=("given", "lengths"), message=f"{told}: leave some out")
-        raise MechanismError([problem], f'task "{task.name}"')
+        task.refuse([(("given", "lengths"), f"{told}: leave some out")])
 
 
 def _candidates(points: ComplexArray, solved: Sequence[FourBarPositions]) -> tuple[Candidates, ...]:

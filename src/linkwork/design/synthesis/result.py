@@ -238,6 +238,7 @@ class SynthesizedDesign(JudgedDesign):
         return linkage_of(self.design, self.task, self._name, self.group.output)
 
 
+@internal("what_helps")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Synthesis:
     """All designs for a task, sound ones first.
@@ -263,6 +264,8 @@ class Synthesis:
         Starts of a least-squares fit; 0 where equations are solved.
     interrupted : bool
         Whether the user stopped it; the designs are the best so far.
+    what_helps : callable
+        Tries other tasks; which of them has sound designs, in words, or "".
     """
 
     task: Task
@@ -277,6 +280,7 @@ class Synthesis:
     designs: tuple[JudgedDesign, ...]
     starts: int = 0
     interrupted: bool = False
+    what_helps: Callable[[], str] = str
 
     @property
     def delivered(self) -> tuple[JudgedDesign, ...]:

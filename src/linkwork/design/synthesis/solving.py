@@ -8,16 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import zip_longest
 from typing import TypeVar
 
 import numpy as np
 
-from linkwork.design.improvement.settings import Improvement
+from linkwork.design.improvement.settings import FITS, Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive
 from linkwork.design.synthesis.curve_synthesis import solve_curve
 from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
+from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.function_synthesis import solve_function
 from linkwork.design.synthesis.improved_mechanism import SweptDesign, wishes_in_motion
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
@@ -33,6 +35,7 @@ from linkwork.design.synthesis.watt_synthesis import solve_watt
 from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import MechanismError
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.value_types import check_flags
 
@@ -70,6 +73,11 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         return _improved(task, progress)
     if task.is_six_bar:
         return _six_bars(task, progress)
+    return replace(_of_loops(task, progress), what_helps=partial(_what_helps, task))
+
+
+def _of_loops(task: Task, progress: Callable[[float], None] | None = None) -> Synthesis:
+    """Designs of one loop."""
     found = SOLVERS[task.kind](task, wishes_of(task, Drive.A0), progress)
     judged = [
         JudgedDesigns(
@@ -99,6 +107,33 @@ def solve_task(task: Task, *, progress: Callable[[float], None] | None = None) -
         starts=found.starts,
         interrupted=found.interrupted,
     )
+
+
+def _what_helps(task: Task) -> str:
+    """The first change of a task of a function with sound designs, and their number."""
+    for change, goal in _other_goals(task):
+        try:
+            count = _of_loops(replace(task, function=goal)).sound
+        except MechanismError:  # more pairs than free start angles meet
+            continue
+        if count:
+            told = "is 1 design" if count == 1 else f"are {count} designs"
+            return f"{change} there {told} without defects."
+    return ""
+
+
+def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
+    goal = task.function
+    if goal is None:
+        return
+    if goal.starts_fixed:
+        free = goal.freed
+        spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
+        told = "Without input and output" if goal.pairs else f"With {' and '.join(spans)}"
+        yield f"{told}, which leave the start angles free,", free
+    for fit in FITS:
+        if fit != goal.fit:
+            yield f'With fit = "{fit}"', replace(goal, fit=fit)
 
 
 def _measured(wishes: Wishes, part: Candidates, zero: tuple[float, float] | None) -> Wishes:

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations, islice, pairwise
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
-from linkwork.design.improvement.settings import Improvement
+from linkwork.design.improvement.settings import Improvement, Problems
 from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.contradictions import (
     length_contradictions,
@@ -49,8 +48,6 @@ _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
 _SIDES = 4  # of the lengths that may be given: a four-bar's
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
-
-_Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,13 +106,17 @@ class Task:
         if self.curve is not None:
             if self.positions:
                 told = "and positions exclude each other: give points in one way"
-                raise MechanismError([Problem(key=("curve",), message=told)], f'task "{self.name}"')
+                self.refuse([(("curve",), told)])
             object.__setattr__(self, "positions", tuple(_curve_positions(self.curve)))
-        found = [Problem(key=key, message=message) for key, message in self._problems()]
+        self.refuse(self._problems())
+
+    def refuse(self, problems: Iterable[tuple[tuple[str | int, ...], str]]) -> None:
+        """Raise what is wrong, if anything is: keys with their messages."""
+        found = [Problem(key=key, message=message) for key, message in problems]
         if found:
             raise MechanismError(found, f'task "{self.name}"')
 
-    def _problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _problems(self) -> Problems:
         if self.kind not in KINDS:
             yield ("task",), f"must be one of {', '.join(KINDS)}, got {as_told(self.kind)}"
         yield from mechanism_problems(self.kind, self.mechanisms)
@@ -143,7 +144,7 @@ class Task:
         yield from self._wish_problems()
         yield from self.rank.problems()
 
-    def _position_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _position_problems(self) -> Problems:
         count = len(self.positions)
         if count < 2:
             told = "one position is given" if count else "is missing"
@@ -164,31 +165,25 @@ class Task:
             yield ("positions", bare[0], "tolerance"), told
         exact = all(p.tolerance == p.angle_tolerance == 0 for p in self.positions)
         if self.kind == "motion" and count > _MOST_EXACT and exact:
-            yield (
-                ("positions",),
-                f"{count} exact poses leave no four-bar in general: keep {_MOST_EXACT}, or give "
-                "tolerances",
-            )
+            told = f"{count} exact poses leave no four-bar in general: keep {_MOST_EXACT}"
+            yield ("positions",), f"{told}, or give tolerances"
         timed = sum(p.input is not None for p in self.positions)
         if 0 < timed < count:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
 
-    def _mixed_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _mixed_problems(self) -> Problems:
         """Poses alone, and more conditions than a four-bar meets."""
         poses, count = sum(p.angle is not None for p in self.positions), len(self.positions)
         if poses == count:
             yield ("task",), 'has poses only: write task = "motion", or leave out an angle'
         conditions = count - 1 + max(poses - 1, 0) + 2 * len(self.given.fixed_pivots)
         if conditions > _MOST_CONDITIONS:
-            yield (
-                ("positions",),
-                f"and fixed pivots are {conditions} conditions, but a four-bar meets at most "
-                f"{_MOST_CONDITIONS}: a pose after the first one and a pivot are two, a point is "
-                "one",
-            )
+            most = f"but a four-bar meets at most {_MOST_CONDITIONS}"
+            each = "a pose after the first one and a pivot are two, a point is one"
+            yield ("positions",), f"and fixed pivots are {conditions} conditions, {most}: {each}"
 
-    def _given_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _given_problems(self) -> Problems:
         """Pivots and timing that the kind of task cannot use."""
         fixed, moving = self.given.fixed_pivots, self.given.moving_pivots
         count, timed = len(self.positions), any(p.input is not None for p in self.positions)
@@ -216,13 +211,10 @@ class Task:
         if self.kind == "function" and fixed:
             level = len(fixed) == 2 and fixed[0][1] == fixed[1][1] and fixed[0][0] < fixed[1][0]
             if not level:
-                yield (
-                    ("given", "fixed_pivots"),
-                    "must be two pivots on a level line, A0 to the left of B0: angles are measured "
-                    "from it",
-                )
+                told = "must be two pivots on a level line, A0 to the left of B0"
+                yield ("given", "fixed_pivots"), f"{told}: angles are measured from it"
 
-    def _length_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _length_problems(self) -> Problems:
         """Given lengths that are none, or that the kind of task cannot use."""
         lengths, wanted = self.given.lengths, self.wanted
         if lengths and self.kind not in ("path", "mixed"):
@@ -245,11 +237,12 @@ class Task:
         if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
             yield ("given", "lengths", "A0 B0"), "is fixed by the given pivots: leave it out"
 
-    def _repeated_positions(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _repeated_positions(self) -> Problems:
         turn = self.angle.turn
         # a curve may come back to a point
-        pairs = combinations if not self.is_approximate else _neighbours
-        for (j, one), (k, other) in pairs(enumerate(self.positions), 2):
+        listed = list(enumerate(self.positions))
+        pairs = pairwise(listed) if self.is_approximate else combinations(listed, 2)
+        for (j, one), (k, other) in pairs:
             same = one.point == other.point
             if one.angle is not None and other.angle is not None:
                 same &= math.remainder(one.angle - other.angle, turn) == 0
@@ -258,7 +251,7 @@ class Task:
             elif self.is_approximate and one.input is not None and one.input == other.input:
                 yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
 
-    def _wish_problems(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    def _wish_problems(self) -> Problems:
         wanted = self.wanted
         right = self.angle.turn / 4
         if not 0 <= wanted.transmission < right:
@@ -338,7 +331,3 @@ def _curve_positions(curve: Curve) -> Iterator[PrecisionPosition]:
     inputs: Sequence[float | None] = curve.inputs or [None] * len(curve.points)
     for point, angle in zip(curve.points, inputs, strict=True):
         yield PrecisionPosition(point=point, input=angle)
-
-
-def _neighbours(positions: Iterable[_Item], _count: int) -> Iterator[tuple[_Item, _Item]]:
-    return pairwise(positions)

@@ -14,7 +14,6 @@ from linkwork.design.synthesis.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.completeness import Completeness
-from linkwork.foundation.errors import MechanismError, Problem
 
 __all__ = ["solve_watt"]
 
@@ -62,9 +61,7 @@ def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:
             apart = np.array([inputs[k] - inputs[j], outputs[k] - outputs[j]])
             if np.abs(apart - FULL_TURN * np.round(apart / FULL_TURN)).max() < _EQUAL_ANGLES:
                 told = f"is pair {j + 1} after whole turns: leave one out"
-                raise MechanismError(
-                    [Problem(key=("function", "pairs", k), message=told)], f'task "{task.name}"'
-                )
+                task.refuse([(("function", "pairs", k), told)])
 
 
 def _nine_pairs(pairs: Array) -> tuple[Array, IndexArray]:
