@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -190,3 +192,33 @@ def test_the_schema_of_plans_is_printed(run: Run) -> None:
     schema = json.loads(run("schema", "--plan").stdout)
     assert schema["title"] == "Linkwork study-plan file"
     assert "filters" in schema["properties"]
+
+
+_WITHOUT_ZARR = """
+import importlib.util, sys
+real = importlib.util.find_spec
+importlib.util.find_spec = lambda name: None if name == "zarr" else real(name)
+from click.testing import CliRunner
+from linkwork.cli.main import linkwork
+done = CliRunner().invoke(linkwork, sys.argv[1:])
+print(done.output, done.exit_code, "numba" in sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("study", "plan.toml", "-o", "out.zarr"),
+        ("study", "--summary", "out.zarr"),
+        ("atlas", "--index", "out.zarr", "-o", "out.npz"),
+    ],
+)
+def test_a_missing_package_of_stores_is_told_before_kernels_are_loaded(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    command = [sys.executable, "-c", _WITHOUT_ZARR, *arguments]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
+    assert done.stdout == (
+        'Error: studies are stored by zarr and xarray: pip install "linkwork[study]"\n 2 False\n'
+    )

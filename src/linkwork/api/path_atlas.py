@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 
 from linkwork.api.mechanism import Mechanism
+from linkwork.batch.study.store_packages import check_packages
 from linkwork.design.atlas import path_atlas
 from linkwork.design.atlas.placed_mechanism import placed_on_curve
 from linkwork.foundation.arrays import ComplexArray
@@ -133,6 +134,7 @@ class PathAtlas:
         InputError
             If a store is damaged, keeps no path, or has no closed path.
         """
+        check_packages()
         # curves are compared without studies, which load Numba: a second
         from linkwork.design.atlas.stored_paths import atlas_of_stores
 

@@ -10,19 +10,8 @@ from time import monotonic
 
 import click
 
-from linkwork.batch.study import (
-    Progress,
-    Study,
-    Summary,
-    Verification,
-    read_plan,
-    run_study,
-    summary_of,
-    verify_store,
-)
-from linkwork.batch.study.chunk_manifest import chunks_with_entry
-from linkwork.batch.study.plan_file import read_plan_bytes
-from linkwork.batch.study.zarr_files import check_packages
+from linkwork.batch import study as studies  # its modules load Numba, at their first use
+from linkwork.batch.study.store_packages import check_packages
 from linkwork.cli.interrupts import check_interrupt
 from linkwork.cli.options import columns_option, debug_option, json_option
 from linkwork.cli.study_page import progress_line, summary_lines, verification_lines
@@ -78,14 +67,15 @@ def study(
     if summary is not None:
         if plan is not None or output is not None:
             raise InputError("--summary reads a store: leave out the plan and -o")
-        _print(summary_of(summary), summary, as_json)
+        check_packages()
+        _print(studies.summary_of(summary), summary, as_json)
         return
     if verify:
         if plan is None or output is not None:
             raise InputError(
                 "--verify reads a store and nothing else:\n    linkwork study out.zarr --verify"
             )
-        compared = verify_store(plan)
+        compared = studies.verify_store(plan)
         _print_verification(compared, plan, as_json)
         context.exit(0 if compared.intact else 1)
     if plan is None or output is None:
@@ -96,7 +86,7 @@ def study(
     asked = _read(plan, names)
     with study_progress(quiet) as tell:
         try:
-            found = run_study(
+            found = studies.run_study(
                 asked,
                 output,
                 workers=workers,
@@ -110,33 +100,33 @@ def study(
     _print(found, output, as_json)
 
 
-def _read(plan: str, columns: tuple[str, ...]) -> Study:
+def _read(plan: str, columns: tuple[str, ...]) -> studies.Study:
     if plan != "-":
-        return read_plan(plan, columns=columns)
+        return studies.read_plan(plan, columns=columns)
     if sys.stdin is None:
         raise InputError("there is no standard input to read a plan from")
-    return read_plan_bytes(sys.stdin.buffer.read(), columns=columns)
+    return studies.read_plan_bytes(sys.stdin.buffer.read(), columns=columns)
 
 
-def _print(found: Summary, store: str, as_json: bool) -> None:
+def _print(found: studies.Summary, store: str, as_json: bool) -> None:
     if as_json:
         print_json(found.to_dict())
     else:
         print_lines(summary_lines(found, store))
 
 
-def _print_verification(found: Verification, store: str, as_json: bool) -> None:
+def _print_verification(found: studies.Verification, store: str, as_json: bool) -> None:
     if as_json:
         print_json(found.to_dict())
     else:
         print_lines(verification_lines(found, store))
 
 
-def _how_to_go_on(asked: Study, store: str) -> list[str]:
+def _how_to_go_on(asked: studies.Study, store: str) -> list[str]:
     """How many designs of an interrupted study are stored, and how to resume it."""
     if not Path(store).exists():
         return []
-    stored = asked.count_in(chunks_with_entry(Path(store)))
+    stored = asked.count_in(studies.chunks_with_entry(Path(store)))
     return wrapped(
         f"{stored} of {asked.plan.count} designs are stored in {store}. "
         "To resume, repeat the same command."
@@ -144,7 +134,7 @@ def _how_to_go_on(asked: Study, store: str) -> list[str]:
 
 
 @contextmanager
-def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None]]:
+def study_progress(quiet: bool) -> Iterator[Callable[[studies.Progress], None]]:
     """A progress line that rewrites itself, on the error stream of a terminal only."""
     if quiet or not sys.stderr.isatty():
         yield lambda progress: check_interrupt()
@@ -152,7 +142,7 @@ def study_progress(quiet: bool) -> Iterator[Callable[[Progress], None]]:
     began = monotonic()
     width = 0
 
-    def tell(progress: Progress) -> None:
+    def tell(progress: studies.Progress) -> None:
         nonlocal width
         check_interrupt()
         if monotonic() - began > _PATIENCE:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from linkwork.batch.study import OutputSummary, Progress, Summary, Verification
+from linkwork.batch import study as studies
 from linkwork.cli.terminal import bad, fields, sentence, title_lines
 from linkwork.cli.text_table import WIDTH, table_lines
 from linkwork.results.listing.column import Column
@@ -19,7 +19,7 @@ _SIGN = "#"
 _GAP = 2  # between columns
 
 
-def progress_line(progress: Progress) -> str:
+def progress_line(progress: studies.Progress) -> str:
     """The finished fraction of a run, its rate and the remaining time."""
     share = math.floor(100 * progress.done / progress.total)
     line = f"{share:3d} %  {progress.done:,} of {progress.total:,} designs"
@@ -34,7 +34,7 @@ def _duration(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
-def summary_lines(found: Summary, store: str) -> list[str]:
+def summary_lines(found: studies.Summary, store: str) -> list[str]:
     """The page of a study."""
     head = f"{found.mechanism}: {found.designs:,} designs × {found.inputs:,} inputs in {store}"
     lines = [*title_lines(found.name), *sentence(str, head)]
@@ -48,7 +48,7 @@ def summary_lines(found: Summary, store: str) -> list[str]:
     return lines
 
 
-def _counts(found: Summary) -> Iterator[tuple[str, str]]:
+def _counts(found: studies.Summary) -> Iterator[tuple[str, str]]:
     """The numbers of designs that were computed, were built, and passed each filter."""
     missing = found.designs - found.computed
     if missing:
@@ -75,7 +75,7 @@ def _chunks(which: tuple[int | str, ...]) -> str:
     return ", ".join(named) + (f" and {more:,} more" if more else "")
 
 
-def verification_lines(found: Verification, store: str) -> list[str]:
+def verification_lines(found: studies.Verification, store: str) -> list[str]:
     """The page of a comparison of a store with its checksums."""
     if found.intact:
         return [f"All {found.sound:,} chunks of {store} are as they were written."]
@@ -98,7 +98,7 @@ def _of(count: int, total: int) -> str:
     return f"{count:,} ({100 * count / total:.4g} %)" if total else f"{count:,}"
 
 
-def _rows(found: Summary) -> list[str]:
+def _rows(found: studies.Summary) -> list[str]:
     """Rows by status."""
     names = [name.lower().replace("_", " ") for name in found.rows]
     counts = [f"{count:,}" for count in found.rows.values()]
@@ -113,7 +113,7 @@ def _rows(found: Summary) -> list[str]:
     )
 
 
-def _ranges(outputs: list[OutputSummary]) -> list[str]:
+def _ranges(outputs: list[studies.OutputSummary]) -> list[str]:
     """Smallest, mean and largest value of every output of the designs that passed."""
 
     def column(header: str, values: list[float]) -> Column:
@@ -130,7 +130,7 @@ def _ranges(outputs: list[OutputSummary]) -> list[str]:
     )
 
 
-def _histogram(output: OutputSummary) -> list[str]:
+def _histogram(output: studies.OutputSummary) -> list[str]:
     """A histogram over equal parts of the range, as bars of text."""
     bins = len(output.histogram)
     edges = [output.least + k * (output.most - output.least) / bins for k in range(bins)]

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from linkwork.foundation.lazy import loader
 
 if TYPE_CHECKING:
+    from linkwork.batch.study.chunk_manifest import chunks_with_entry as chunks_with_entry
     from linkwork.batch.study.plan_file import (
         read_plan as read_plan,
+        read_plan_bytes as read_plan_bytes,
         read_plan_text as read_plan_text,
     )
     from linkwork.batch.study.running import (

@@ -12,10 +12,10 @@ from linkwork.batch.study.cluster import cluster_crew
 from linkwork.batch.study.job import Part
 from linkwork.batch.study.plan_file import read_plan
 from linkwork.batch.study.store import open_store
+from linkwork.batch.study.store_packages import check_packages
 from linkwork.batch.study.study import Study
 from linkwork.batch.study.summary import Summary, summary_of
 from linkwork.batch.study.workers import Task, local_crew, one_after_the_other
-from linkwork.batch.study.zarr_files import check_packages
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import whole_number
 from linkwork.foundation.sharing import cores

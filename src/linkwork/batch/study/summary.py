@@ -13,7 +13,8 @@ import numpy as np
 from linkwork.batch.study.chunk_manifest import Entry, read_entries
 from linkwork.batch.study.job import passes_name
 from linkwork.batch.study.store import attributes_of
-from linkwork.batch.study.zarr_files import check_packages, open_arrays
+from linkwork.batch.study.store_packages import check_packages
+from linkwork.batch.study.zarr_files import open_arrays
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.paths import as_path
 

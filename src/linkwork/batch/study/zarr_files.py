@@ -8,35 +8,18 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from linkwork.batch.study.study import DESIGN, Variable
 from linkwork.foundation.arrays import AnyArray
-from linkwork.foundation.errors import MissingPackageError
 
-__all__ = ["LEDGER", "METADATA", "ZarrFiles", "check_packages", "open_arrays"]
+__all__ = ["LEDGER", "METADATA", "ZarrFiles", "open_arrays"]
 
 #: The group that lists finished chunks.
 LEDGER = "ledger"
 #: The file that describes the whole store, or one array in its folder.
 METADATA = "zarr.json"
-
-
-def check_packages() -> None:
-    """Check that the packages for stores are installed.
-
-    Raises
-    ------
-    MissingPackageError
-        If one is missing; with the install command.
-    """
-    # not imported here: an import that Ctrl-C ends may raise ImportError
-    if any(find_spec(name) is None for name in ("xarray", "zarr")):
-        raise MissingPackageError(
-            'studies are stored by zarr and xarray: pip install "linkwork[study]"'
-        )
 
 
 class ZarrFiles:

@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwork.batch.study.chunk_manifest import Entry, read_entries
 from linkwork.batch.study.store import attributes_of
-from linkwork.batch.study.zarr_files import check_packages, open_arrays
+from linkwork.batch.study.zarr_files import open_arrays
 from linkwork.design.atlas.path_atlas import AtlasFamily, PathAtlas
 from linkwork.design.atlas.path_shape import coefficients
 from linkwork.foundation.arrays import BoolArray, ComplexArray
@@ -34,7 +34,6 @@ def atlas_of_stores(
     InputError
         If a store is damaged, keeps no path, or has no closed path.
     """
-    check_packages()
     stores = [*{path.resolve(): path for path in stores}.values()]  # each of them once
     # wrong stores are refused before the first one is read
     known = [_checked(path) for path in stores]
