@@ -21,3 +21,13 @@ def test_the_command_writes_plates_with_their_bill(run: Run, tmp_path: Path) -> 
     assert {row["name"]: row["lowest layer"] for row in data["bill"] if row["kind"] == "plate"} == {
         "ground": 0, "crank": 1, "coupler": 2, "rocker": 1,
     }  # fmt: skip
+
+
+def test_a_bill_that_cannot_be_written_says_that_the_plates_are(run: Run, tmp_path: Path) -> None:
+    out, bill = tmp_path / "a.svg", tmp_path / "bill.csv"
+    bill.symlink_to(tmp_path / "gone" / "bill.csv")
+    done = run("plates", "four-bar", "-o", str(out), "--bill", str(bill))
+    assert done.exit_code == 2
+    told = "".join(done.stderr.split())
+    assert told.endswith(f";theplatesarewrittento{out}")
+    assert out.exists()

@@ -30,6 +30,7 @@ from linkwork.cli.terminal import (
 )
 from linkwork.cli.text_table import table_lines
 from linkwork.export import PlateOptions, PlateStack, check_plate_file, plates_of, stack_of
+from linkwork.foundation.errors import InputError
 from linkwork.mechanism.dimensions import Number
 from linkwork.results.listing.column import Column
 
@@ -115,7 +116,10 @@ def plates(
     with progress("writing the plates"):
         content = plates_of(stack, path, layout=layout)
     write_bytes(output, [content])
-    written = [f"Wrote {output}.", *write_table(bill, stack.bill())]
+    try:
+        written = [f"Wrote {output}.", *write_table(bill, stack.bill())]
+    except InputError as error:
+        raise InputError(f"{error}; the plates are written to {output}") from None
     if as_json:
         names = [name for name in (output, bill) if name is not None]
         print_json({"written": names, **stack.to_dict()})
