@@ -227,10 +227,19 @@ def test_a_mechanism_that_passes_its_positions_is_judged_without_its_circuits(
 
 
 def test_bounds_of_lengths_refuse_no_places_that_other_kinds_of_links_reach() -> None:
-    """Guides are endless, and mechanisms that are improved have more links than a crank and arm."""
+    """Guides are endless, and mechanisms that are improved have more links than a crank and arm.
+
+    Points of a fit may be missed.
+    """
     short = "[wanted]\nlengths = { most = 20 }\n"
     read_task_text(_MOTION.replace("'motion'", "'motion'\nmechanism = 'double-slider'") + short)
     read_task_text(_points(20).replace("'path'", "'improve'\nmechanism = 'klann-leg'") + short)
+    away = "fixed_pivots = { inside = [[90, 0], [91, 0], [90, 1]] }\n"
+    far = short.replace("20", "25") + away
+    read_task_text(_points(10) + far)
+    read_task_text(_points(10, "tolerance = 40.5") + far)
+    with pytest.raises(lw.MechanismFileError, match="is 90 from position 1, out of reach"):
+        read_task_text(_points(10, "tolerance = 39.5") + far)
 
 
 def test_a_fit_to_given_lengths_that_close_no_loop_has_no_design() -> None:

@@ -65,15 +65,17 @@ def place_contradictions(
 
 
 def unreached_places(
-    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], held: bool
 ) -> Problems:
-    """Positions too far from each other, or from pivots, for a crank and an arm of the coupler."""
+    """Positions too far from each other for the arms of a coupler, or, if they are to be met within
+    tolerances, from pivots for a crank and an arm.
+    """
     for j, one in enumerate(positions if math.isfinite(wanted.longest) else ()):
         others = [
             (("positions", k, "point"), (other.point,), 4 * wanted.longest + other.tolerance)
             for k, other in enumerate(positions[j + 1 :], start=j + 1)
         ]
-        pivots = [(*own, 2 * wanted.longest) for own in _pivots(wanted, given)]
+        pivots = [(*own, 2 * wanted.longest) for own in _pivots(wanted, given) if held]
         for key, corners, reach in (*others, *pivots):
             apart = _away(one.point, corners)
             if apart - one.tolerance > reach:

@@ -280,8 +280,9 @@ class Task:
         yield from length_contradictions(wanted, self._given_sides())
         yield from place_contradictions(wanted, self.given, self.positions)
         if self.kind != "improve" and not {*GUIDED} & {*self.mechanisms}:
+            held = not self.is_approximate or any(p.tolerance for p in self.positions)
             # farther places say the same
-            yield from islice(unreached_places(wanted, self.given, self.positions), 1)
+            yield from islice(unreached_places(wanted, self.given, self.positions, held), 1)
 
     def _given_sides(self) -> dict[str, float]:
         """The sides of a four-bar that are given, if the task makes no other loops."""
