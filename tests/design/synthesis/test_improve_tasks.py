@@ -154,7 +154,7 @@ def test_turning_fully_is_wished_of_mechanisms_of_all_kinds(
 
 
 def test_an_input_that_does_not_turn_fully_is_a_defect() -> None:
-    goal = {"of": "max(P.x)", "target": 1.2}
+    goal = {"of": "max(P.x)", "least": -1e6}
     task = lw.Task.improve("evans", goals=[goal], starts=1, wanted={"input": "turns fully"})
     (design,) = task.solve().designs
     assert design.defects[0].message.startswith("the input does not turn fully: ")
