@@ -85,12 +85,9 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     k = int(np.abs(turns - 1.0).argmax())
     if abs(turns[k] - 1.0) < _PARALLEL:
         if len(points) >= _MOST_PARALLEL:
-            raise _refused(
-                task,
-                "positions",
-                "all have the same angle: the body only translates, and two guides (a PP dyad) "
-                "carry it through any such poses; no dyad with a pivot is determined",
-            )
+            told = "all have the same angle: the body only translates, and two guides (a PP dyad) "
+            told += "carry it through any such poses; no dyad with a pivot is determined"
+            raise _refused(task, "positions", told)
         return
     if len(points) == 2 and points[0] != points[1]:
         return
@@ -98,12 +95,8 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
     size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
     if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size:
-        raise _refused(
-            task,
-            "positions",
-            f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
-            "carries the body, and no linkage is determined",
-        )
+        told = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
+        raise _refused(task, "positions", f"{told}carries the body, and no linkage is determined")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -292,14 +285,8 @@ def _check_on_curve(
         sampled = curve.points(np.linspace(0.0, np.pi, _CURVE_SAMPLES))
         sampled = np.concatenate([near, sampled.ravel()])
         best = origin + turn * sampled[np.nanargmin(np.abs(sampled - pivot))]
-        raise _refused(
-            task,
-            "given",
-            f"is not on the {name} curve of the four poses; the nearest point of it is about "
-            f"[{best.real:.6g}, {best.imag:.6g}]",
-            key,
-            k,
-        )
+        told = f"is not on the {name} curve of the four poses; the nearest point of it is about "
+        raise _refused(task, "given", f"{told}[{best.real:.6g}, {best.imag:.6g}]", key, k)
 
 
 def _refused(task: Task, table: str, message: str, *key: str | int) -> MechanismError:
