@@ -207,12 +207,9 @@ class FunctionGoal:
     def begun_at(self, inputs: float, outputs: float) -> FunctionGoal:
         """The function whose first point is at this input and output, with given start angles."""
         first, second = (float(values[0]) for values in self.points())
-        return replace(
-            self,
-            input=_moved(self.input, inputs - first),
-            output=_moved(self.output, outputs - second),
-            free=(),
-        )
+        (a, b), (c, d) = self.input or (0.0, 0.0), self.output or (0.0, 0.0)
+        u, v = inputs - first, outputs - second
+        return replace(self, input=(a + u, b + u), output=(c + v, d + v), free=())
 
     @property
     def freed(self) -> FunctionGoal:
@@ -298,10 +295,6 @@ class FunctionGoal:
     def _evaluated(self, x: float) -> float:
         # functions of x are those of mathematics: radians
         return value(self._tree, {_VARIABLE: float(x)}, AngleUnit.RADIAN, self.of)
-
-
-def _moved(ends: Pair | None, shift: float) -> Pair | None:
-    return ends and (ends[0] + shift, ends[1] + shift)
 
 
 def _within_half_a_turn(angle: str) -> str:

@@ -233,6 +233,8 @@ def _fitted(
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
     size, pivots = float(np.ptp(v)), task.given.fixed_pivots
+    if usual := has_usual_ratio(task):
+        wishes = replace(wishes, ratio=USUAL_RATIO)
     if not slides:
         size = math.dist(*pivots) if len(pivots) > 1 else 1.0
     fits = fit_functions(
@@ -242,7 +244,7 @@ def _fitted(
         slides=slides,
         minimax=goal.fit == "minimax",
         first=first,
-        held=partial(FunctionWishes, _in_proportion(task, wishes), u, size, slides),
+        held=partial(FunctionWishes, wishes, u, size, slides),
         progress=progress,
     )
     made: list[Candidates] = []
@@ -262,7 +264,7 @@ def _fitted(
         message += f", {int(fits.minimal.sum())} of them proved to be local minima"
     if not fits.closes.all():
         message += "; the loop of the best one hardly closes: it may be no local minimum"
-    if has_usual_ratio(task):
+    if usual:
         message += f"; lengths up to {USUAL_RATIO:g} times the shortest unless [wanted] bounds them"
     return replace(found, message=message, starts=len(x))
 
@@ -272,10 +274,6 @@ def has_usual_ratio(task: Task) -> bool:
     goal, wanted = task.function, task.wanted
     bounded = wanted.shortest > 0.0 or min(wanted.longest, wanted.ratio) < math.inf
     return goal is not None and bool(goal.fit and task.rank.size) and not bounded
-
-
-def _in_proportion(task: Task, wishes: Wishes) -> Wishes:
-    return replace(wishes, ratio=USUAL_RATIO) if has_usual_ratio(task) else wishes
 
 
 def _first_inputs(task: Task, u: Array) -> tuple[float, float]:
