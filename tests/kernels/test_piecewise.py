@@ -214,3 +214,15 @@ def test_any_shape_of_places_is_answered_in_that_shape() -> None:
         for part, flat in zip(law.jet(np.asarray(at)), law.jet(np.ravel(at)), strict=True):
             assert part.shape == shape
             np.testing.assert_array_equal(np.ravel(part), flat)
+
+
+@every
+def test_one_number_gives_what_arrays_give(name: str) -> None:
+    law = FUNCTIONS[name]
+    x = np.append(places(law, 7), [np.nan, np.inf, -np.inf])
+    with np.errstate(invalid="ignore"):
+        many = np.stack(law.jet(x), axis=1)
+    one = np.array([law.jet_at(at) for at in x.tolist()])
+    for own, all_own in zip(one.T, many.T, strict=True):
+        size = np.abs(all_own[np.isfinite(all_own)]).max()
+        np.testing.assert_allclose(own, all_own, rtol=1e-12, atol=1e-12 * size)

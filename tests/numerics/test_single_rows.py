@@ -21,10 +21,12 @@ from linkwork.numerics.rows import SolvedRows
 from linkwork.numerics.single_rows import SingleRows
 
 #: Dyads, coupled loops, sliding lengths, gears and belts.
-MECHANISMS = [
+_LOOPS_AND_LINES = [
     "four-bar", "crank-shaper", "whitworth", "rapier-drive", "double-butterfly", "geared-five-bar",
     "belt-drive", "oldham-coupling", "jansen-leg",
 ]  # fmt: skip
+_LAWS = ["garage-door", "curved-slot", "cam-swinging-follower", "oval-gears"]
+MECHANISMS = [*_LOOPS_AND_LINES, *_LAWS]
 
 
 class _Arrays(BlockSolver):
@@ -115,6 +117,21 @@ def test_proofs_are_those_of_arrays(name: str) -> None:
     assert held > 4
 
 
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_bounds_of_bending_and_rounding_are_those_of_arrays(name: str) -> None:
+    arrays, numbers, start = _both(name)
+    rng = np.random.default_rng(5)
+    for block, single in zip(arrays.blocks, numbers.singles, strict=True):
+        for row in start[:12, block.variables]:
+            matrix = rng.normal(size=(single.n, len(block.system.equation_scale)))
+            many = block.system.curvature(row[None, :], matrix[None])
+            one = single.one.curvature(row.tolist(), matrix.tolist())
+            for column in ("phase", "slide", "rounding", "jacobian_rounding"):
+                x, y = getattr(many, column)[0], np.array(getattr(one, column)).reshape(-1)
+                # bounds of rounding are as small as 1e-17
+                np.testing.assert_allclose(y, x.ravel(), rtol=1e-9, atol=1e-25)
+
+
 def test_inputs_may_move_at_rates_of_their_own() -> None:
     arrays, numbers, start = _both("geared-five-bar")
     v = arrays.solve(start[:5]).v
@@ -172,7 +189,7 @@ def test_small_systems_are_solved_as_by_lapack(n: int) -> None:
 _EXACT = platform.machine().lower() in {"x86_64", "amd64"}
 
 
-@pytest.mark.parametrize("name", [*MECHANISMS, "dixon-two", "three-rpr"])
+@pytest.mark.parametrize("name", [*_LOOPS_AND_LINES, "dixon-two", "three-rpr"])
 def test_compiled_rows_are_those_of_plain_numbers(name: str) -> None:
     arrays, numbers, start = _both(name)
     plain = SingleRows(numbers.singles, None)
@@ -231,3 +248,13 @@ def test_rows_are_compiled_when_that_pays(monkeypatch: pytest.MonkeyPatch) -> No
     assert quick_rows.quick_rows(blocks, 300_000) is not None
     monkeypatch.setattr(quick_rows, "find_spec", lambda name: None)
     assert quick_rows.quick_rows(blocks, 300_000) is None
+
+
+def test_rows_with_laws_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(quick_rows, "is_loaded", lambda loop: True)
+    served = [
+        name
+        for name in MECHANISMS
+        if quick_rows.quick_rows(lw.example(name).model.compiled.solver.singles, 16) is not None
+    ]
+    assert served == _LOOPS_AND_LINES

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -40,6 +42,21 @@ class LawRow:
     def moved(self, new_index: dict[int, int]) -> LawRow:
         """The same row over renumbered variables."""
         return replace(self, variables=tuple(new_index[k] for k in self.variables))
+
+    @cached_property
+    def terms(self) -> list[tuple[int, float, float]]:
+        """Every variable with its weight and inner weight."""
+        parts = self.weights.tolist(), self.inner.tolist()
+        return list(zip(self.variables, *parts, strict=True))
+
+    def jet_at(self, v: Sequence[float]) -> tuple[float, float, float]:
+        """The row's value at one position v (N,), and both derivatives of the law there."""
+        straight, argument = self.constant, self.offset
+        for k, a, w in self.terms:
+            straight += a * v[k]
+            argument += w * v[k]
+        value, slope, bend = self.law.jet_at(argument)
+        return straight - value, slope, bend
 
     def _argument(self, v: Array) -> Array:
         argument: Array = v[:, list(self.variables)] @ self.inner + self.offset

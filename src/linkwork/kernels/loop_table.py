@@ -19,6 +19,7 @@ from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import FunctionRow, LinearRows
+from linkwork.kernels.single_laws import SingleWithLaws
 from linkwork.kernels.single_position import SinglePosition
 
 __all__ = ["LoopTable", "TableSplitter"]
@@ -165,9 +166,12 @@ class LoopTable:
         return all(abs(sum(each)) <= TURN_ROUNDING * np.abs(each).sum() for each in added)
 
     @cached_property
-    def single(self) -> SinglePosition | None:
-        """The equations at one position at a time; ``None`` with function rows."""
-        return None if self.functions else SinglePosition(self._groups, self.linear, self.unknowns)
+    def single(self) -> SinglePosition | SingleWithLaws | None:
+        """The equations at one position at a time; ``None`` with rows of any formula."""
+        if not self.has_curvature_bound:
+            return None
+        own = SinglePosition(self._groups, self.linear, self.unknowns)
+        return SingleWithLaws(own, self._bounded, self.curvature) if self.functions else own
 
     @property
     def straight_parts(self) -> Array:

@@ -8,9 +8,10 @@ period, or continues as a straight line beyond its ends.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import comb
+from math import comb, cos, sin
 
 import numpy as np
 
@@ -110,6 +111,29 @@ class Piecewise:
         value = value + sine + first * beyond
         second = np.where(beyond == 0.0, second - w**2 * sine, 0.0)
         return value.reshape(shape), first.reshape(shape), second.reshape(shape)
+
+    @cached_property
+    def _lists(self) -> tuple[list[float], list[list[float]], list[list[float]]]:
+        """Breaks, powers from the highest on, and sines."""
+        return self.breaks.tolist(), self.powers[:, ::-1].tolist(), self.sines.tolist()
+
+    def jet_at(self, x: float) -> tuple[float, float, float]:
+        """:meth:`jet` at one number."""
+        breaks, powers, sines = self._lists
+        low, high = breaks[0], breaks[-1]
+        inside = low + (x - low) % (high - low) if self.periodic else min(max(x, low), high)
+        beyond = 0.0 if self.periodic else x - inside
+        piece = min(max(bisect_right(breaks, inside) - 1, 0), len(powers) - 1)
+        t = inside - breaks[piece]
+        value = first = second = 0.0
+        for c in powers[piece]:
+            second = second * t + 2.0 * first
+            first = first * t + value
+            value = value * t + c
+        a, w, p = sines[piece]
+        sine, cosine = a * sin(w * t + p), a * w * cos(w * t + p)
+        first += cosine
+        return value + sine + first * beyond, first, 0.0 if beyond else second - w * w * sine
 
     def __call__(self, x: Array) -> Array:
         """The value at any x."""

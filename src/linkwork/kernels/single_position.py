@@ -40,6 +40,8 @@ class SinglePosition:
     ``work``: of one evaluation, about the number of products.
     """
 
+    has_laws = False
+
     def __init__(self, groups: PhaseGroups, lines: LinearRows, unknowns: int) -> None:
         loops = groups.rows
         self.unknowns, self.variables, self.loops = unknowns, loops.variables, loops.rows

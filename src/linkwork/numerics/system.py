@@ -86,6 +86,10 @@ class SingleSystem(Protocol):
         """L, each of two equations."""
 
     @property
+    def loop_phases(self) -> int:
+        """How many of the phases belong to loops; each later one belongs to one sum."""
+
+    @property
     def phases(self) -> Sequence[Sequence[tuple[int, float]]]:
         """Variables and weights of the G phases."""
 
@@ -100,6 +104,10 @@ class SingleSystem(Protocol):
     @property
     def lines(self) -> Sequence[tuple[float, Sequence[tuple[int, float]]]]:
         """The constant, and variables with weights, of linear rows."""
+
+    @property
+    def has_laws(self) -> bool:
+        """Whether other rows follow."""
 
     @property
     def pairs(self) -> Sequence[tuple[int, int]]:
@@ -142,7 +150,7 @@ class QuickRows(Protocol):
 
 
 class SingleCurvature(Protocol):
-    """As :class:`Curvature` at one position, every phase one of loops."""
+    """As :class:`Curvature` at one position."""
 
     @property
     def phase(self) -> list[list[float]]:

@@ -38,6 +38,10 @@ class Terms(Protocol):
     def lines(self) -> Sequence[tuple[float, Sequence[tuple[int, float]]]]:
         """The constant, and variables with weights, of linear rows."""
 
+    @property
+    def has_laws(self) -> bool:
+        """Whether other rows follow, which compiled code does not know."""
+
 
 class PackedBlock(Protocol):
     """A block with n unknowns.

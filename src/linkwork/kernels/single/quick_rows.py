@@ -46,13 +46,16 @@ class QuickRows:
 
 
 def quick_rows(blocks: Sequence[PackedBlock], rows: int) -> QuickRows | None:
-    """Blocks in compiled code, if that pays after as many rows as a process has solved by now.
+    """Blocks in compiled code, if that pays after as many rows as a process has solved by now, and
+    no block has laws.
 
     Parameters
     ----------
     rows : int
         Rows of these blocks that have been solved since the last call.
     """
+    if any(block.one.has_laws for block in blocks):
+        return None
     if not is_loaded(SINGLE_LOOP):
         _WORK[""] += rows * len(blocks)
         work = _WORK[""]

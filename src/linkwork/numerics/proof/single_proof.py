@@ -156,7 +156,10 @@ class SingleMajorant:
         turned = self.turned
         slide = [spread * turn for _, _, spread, turn in self.pairs]
         by_slope = [*[0.5 * turn * turn for turn in turned], *slide]
-        whole = [*turned, *[spread for _, _, spread, _ in self.pairs]]
+        # a law's phase is a second derivative, no bound of the change itself
+        first = at.one.loop_phases
+        laws = [0.5 * turn * turn for turn in turned[first:]]
+        whole = [*turned[:first], *laws, *[spread for _, _, spread, _ in self.pairs]]
         found = []
         for y, bent, slope, lines in zip(at.residual, self.bent, at.slope, at.lines, strict=True):
             low = dot(slope, known) + dot(bent, by_slope)
