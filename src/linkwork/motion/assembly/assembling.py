@@ -106,7 +106,7 @@ class _Assembly:
         self.slides = turned_slides(model)
 
     def run(self) -> Assemblies:
-        """Solve every block for every row."""
+        """Solve every block for every row on which redundant links fit so far."""
         for block in self.solver.blocks:
             if not len(self.v):
                 break
@@ -115,11 +115,11 @@ class _Assembly:
             except NoDirectionForm as reason:
                 self._give_up(f"the equations of {', '.join(self._names(block))} {reason}")
                 break
+            self._keep(misfit(self.model.equations, self.v) <= FITS)  # unsolved: given values
             if len(self.v) > _LARGEST:
                 self._give_up(f"there are more than {_LARGEST} of them")
                 break
         if self.model.equations.redundant:
-            self._keep(misfit(self.model.equations, self.v) <= FITS)
             self.notes.append("positions that do not fit a redundant link are left out")
         theorems = self.theorems if self.completeness.complete else []
         notes = [self.completeness.value, *theorems, *self.notes]
