@@ -17,6 +17,7 @@ from linkwork.kernels.single_position import SingleCurvature, SinglePosition
 __all__ = ["SingleWithLaws"]
 
 Row = list[float]
+_Bounds = Callable[[Array, Array], Curvature]
 _WORK = 12  # products of one law
 
 
@@ -28,12 +29,7 @@ class SingleWithLaws:
 
     has_laws = True
 
-    def __init__(
-        self,
-        rest: SinglePosition,
-        laws: Sequence[LawRow],
-        curvature: Callable[[Array, Array], Curvature],
-    ) -> None:
+    def __init__(self, rest: SinglePosition, laws: Sequence[LawRow], curvature: _Bounds) -> None:
         self.rest, self.laws, self._curvature = rest, laws, curvature
         self.unknowns, self.variables = rest.unknowns, rest.variables
         self.loop_rows, self.loop_phases, self.pairs = rest.loop_rows, rest.loop_phases, rest.pairs
@@ -63,10 +59,8 @@ class SingleWithLaws:
 
     def second_directional_derivative(self, v: Sequence[float], d: Sequence[float]) -> Row:
         """D²F[d, d], (m,)."""
-        bends = []
-        for law in self.laws:
-            turned = sum([w * d[k] for k, _, w in law.terms])
-            bends.append(-law.jet_at(v)[2] * turned * turned)
+        turned = [sum([w * d[k] for k, _, w in law.terms]) for law in self.laws]
+        bends = [-law.jet_at(v)[2] * x * x for law, x in zip(self.laws, turned, strict=True)]
         return self.rest.second_directional_derivative(v, d) + bends
 
     def curvature(self, v: Sequence[float], matrix: Sequence[Row]) -> SingleCurvature:

@@ -18,6 +18,7 @@ from linkwork.numerics.continuation.branch_tracking import (
     interpolate,
     rows_on_track,
 )
+from linkwork.numerics.continuation.change_point import Crossing
 from linkwork.numerics.continuation.crossed_step import cut_at_crossing
 from linkwork.numerics.continuation.curve_proof import ProvenCurve, prove_curve, same_solution
 from linkwork.numerics.continuation.curve_tracing import (
@@ -75,13 +76,15 @@ def trace_boldly(
     certify: bool,
     *,
     prove_turns: bool = True,
+    known: Sequence[Crossing] | None = None,
 ) -> TracedCurve:
     """A curve whose proof is still to be made; with careful steps if there will be none.
 
-    ``prove_turns``: whether to prove where its dead points are.
+    ``prove_turns``: whether to prove where its dead points are. ``known``: change points that it
+    may end at.
     """
     bold = certify and _provable(leads)
-    curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL)
+    curve = trace(leads, start, heading, CurveOptions() if bold else _CAREFUL, known)
     turns = turning_points(leads, curve, prove=prove_turns)
     return TracedCurve(curve=curve, proof=None, turns=tuple(turns))
 
@@ -204,7 +207,7 @@ def branches_of(
     crossing = found.curve.crossing
     if crossing is not None and found.curve.legs:
         led = found.curve.legs[-1].led
-        pieces[-1].append(_limit(led.whole(crossing.v), led, LimitKind.CHANGE_POINT))
+        pieces[-1].append(_limit(crossing.v, led, LimitKind.CHANGE_POINT))
     begins: list[TurningPoint | None] = [None, *ends]
     finishes: list[TurningPoint | None] = [*ends, None]
     branches = [

@@ -18,13 +18,14 @@ from linkwork.foundation.status import Status
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.curve_branches import CurveBranch, TracedCurve, branches_of
 from linkwork.motion.redundancy import FITS, misfit
-from linkwork.numerics.continuation.change_point import ChangePoint, Crossing
+from linkwork.numerics.continuation.change_point import Crossing
+from linkwork.numerics.continuation.curve_crossing import tangents_apart
 from linkwork.numerics.continuation.local_parametrization import (
-    Parametrization,
     Parametrizations,
     apart,
     coincide,
     fastest_leader,
+    near,
     same_position,
 )
 
@@ -115,7 +116,8 @@ class Explorer:
     def known_arc(self, seed: Array) -> int | None:
         """The number of the arc through a position, if that is followed already."""
         # positions that walks have passed at the starting value: the cheapest test comes first
-        for v, number in self._passed:
+        for k in near(self.leads, [v for v, _ in self._passed], seed):
+            v, number = self._passed[k]
             if same_position(self.leads, v, seed):
                 return number
         for number, arc in enumerate(self.arcs):
@@ -124,13 +126,16 @@ class Explorer:
         return None
 
     def branch_off(self, number: int) -> bool:
-        """Follow a half-branch of a crossing that no arc came along; false if none is left."""
+        """Follow a half-branch of a crossing that no arc came along and on which redundant links
+        fit; false if none is left.
+        """
         crossing = self.crossings[number]
         for k, sign in self.half_branches(number):
             self._covered.add((number, k, sign))
-            direction, other = sign * crossing.directions[k], crossing.directions[1 - k]
-            beyond = _beyond(self.leads, crossing.v, direction, other)
-            if beyond is not None:
+            direction = sign * crossing.directions[k]
+            beyond = _beyond(self.leads, crossing, direction)
+            # an arc along which redundant links do not fit leads nowhere: nothing moves along it
+            if beyond is not None and self._fit_at(beyond[None, :]):
                 self._explore(beyond, direction)
                 return True
         return False
@@ -142,9 +147,11 @@ class Explorer:
 
     def fits(self, arc: Arc) -> bool:
         """Whether redundant links fit all along an arc."""
-        equations = self.walks.drive.model.equations
-        legs = (leg for walk in arc.walks for leg in walk.curve.legs)
-        return all((misfit(equations, leg.v) <= FITS).all() for leg in legs)
+        return all(self._fit_at(leg.v) for walk in arc.walks for leg in walk.curve.legs)
+
+    def _fit_at(self, v: Array) -> bool:
+        """Whether redundant links fit at all of some positions (K, N)."""
+        return bool((misfit(self.walks.drive.model.equations, v) <= FITS).all())
 
     def _explore(self, seed: Array, heading: float | Array) -> int:
         """Follow the curve through a seed both ways; the number of the arc."""
@@ -175,48 +182,28 @@ class Explorer:
 
     def _walk(self, start: Array, heading: float | Array) -> tuple[TracedCurve, int | None]:
         """A walk and the number of the crossing it ends at, if it does."""
-        walk = self.walks.walk(start, heading)
+        walk = self.walks.walk(start, heading, self.crossings)
         found = walk.curve.crossing
         if found is None or not walk.curve.legs:
             return walk, None
         led, node = walk.curve.last
         first = walk.curve.legs[-1].nodes[0]
         side = math.copysign(1.0, node.t - first.t)
-        return walk, self._register(led, found, -side * led.whole(node.first))
+        return walk, self._register(found, -side * led.whole(node.first))
 
-    def _register(self, led: Parametrization, found: ChangePoint, came_from: Array) -> int:
-        v = led.whole(found.v)
-        directions = np.stack([led.whole(d) for d in found.directions])
+    def _register(self, found: Crossing, came_from: Array) -> int:
         number = next(
-            (k for k, known in enumerate(self.crossings) if coincide(self.leads, known.v, v)),
+            (k for k, one in enumerate(self.crossings) if coincide(self.leads, one.v, found.v)),
             len(self.crossings),
         )
         if number == len(self.crossings):
-            p = self.leads.parameter
-            width = 0.5 * (found.bracket[1] - found.bracket[0])
-            self.crossings.append(
-                Crossing(
-                    t=float(v[p]),
-                    v=v,
-                    directions=directions,
-                    bracket=(float(v[p]) - width, float(v[p]) + width),
-                    located=found.located,
-                )
-            )
-        scaled = came_from / self.leads.scale
+            self.crossings.append(found)
+        units = self.crossings[number].directions / self.leads.scale
         # directions are compared by their angle, not by their size
-        scaled = scaled / np.linalg.norm(scaled)
-        best = max(
-            ((k, sign) for k in (0, 1) for sign in (1.0, -1.0)),
-            # the half-branch that points back to where the walk came from
-            key=lambda which: (
-                which[1]
-                * float(
-                    scaled @ _unit(self.crossings[number].directions[which[0]] / self.leads.scale)
-                )
-            ),
-        )
-        self._covered.add((number, *best))
+        along = units @ (came_from / self.leads.scale) / np.linalg.norm(units, axis=1)
+        # the half-branch that points back to where the walk came from
+        k = int(np.abs(along).argmax())
+        self._covered.add((number, k, math.copysign(1.0, along[k])))
         return number
 
 
@@ -231,15 +218,10 @@ def _with_proofs(arc: Arc, walks: Walks) -> Arc:
     return replace(proved, branches=(*arc.branches[:1], *others))
 
 
-def _unit(direction: Array) -> Array:
-    unit: Array = direction / np.linalg.norm(direction)
-    return unit
-
-
-def _beyond(leads: Parametrizations, v: Array, direction: Array, other: Array) -> Array | None:
+def _beyond(leads: Parametrizations, crossing: Crossing, direction: Array) -> Array | None:
     """A position just beyond a crossing along a direction, clearly not on the other curve."""
-    speed = np.abs(direction) / leads.scale
-    gap = min(float(np.abs((direction - sign * other) / leads.scale).max()) for sign in (1.0, -1.0))
+    v, speed = crossing.v, np.abs(direction) / leads.scale
+    gap = tangents_apart(leads, crossing)
     leader = fastest_leader(leads, v, speed)
     lead = int(np.argmax(speed)) if leader is None else leader[0].lead
     led = leads.with_parameter(lead)

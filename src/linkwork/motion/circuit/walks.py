@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.motion.circuit.full_turn import full_turn
 from linkwork.motion.curve_branches import TracedCurve, confirmed, trace_boldly, trace_with_proof
 from linkwork.motion.drive import Drive
+from linkwork.numerics.continuation.change_point import Crossing
 from linkwork.numerics.continuation.curve_proof import prove_curve, prove_curves
 
 __all__ = ["Walks"]
@@ -33,8 +36,13 @@ class Walks:
         self._turned: dict[int, Array] = {}
         self._settled = not certify
 
-    def walk(self, start: Array, heading: float | Array) -> TracedCurve:
-        """The curve from a position (N,) on; its proof may still have to be made."""
+    def walk(
+        self, start: Array, heading: float | Array, known: Sequence[Crossing] = ()
+    ) -> TracedCurve:
+        """The curve from a position (N,) on; its proof may still have to be made.
+
+        ``known``: change points at which it may end, located again if dead points are proved.
+        """
         key = start.tobytes(), np.asarray(heading, dtype=float).tobytes()
         forwards = isinstance(heading, float) and heading > 0.0
         if key not in self._known and self.certify and forwards:
@@ -43,8 +51,9 @@ class Walks:
                 self._known[key] = turned
                 self._turned[id(turned.curve)] = start
         if key not in self._known:
+            ends = None if self.prove_turns else known
             found = trace_boldly(
-                self.leads, start, heading, self.certify, prove_turns=self.prove_turns
+                self.leads, start, heading, self.certify, prove_turns=self.prove_turns, known=ends
             )
             if self.certify and found.curve.legs:
                 if self._settled:

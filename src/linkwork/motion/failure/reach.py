@@ -228,6 +228,5 @@ def _edges(leads: ParametrizedTable, walk: TracedCurve) -> list[_Edge]:
     found += [_Edge(turn.t, "dead point", turn.bracket) for turn in walk.turns]
     crossing = walk.curve.crossing
     if crossing is not None:
-        led, _ = walk.curve.last
-        found.append(_Edge(float(led.whole(crossing.v)[p]), "change point"))
+        found.append(_Edge(crossing.t, "change point"))
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.rounding import EPSILON
 from linkwork.numerics.block_solver import BlockSolver
-from linkwork.numerics.continuation.branch_tracking import InputPath, Node
+from linkwork.numerics.continuation.branch_tracking import InputPath, Node, predict
 from linkwork.numerics.continuation.crossing_system import CrossingSystem, Equations, KnownJet
 from linkwork.numerics.joined_blocks import JoinedBlocks, closure_of
 from linkwork.numerics.system import System
@@ -20,6 +21,7 @@ __all__ = [
     "at_one_input",
     "crossing_near",
     "is_at",
+    "is_clear",
     "less_sharp",
     "locate_change_point",
     "locate_crossing",
@@ -30,6 +32,7 @@ __all__ = [
 _DRIVEN = 2e-13  # relative: how well a crossing is located if earlier blocks cross too
 _SHARES = 17  # steps in which rates are moved across a kink
 _FAR = 1e-3  # ratio of a block's singular values from which on it is far from a singular position
+_SINGULAR = 1e-8  # ratio up to which it is singular, to rounding
 _UNFOLDED = 1e-13  # |β| beyond which the branches pass each other without touching
 
 
@@ -56,13 +59,25 @@ class ChangePoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A change point: parameter with bracket, position (N,), directions of both curves (2, N)."""
+    """A change point: parameter with bracket, position (N,), directions of both curves (2, N).
+
+    ``clear``: whether other blocks are far from singular positions, or at one, too.
+    """
 
     t: float
     v: Array
     directions: Array
     bracket: tuple[float, float]
     located: bool
+    clear: bool = False
+
+
+def is_clear(solver: BlockSolver, point: ChangePoint) -> bool:
+    """Whether no block becomes singular next to a change point but not there, and none before its
+    own in solving order.
+    """
+    near = {k: ratio for k, ratio in enumerate(_ratios(solver, point.v)) if ratio <= _FAR}
+    return min(near, default=-1) == point.block and max(near.values()) <= _SINGULAR
 
 
 def locate_change_point(
@@ -86,7 +101,9 @@ def locate_change_point(
     """
     inputs = solver.variable_scale[solver.unknowns :]
     near = 1e-3 * float(np.min(inputs[path.rate != 0.0] / np.abs(path.rate[path.rate != 0.0])))
-    for block in nearly_singular(solver, last.v):
+    for block, ratio in enumerate(_ratios(solver, last.v)):
+        if ratio > _FAR:
+            continue
         system = JoinedBlocks(solver, closure_of(solver, block))
         mine = system.order[: system.unknowns]
         known = KnownJet.along(path)
@@ -96,7 +113,7 @@ def locate_change_point(
             continue
         if not abs(found.t - last.t) <= near / _drive(solver, path, block, last):
             continue
-        v = last.v + (found.t - last.t) * last.first
+        v = predict(last, found.t)
         v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
         return _place_point(solver, path.rate, block, mine, v, found)
     return None
@@ -305,24 +322,18 @@ def _place_in_whole(solver: BlockSolver, where: IndexArray, values: Array) -> Ar
 
 def most_singular(solver: BlockSolver, v: Array) -> int | None:
     """The block nearest to a singular position; ``None`` if all are far from it at v (N,)."""
-    ratios = _ratios(solver, v)
+    ratios = [*_ratios(solver, v)]
     if not ratios or min(ratios) > _FAR:
         return None
     return int(np.argmin(ratios))
 
 
-def nearly_singular(solver: BlockSolver, v: Array) -> list[int]:
-    """The blocks that are near a singular position at v (N,), in solving order."""
-    return [k for k, ratio in enumerate(_ratios(solver, v)) if ratio <= _FAR]
-
-
-def _ratios(solver: BlockSolver, v: Array) -> list[float]:
+def _ratios(solver: BlockSolver, v: Array) -> Iterator[float]:
     """The smallest singular value of every block, relative to its largest.
 
     Columns of J are divided by their sizes near by: those of lengths that differ much are no sign
     of a singular position, one that is about to vanish is.
     """
-    ratios = []
     for block in solver.blocks:
         n = len(block.unknowns)
         system, here = block.system, v[block.variables]
@@ -333,8 +344,7 @@ def _ratios(solver: BlockSolver, v: Array) -> list[float]:
         )
         scaled = j / system.equation_scale[:, None] / np.where(sizes > 0.0, sizes, 1.0)
         values = np.linalg.svd(scaled, compute_uv=False)
-        ratios.append(float(values[-1] / values[0]) if values[0] > 0 else 0.0)
-    return ratios
+        yield float(values[-1] / values[0]) if values[0] > 0 else 0.0
 
 
 def _near(system: System, v: Array) -> Array:
@@ -342,12 +352,10 @@ def _near(system: System, v: Array) -> Array:
     n, count = len(system.equation_scale), len(v)
     i, j = (index.ravel() for index in np.indices((n, count)))
     column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
-    lanes = np.repeat(v[None, :], n * count, axis=0)
-    # eq. (5)
-    mixed = 0.25 * (
-        system.second_directional_derivative(lanes, column + step)
-        - system.second_directional_derivative(lanes, column - step)
-    )
+    lanes = np.repeat(v[None, :], 2 * n * count, axis=0)
+    both = np.concatenate([column + step, column - step])
+    along = system.second_directional_derivative(lanes, both)
+    mixed = 0.25 * (along[: n * count] - along[n * count :])  # eq. (5)
     changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
     largest: Array = changes.max(axis=1)
     return largest

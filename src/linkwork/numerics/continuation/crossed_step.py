@@ -14,7 +14,7 @@ import numpy as np
 
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.numerics.continuation.branch_tracking import BOLD, Node, follow
-from linkwork.numerics.continuation.change_point import locate_change_point
+from linkwork.numerics.continuation.curve_crossing import crossing_beyond
 from linkwork.numerics.continuation.curve_tracing import Curve, Leg
 from linkwork.numerics.continuation.local_parametrization import Parametrization, Parametrizations
 from linkwork.numerics.continuation.step_division import node_between
@@ -50,10 +50,10 @@ def cut_at_crossing(leads: Parametrizations, curve: Curve, number: int, after: i
         if led is None or not speed[lead] > 0.0:
             continue
         here, side = led.node(v), math.copysign(1.0, heading[lead])
-        found = locate_change_point(led.solver, led.path, here, side)
+        found = crossing_beyond(leads, led, here, side)
         if found is None:
             continue
-        nodes, end = follow(led.solver, led.path, here, 0.5 * (here.t + found.t), BOLD)
+        nodes, end = follow(led.solver, led.path, here, 0.5 * (here.t + float(found.v[lead])), BOLD)
         if end is not None or not nodes:
             continue
         return Curve(

@@ -85,16 +85,13 @@ class CrossingSystem:
     def bend(self, x: Array, t: float, w: Array) -> Array:
         """wᵀD²F over all pairs of scaled unit steps, (n + 1, n + 1)."""
         size = self.n + 1
-        i, j = (index.ravel() for index in np.indices((size, size)))
+        i, j = np.triu_indices(size)
         v, basis, second = self._at(x, t)
-        lanes = np.repeat(v, size * size, axis=0)
-        a, b = basis[i], basis[j]
-        # eq. (5)
-        values = 0.25 * (
-            self.system.second_directional_derivative(lanes, a + b)
-            - self.system.second_directional_derivative(lanes, a - b)
-        )
-        matrix: Array = (values / self.scale @ w).reshape(size, size)
+        lanes = np.repeat(v, 2 * len(i), axis=0)
+        both = np.concatenate([basis[i] + basis[j], basis[i] - basis[j]])
+        along = self.system.second_directional_derivative(lanes, both) / self.scale @ w
+        matrix = np.zeros((size, size))
+        matrix[i, j] = matrix[j, i] = 0.25 * (along[: len(i)] - along[len(i) :])  # eq. (5)
         if second.any():  # known variables that do not move at a constant rate
             slope = self.system.jacobian(v)[0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))

@@ -8,8 +8,8 @@ the same means as a sweep; only a crossing of curves stops it.
 
 from __future__ import annotations
 
-import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -17,10 +17,9 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
-from linkwork.foundation.rounding import EPSILON, LARGEST_POLISH
-from linkwork.foundation.status import CONVERGED
 from linkwork.numerics.continuation.branch_tracking import BOLD, End, Node, TrackOptions, follow
-from linkwork.numerics.continuation.change_point import ChangePoint, locate_change_point
+from linkwork.numerics.continuation.change_point import Crossing
+from linkwork.numerics.continuation.curve_crossing import CrossingsAhead, crossing_beyond
 from linkwork.numerics.continuation.local_parametrization import (
     Parametrization,
     Parametrizations,
@@ -28,11 +27,10 @@ from linkwork.numerics.continuation.local_parametrization import (
     same_position,
 )
 from linkwork.numerics.continuation.proved_tracking import follow_with_proof
-from linkwork.numerics.continuation.step_division import node_between, one_way, share_at
+from linkwork.numerics.continuation.starting_value import Pass, StartingValue
 
 __all__ = ["Curve", "CurveOptions", "Leg", "trace"]
 
-_ON_PLANE = 1e-11  # a value of the parameter this near, relative, is reached
 _APART = 0.3  # of the largest condition of ordinary steps: where these go on behind proved ones
 _MOST_PROVED = 4  # legs of proved steps past one place
 _MOST_NODES = 120  # of such a leg: more do not lead past
@@ -88,13 +86,13 @@ class Curve:
 
     ``passes``: the positions (N,) at which the parameter passed its starting value modulo
     whole turns, each with the number of the leg that it ends. ``crossing``: the change point that
-    it ends at, as the last leg's leader sees it.
+    it ends at.
     """
 
     legs: tuple[Leg, ...]
     end: CircuitEnd
     passes: tuple[tuple[int, Array], ...]
-    crossing: ChangePoint | None = None
+    crossing: Crossing | None = None
 
     @property
     def last(self) -> tuple[Parametrization, Node]:
@@ -108,6 +106,7 @@ def trace(
     start: Array,
     heading: float | Array,
     options: CurveOptions | None = None,
+    known: Sequence[Crossing] | None = None,
 ) -> Curve:
     """Follow the curve through a position until it closes or ends.
 
@@ -118,47 +117,44 @@ def trace(
     heading : float or (N,)
         How the variables move at first, in direction; +1 for a growing parameter, -1 for a falling
         one.
+    known : sequence of Crossing, optional
+        Change points that need not be located again if the curve comes to one. By default all are
+        approached as far as rounding allows and located.
     """
     if isinstance(heading, float):
         side, heading = heading, np.zeros(len(start))
         heading[leads.parameter] = side
-    return _Tracer(leads, start, heading, options or CurveOptions()).run()
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Pass:
-    """A piece of a step in which the parameter is monotonic and passes a value."""
-
-    value: float
-    low: Node
-    high: Node
+    return _Tracer(leads, start, heading, options or CurveOptions(), known).run()
 
 
 class _Tracer:
     """The state of one trace: the position reached and the direction of travel."""
 
     def __init__(
-        self, leads: Parametrizations, start: Array, heading: Array, options: CurveOptions
+        self,
+        leads: Parametrizations,
+        start: Array,
+        heading: Array,
+        options: CurveOptions,
+        known: Sequence[Crossing] | None,
     ) -> None:
         self.leads, self.start, self.options = leads, start, options
         self.here, self.heading = start, heading
-        self.crossing: ChangePoint | None = None
+        self.crossing: Crossing | None = None
+        self.ahead = None if known is None else CrossingsAhead(leads, known)
         self.legs: list[Leg] = []
         self.passes: list[tuple[int, Array]] = []
         self.proved_legs = 0
         # the starting value, on which the curve is now: it does not count as passed again at once
         self.leaving: float | None = float(start[leads.parameter])
-        own = self._own()
+        own = leads.with_parameter(leads.parameter)
         if own is None:
             raise ValueError("the parameter of a curve must determine the position")
-        self.own = own
+        self.home = StartingValue(leads, own, start)
         if np.count_nonzero(heading) == 1 and heading[leads.parameter]:
             rates = own.whole(own.node(start).first)
             if np.isfinite(rates).all():
                 self.heading = heading[leads.parameter] * rates
-
-    def _own(self) -> Parametrization | None:
-        return self.leads.with_parameter(self.leads.parameter)
 
     def run(self) -> Curve:
         """Leg after leg."""
@@ -175,9 +171,10 @@ class _Tracer:
                 self.legs.append(leg)
                 self._arrive(leg)
             if end is not None:
-                self.crossing = _crossing_ahead(leg)
-                if self.crossing is not None:
-                    return self._end_trace(CircuitEnd.CHANGE_POINT)
+                self.crossing = self._crossing_beyond(leg)
+            if self.crossing is not None:
+                return self._end_trace(CircuitEnd.CHANGE_POINT)
+            if end is not None:
                 # another leader may pass where this one could not; if it cannot, J is singular
                 stuck = 0 if moved else stuck + 1
                 avoid = led.lead
@@ -185,7 +182,7 @@ class _Tracer:
                     continue
                 if not self._passes_with_proof():
                     return self._end_trace(CircuitEnd.SINGULAR)
-            stuck, avoid = 0, None
+            stuck, avoid = 0, None if self.ahead is None else self.ahead.take_avoided()
             ending = self._ending()
             if ending is not None:
                 return self._end_trace(ending)
@@ -251,7 +248,7 @@ class _Tracer:
         sign = math.copysign(1.0, self.heading[led.lead])
         weights = scale[led.order]
         own = led.lead == parameter
-        passed: list[_Pass] = []
+        passed: list[Pass] = []
 
         def done(before: Node, after: Node) -> bool:
             if prove and after.nearness < min(regular, before.nearness):
@@ -259,8 +256,12 @@ class _Tracer:
             speed = np.abs(after.first) / weights
             if not own:
                 leaving = self.leaving if before is node else None
-                passed.extend(self._passes(led, before, after, leaving))
+                passed.extend(self.home.passes(led, before, after, leaving))
                 if passed or speed[place] * opt.slow >= speed.max():
+                    return True
+            if self.ahead is not None and not prove:
+                self.crossing = self.ahead.next_of(led, after, sign, self.home)
+                if self.crossing is not None or self.ahead.avoided is not None:
                     return True
             if bool((np.abs(after.v / weights)[~self.leads.is_angle[led.order]] > opt.far).any()):
                 return True
@@ -272,7 +273,7 @@ class _Tracer:
             size = max(size, abs(node.t) / _LEG)
         goal = node.t + sign * _LEG * size
         if own:
-            goal = self._next_plane(node.t, sign, self.leaving)
+            goal = self.home.next_to(node.t, sign, self.leaving)
         path = replace(led.path, size=size)
         end: End | None = None
         if prove:
@@ -283,89 +284,21 @@ class _Tracer:
         if nodes:
             self.leaving = None
         if passed:
-            crossing = self._crossing(led, passed[0])
+            crossing = self.home.node(led, passed[0])
             if crossing is not None:
-                chain[-1], self.leaving = crossing, passed[0].value
+                chain[-1], self.leaving = crossing, passed[0][0]
                 self.passes.append((len(self.legs), led.whole(crossing.v)))
         elif own and nodes and nodes[-1].t == goal:
             self.leaving = goal
             self.passes.append((len(self.legs), led.whole(nodes[-1].v)))
         return Leg(led=led, nodes=tuple(chain)), end
 
-    @property
-    def _period(self) -> float:
-        return 2.0 * np.pi if self.leads.is_angle[self.leads.parameter] else np.inf
-
-    def _next_plane(self, t: float, sign: float, leaving: float | None) -> float:
-        """The next value of the parameter that equals the starting one, modulo whole turns.
-
-        ``leaving``: one of them that does not count.
-        """
-        home, period = float(self.start[self.leads.parameter]), self._period
-        if not np.isfinite(period):
-            if (home - t) * sign > 0.0 and home != leaving:
-                return home
-            return t + sign * 1e3 * float(self.leads.scale[self.leads.parameter])
-        turns = (t - home) / period
-        # rounding may give the value that the curve is just leaving: the loop below steps on
-        number = math.floor(turns) + 1 if sign > 0 else math.ceil(turns) - 1
-        while (home + number * period - t) * sign <= 0.0 or home + number * period == leaving:
-            number += int(sign)
-        return home + number * period
-
-    def _passes(
-        self, led: Parametrization, before: Node, after: Node, leaving: float | None
-    ) -> list[_Pass]:
-        """The first pass of the starting value (modulo whole turns) between two nodes, if any."""
-        place = led.place(self.leads.parameter)
-        for low, high in itertools.pairwise(one_way(led, place, before, after)):
-            t0, t1 = float(low.v[place]), float(high.v[place])
-            if t0 != t1:
-                value = self._next_plane(t0, math.copysign(1.0, t1 - t0), leaving)
-                if (value - t0) * (value - t1) <= 0.0:
-                    return [_Pass(value=value, low=low, high=high)]
-            leaving = None
-        return []
-
-    def _crossing(self, led: Parametrization, passed: _Pass) -> Node | None:
-        """The position in a piece of a step at which the parameter has the value, to rounding.
-
-        The piece is narrowed down at true positions: over a long step interpolation is not good
-        enough close to a dead point, where the value is passed twice.
-        """
-        place = led.place(self.leads.parameter)
-        value, low, high = passed.value, passed.low, passed.high
-        best: Node | None = None
-        off = _ON_PLANE * max(1.0, abs(value))
-        for _ in range(60):
-            here = node_between(led, low, high, share_at(place, low, high, value))
-            if here is None or here.t in (low.t, high.t):
-                break
-            gap = abs(float(here.v[place]) - value)
-            if gap <= off:
-                best, off = here, gap
-            if gap <= 2.0 * EPSILON * max(1.0, abs(value)):
-                break
-            if (here.v[place] < value) == (low.v[place] < value):
-                low = here
-            else:
-                high = here
-        if best is None and abs(float(high.v[place]) - value) <= off:
-            best = high
-        return None if best is None else self._polish(led, best, value)
-
-    def _polish(self, led: Parametrization, here: Node, value: float) -> Node:
-        """The position with exactly the value, if the parameter determines it well enough."""
-        own = self.own
-        near = led.whole(here.v)
-        side = own.node(near).orientation
-        near[self.leads.parameter] = value
-        found = own.solver.solve(near[own.order][None, :])
-        v = own.whole(found.v[0])
-        same = np.abs((v - near) / self.leads.scale).max() < LARGEST_POLISH
-        # close to a dead point the correction may jump to the other branch
-        same = same and np.array_equal(own.node(v).orientation, side)
-        return led.node(v) if found.status[0] == CONVERGED and same else here
+    def _crossing_beyond(self, leg: Leg) -> Crossing | None:
+        """The change point at which a leg could not go on."""
+        first, last = leg.nodes[0], leg.nodes[-1]
+        sides = (1.0, -1.0) if first is last else (math.copysign(1.0, last.t - first.t),)
+        found = (crossing_beyond(self.leads, leg.led, last, side) for side in sides)
+        return next((one for one in found if one is not None), None)
 
     def _ending(self) -> CircuitEnd | None:
         v, scale = self.here, self.leads.scale
@@ -378,13 +311,3 @@ class _Tracer:
         if abs(v - self.start)[self.leads.parameter] > self.options.most_turns * 2.0 * np.pi:
             return CircuitEnd.NEVER_CLOSES
         return None
-
-
-def _crossing_ahead(leg: Leg) -> ChangePoint | None:
-    """The change point at which a leg could not go on."""
-    first, last = leg.nodes[0], leg.nodes[-1]
-    for side in (1.0, -1.0) if first is last else (math.copysign(1.0, last.t - first.t),):
-        found = locate_change_point(leg.led.solver, leg.led.path, last, side)
-        if found is not None:
-            return found
-    return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -21,6 +22,7 @@ __all__ = [
     "apart",
     "coincide",
     "fastest_leader",
+    "near",
     "same_position",
     "whole_turns",
 ]
@@ -128,6 +130,16 @@ def coincide(leads: Parametrizations, a: Array, b: Array) -> bool:
     return bool(np.abs(apart(leads, a, b) / leads.scale).max() < _COINCIDE)
 
 
+def near(
+    leads: Parametrizations, places: Sequence[Array], v: Array, within: float = _NEAR
+) -> list[int]:
+    """The numbers of places (N,) that are near a position, modulo whole turns."""
+    if not places:
+        return []
+    gaps = np.abs(apart(leads, v, np.stack(places)) / leads.scale).max(axis=1)
+    return [int(k) for k in np.flatnonzero(gaps <= within)]
+
+
 def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | None = None) -> bool:
     """Whether two positions at one value of the parameter are one, modulo whole turns.
 
@@ -138,19 +150,20 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
     """
     turns, p = whole_turns(leads, a, b) if gained is None else gained, leads.parameter
     # the equations are the same whole turns away, but the numbers have to agree
-    near = np.stack([a, b - FULL_TURN * turns])
-    gap = np.abs(near[1] - near[0]) / leads.scale
-    rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
+    there = b - FULL_TURN * turns
+    gap = np.abs(there - a) / leads.scale
     own = leads.with_parameter(p)
     if own is None or gap.max() > _NEAR or gap[p] > _ON_VALUE or not leads.repeats_after(turns):
         return False
-    size = 1.0 + np.abs(near / leads.scale).max()
+    both = np.stack([a, there])
+    rounding = 8.0 * EPSILON * max(1.0, abs(float(a[p])), abs(float(b[p])))
+    size = 1.0 + np.abs(both / leads.scale).max()
     # equal numbers need no proof
     if gap.max() <= _ROUNDINGS * EPSILON * size:
         return True
     # both at exactly one value of the parameter, so that only one branch is compared with the other
-    near[:, p] = a[p]
-    done = own.solver.solve(near[:, own.order], sharp(own.solver.options))
+    both[:, p] = a[p]
+    done = own.solver.solve(both[:, own.order], sharp(own.solver.options))
     found = own.solver.sharpen(done.v)
     off = np.abs(found[1] - found[0])
     if own.provable:

@@ -14,7 +14,7 @@ from linkwork.numerics.continuation.branch_tracking import Node, follow, node_at
 from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.newton import sharp
 
-__all__ = ["divide_step", "node_between", "one_way", "share_at", "sign_change"]
+__all__ = ["divide_step", "hermite", "node_between", "one_way", "reach", "share_at", "sign_change"]
 
 _STILL = 8.0 * EPSILON  # relative: a variable that moves less over a step rests, to rounding
 _KEPT = 256  # divided steps of one leader
@@ -34,7 +34,7 @@ def node_between(
     by steps from the nearer end. ``to_rounding``: iterate down to rounding.
     """
     h = high.t - low.t
-    guess = _hermite(s, h, low.v, low.first, high.v, high.first)
+    guess = hermite(s, h, low.v, low.first, high.v, high.first)
     guess[-1] = low.t + s * h
     options = sharp(led.solver.options) if to_rounding else None
     found = led.solver.solve(guess[None, :], options)
@@ -51,13 +51,13 @@ def node_between(
 def share_at(place: int, low: Node, high: Node, value: float) -> float:
     """The fraction of a step at which the cubic through a variable has a value."""
     h = high.t - low.t
-    ends = (low.v[place], low.first[place], high.v[place], high.first[place])
+    ends = tuple(float(x[place]) for x in (low.v, low.first, high.v, high.first))
     # the cubic is monotonic in a divided step, so bisection finds the only place
     rising = ends[2] > ends[0]
     s0, s1 = 0.0, 1.0
     for _ in range(60):
         s = 0.5 * (s0 + s1)
-        if (_hermite(s, h, *ends) < value) == rising:
+        if (hermite(s, h, *ends) < value) == rising:
             s0 = s
         else:
             s1 = s
@@ -136,17 +136,32 @@ def divide_step(led: Parametrization, place: int, a: Node, b: Node) -> list[Node
 def _divide(led: Parametrization, place: int, a: Node, b: Node, depth: int) -> list[Node]:
     h = b.t - a.t
     ends = (a.first[place], a.second[place], b.first[place], b.second[place])
+    low, high = reach(h, *ends)
+    if low > 0.0 or high < 0.0:
+        return [a, b]
     middle = node_between(led, a, b, 0.5) if h and depth else None
     if middle is None:
         return [a, b]
     size = max(abs(ends[0]), abs(ends[2]), abs(middle.first[place]))
     if size * abs(h) <= _STILL * max(1.0, abs(float(a.v[place]))):
         return [a, b]
-    off = abs(float(middle.first[place]) - float(_hermite(0.5, h, *ends)))
+    off = abs(float(middle.first[place]) - float(hermite(0.5, h, *ends)))
     if _zero_once(_SAFE * off + 8.0 * EPSILON * size, h, *ends):
         return [a, b]
     left = _divide(led, place, a, middle, depth - 1)
     return [*left, *_divide(led, place, middle, b, depth - 1)[1:]]
+
+
+def reach(h: float, v0: float, d0: float, v1: float, d1: float) -> tuple[float, float]:
+    """Between what bounds a variable stays over a step.
+
+    The cubic through both ends stays between its Bernstein coefficients; what it departs from a
+    line is allowed for once more, many times the error of a step that is not refused.
+    """
+    rise = v1 - v0
+    bent = abs(3.0 * rise - h * (2.0 * d0 + d1)) + abs(h * (d0 + d1) - 2.0 * rise)  # eq. (19)
+    points = (v0, v0 + h * d0 / 3.0, v1 - h * d1 / 3.0, v1)
+    return min(points) - bent, max(points) + bent
 
 
 def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: float) -> bool:
@@ -155,7 +170,7 @@ def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: floa
     The cubic's error is about e · 16 s²(1 - s)², its slope's at most 3.1 e: where the function may
     be zero it must not level off.
     """
-    value = _hermite(_SHARES, h, v0, d0, v1, d1)
+    value = hermite(_SHARES, h, v0, d0, v1, d1)
     slope = _hermite_slope(_SHARES, h, v0, d0, v1, d1)
     space = 0.5 * (_SHARES[1] - _SHARES[0])  # a cubic does not change more between two samples
     steepest = float(np.abs(slope).max()) + space * _steepest_change(h, v0, d0, v1, d1)
@@ -168,7 +183,7 @@ def _zero_once(error: float, h: float, v0: float, d0: float, v1: float, d1: floa
     return bool(rising.all() or falling.all())
 
 
-def _hermite(
+def hermite(
     s: float | Array,
     h: float,
     v0: Array | float,
@@ -179,7 +194,8 @@ def _hermite(
     """The cubic through both ends of a step, at the fraction s of it."""
     rise = v1 - v0
     bend = 3.0 * rise - h * (2.0 * d0 + d1) + s * (h * (d0 + d1) - 2.0 * rise)  # eq. (19)
-    return np.asarray(v0 + s * (h * d0 + s * bend))
+    value: Array = v0 + s * (h * d0 + s * bend)  # type: ignore[assignment]  # of numbers: one
+    return value
 
 
 def _hermite_slope(s: Array, h: float, v0: float, d0: float, v1: float, d1: float) -> Array:

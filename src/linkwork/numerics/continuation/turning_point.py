@@ -277,6 +277,7 @@ def _refine_turn(
     place, p = led.place(leads.parameter), leads.parameter
     edges = sorted((float(low.v[place]), float(high.v[place])))
     here = _level(led, place, low, high)
+    here = _sharpen(led, place, here) if prove else here
     proof = prove_dead_point(led, here.v, place) if prove else None
     v, direction = led.whole(here.v), led.whole(here.first)
     t = float(v[p])
@@ -333,7 +334,7 @@ def _level(led: Parametrization, place: int, low: Node, high: Node) -> Node:
             best = here
         elif abs(step) < 1e-9:
             break  # to rounding
-    return _sharpen(led, place, best)
+    return best
 
 
 def _to_level(here: Node, place: int) -> float:
