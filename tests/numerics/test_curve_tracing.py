@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -471,3 +472,28 @@ def test_a_parameter_that_determines_nothing_cannot_start_a_curve() -> None:
     leads._leads[leads.parameter] = None
     with pytest.raises(ValueError, match=r"^the parameter of a curve must determine the position$"):
         trace(leads, np.zeros(3), 1.0)
+
+
+def test_solvers_of_leaders_serve_all_paths_of_one_input_and_are_not_copied() -> None:
+    compiled = lw.example("four-bar").model.compiled
+    paths = [InputPath(origin=np.zeros(1), rate=np.full(1, rate), size=1.0) for rate in (1.0, 2.0)]
+    first, second = (
+        ParametrizedTable(compiled.table, path, 0, compiled.leaders).with_parameter(0)
+        for path in paths
+    )
+    assert first is not None
+    assert second is not None
+    assert first is not second
+    assert first.solver is second.solver
+    own = ParametrizedTable(compiled.table, paths[0], 0, compiled.leaders).with_parameter(2)
+    assert own is not None
+    assert own.solver is compiled.solver
+    copy = pickle.loads(pickle.dumps(compiled.leaders))
+    assert copy._found.keys() == {2}
+    assert copy.led_by(0)[0] is not first.solver
+    robot = lw.example("five-bar-robot").model.compiled
+    shared = robot.leaders
+    path = InputPath(origin=np.zeros(2), rate=np.array([1.0, -1.0]), size=1.0)
+    locked = ParametrizedTable(robot.table, path, 0, shared).with_parameter(0)
+    assert locked is not None
+    assert not shared._found

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from linkwork.equations.model import LawEquation, LoopEquations, Term
+from linkwork.equations.parametrized_table import LeaderSolvers
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
@@ -34,6 +36,12 @@ class Compiled:
     form: BlockForm
     solver: BlockSolver
     points: PointTable
+
+    @cached_property
+    def leaders(self) -> LeaderSolvers:
+        """The equations with any variable as the known one."""
+        single = self.table.variables == self.table.unknowns + 1
+        return LeaderSolvers(self.table, self.solver if single else None)
 
 
 @dataclass(frozen=True)

@@ -20,52 +20,39 @@ from linkwork.numerics.continuation.branch_tracking import InputPath
 from linkwork.numerics.continuation.local_parametrization import Parametrization
 from linkwork.numerics.decomposition import block_form
 
-__all__ = ["ParametrizedTable"]
+__all__ = ["LeaderSolvers", "ParametrizedTable"]
 
 
-class ParametrizedTable:
-    """A table along a path of inputs, solvable with any variable as parameter.
+class LeaderSolvers:
+    """The solvers of a table's equations with any variable as the known one, made when first asked
+    for.
 
     Parameters
     ----------
     table : LoopTable
-        n unknowns and p inputs.
-    path : InputPath
-        The common motion of the inputs.
-    parameter : int
-        Index of the input that parametrises the path (0 … p-1).
     solver : BlockSolver, optional
-        Of the table; a single input in the lead needs no other one.
+        Of the table with one input.
     """
 
-    def __init__(
-        self,
-        table: LoopTable,
-        path: InputPath,
-        parameter: int,
-        solver: BlockSolver | None = None,
-    ) -> None:
-        self.parameter = table.unknowns + parameter
-        self.table = _lock_inputs(table, path, parameter)
-        self.scale = self.table.variable_scale
-        self.is_angle = self.table.is_angle
-        self.repeats_after = self.table.repeats_after
-        self._splitter = TableSplitter(self.table)
-        self._pattern = self.table.pattern()
-        self._leads: dict[int, Parametrization | None] = {}
-        if solver is not None and len(path.rate) == 1:
-            self._leads[self.parameter] = Parametrization(
-                lead=self.parameter, solver=solver, order=np.arange(table.variables)
-            )
+    def __init__(self, table: LoopTable, solver: BlockSolver | None = None) -> None:
+        self.table, self._solver = table, solver
+        self._splitter, self._pattern = TableSplitter(table), table.pattern()
+        self._found: dict[int, tuple[BlockSolver, IndexArray] | None] = {}
+        if solver is not None:
+            self._found[table.unknowns] = solver, np.arange(table.variables)
 
-    def with_parameter(self, lead: int) -> Parametrization | None:
-        """The equations with one variable known; ``None`` if it does not determine the others."""
+    def __reduce__(self) -> tuple[type[LeaderSolvers], tuple[object, ...]]:
+        """Copies by pickle make their own."""
+        return LeaderSolvers, (self.table, self._solver)
+
+    def led_by(self, lead: int) -> tuple[BlockSolver, IndexArray] | None:
+        """A solver, and the variables (N,) in its order; ``None`` if one does not determine all."""
         # a curve changes its parameter many times, but among few variables
-        if lead not in self._leads:
-            self._leads[lead] = self._parametrize(lead)
-        return self._leads[lead]
+        if lead not in self._found:
+            self._found[lead] = self._make(lead)
+        return self._found[lead]
 
-    def _parametrize(self, lead: int) -> Parametrization | None:
+    def _make(self, lead: int) -> tuple[BlockSolver, IndexArray] | None:
         table = self.table
         others = [k for k in range(table.variables) if k != lead]
         place = {old: new for new, old in enumerate([*others, lead])}
@@ -89,10 +76,51 @@ class ParametrizedTable:
                 )
             )
         order: IndexArray = np.array([*others, lead], dtype=np.intp)
-        solver = BlockSolver(
-            blocks, len(others), table.variables, table.variable_scale[order], make_quick=quick_rows
-        )
-        return Parametrization(lead=lead, solver=solver, order=order)
+        scale = table.variable_scale[order]
+        return BlockSolver(
+            blocks, len(others), table.variables, scale, make_quick=quick_rows
+        ), order
+
+
+class ParametrizedTable:
+    """A table along a path of inputs, solvable with any variable as parameter.
+
+    Parameters
+    ----------
+    table : LoopTable
+        n unknowns and p inputs.
+    path : InputPath
+        The common motion of the inputs.
+    parameter : int
+        Index of the input that parametrises the path (0 … p-1).
+    solvers : LeaderSolvers, optional
+        Of the table; they serve a single input.
+    """
+
+    def __init__(
+        self,
+        table: LoopTable,
+        path: InputPath,
+        parameter: int,
+        solvers: LeaderSolvers | None = None,
+    ) -> None:
+        self.parameter = table.unknowns + parameter
+        self.table = _lock_inputs(table, path, parameter)
+        self.scale = self.table.variable_scale
+        self.is_angle = self.table.is_angle
+        self.repeats_after = self.table.repeats_after
+        own = solvers if self.table is table else None
+        self._solvers = own or LeaderSolvers(self.table)
+        self._leads: dict[int, Parametrization | None] = {}
+
+    def with_parameter(self, lead: int) -> Parametrization | None:
+        """The equations with one variable known; ``None`` if it does not determine the others."""
+        if lead not in self._leads:
+            found = self._solvers.led_by(lead)
+            self._leads[lead] = found and Parametrization(
+                lead=lead, solver=found[0], order=found[1]
+            )
+        return self._leads[lead]
 
     def jacobian(self, v: Array) -> Array:
         """The scaled Jacobian with respect to all variables but the path parameter, (B, m, m)."""

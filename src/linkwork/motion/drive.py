@@ -60,7 +60,8 @@ class Drive:
     @cached_property
     def leads(self) -> ParametrizedTable:
         """The equations along the path, solvable with any variable in the lead."""
-        return ParametrizedTable(self.model.compiled.table, self.path, self.lead, self.solver)
+        compiled = self.model.compiled
+        return ParametrizedTable(compiled.table, self.path, self.lead, compiled.leaders)
 
     @cached_property
     def free(self) -> bool:

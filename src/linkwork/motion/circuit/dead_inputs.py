@@ -116,7 +116,9 @@ class _Search:
         whole = np.round(path.rate)
         rate = np.where(np.abs(path.rate - whole) <= _WHOLE, whole, path.rate)
         self.model, self.path, self.number = model, replace(path, rate=rate), lead
-        self.leads = ParametrizedTable(model.compiled.table, self.path, lead)
+        self.leads = ParametrizedTable(
+            model.compiled.table, self.path, lead, model.compiled.leaders
+        )
         self.grade = Completeness.WITH_PROBABILITY_ONE
         self.reasons: list[str] = []
         self.values: list[float] = []

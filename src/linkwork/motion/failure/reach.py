@@ -97,7 +97,8 @@ def reach_towards(
     """
     if model.compiled.solver.unknowns > MOST_UNKNOWNS:
         return None
-    leads = ParametrizedTable(model.compiled.table, path, lead)
+    compiled = model.compiled
+    leads = ParametrizedTable(compiled.table, path, lead, compiled.leaders)
     period = _TURN if turns_freely(model) else None
     away = asked - float(v[leads.parameter])
     if period is not None:
