@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 LARGE = 1e3  # condition up to which balanced columns are not tried
-_OFTEN = 16  # rows of the same blocks after which compiled code is asked for
+_OFTEN = 4  # rows that take as long in plain numbers as to hand their blocks to compiled code
 
 Row = list[float]
 
