@@ -17,6 +17,7 @@ from linkwork.motion.circuit import walks
 from linkwork.motion.circuit.seeding import Seeding
 from linkwork.numerics.continuation import curve_proof
 from tests.oracles.four_bar import FourBar
+from tests.oracles.trains import Loop, train
 from tests.thinned import thinned
 
 LINKS = {
@@ -282,3 +283,11 @@ def test_curves_of_bold_steps_without_a_proof_are_followed_again(
         for key in ("name", "end", "turns", "turning"):
             assert one[key] == other[key]
         assert one["input_range"] == pytest.approx(other["input_range"], abs=1e-12)
+
+
+def test_a_change_point_next_to_another_block_s_is_one() -> None:
+    """The blocks come near their change points 0.001 rad apart."""
+    folding = Loop(3.666523, 1.452951, 1.452951, 3.666523, side=-1.0)
+    next_one = Loop(2.2, 3.1, 1.1, 4.2, offset=0.001, side=-1.0)
+    circuit = train([folding, next_one], (30.0, 390.0, 10.0)).circuits()[0]
+    assert (len(circuit.branches), len(circuit.change_points)) == (12, 5)

@@ -114,12 +114,12 @@ _HALTING = [(0, 0), (40, 20), (80, 30), (120, 35), (160, 80), (200, 90)]
 @pytest.mark.parametrize(
     ("function", "tables", "kind", "told"),
     [
-        ("x^2", _STARTS, "BRANCH", "With input = 90 and output = 90, which leave the start angles"),
+        ("x^2", _STARTS, "BRANCH", "With free start angles (input = 90 and output = 90) "),
         # a wish is to blame
         (
             "sqrt(x)",
             {**_STARTS, "fit": "minimax", "wanted": {"transmission": {"least": 15}}},
-            "TRANSMISSION", "With input = 90 and output = 90, which leave the start angles free, ",
+            "TRANSMISSION", "With free start angles (input = 90 and output = 90) ",
         ),
         (
             "log10(x)",
@@ -129,7 +129,7 @@ _HALTING = [(0, 0), (40, 20), (80, 30), (120, 35), (160, 80), (200, 90)]
         # a pair is at a dead point
         (
             _STEADY, {"input": (30, 120), "output": (40, 100), "fit": "least squares"},
-            "NOT_PROVED", "Without input and output, which leave the start angles free, there are ",
+            "NOT_PROVED", "With free start angles (leave out input and output) there are ",
         ),
         (
             _HALTING, {"fit": "least squares"},

@@ -387,3 +387,13 @@ def test_a_motion_of_several_inputs_may_begin_at_a_stop() -> None:
     push = [lw.Load(link="a", torque=-1)]
     held = _arms((np.exp(0.3j), 1j), "O", masses=masses, stops=stops, loads=push)
     assert "it stays at the stop of a" in held.simulate(until=1, step=0.5).message
+
+
+@pytest.mark.parametrize("roundings", [0, 1, 2, 4, 8])
+def test_a_stop_next_to_a_switch_is_hit_with_several_inputs(roundings: int) -> None:
+    stop = lw.Stop(of="d", stop=5.05 + roundings * float(np.spacing(5.05)), restitution=0.5)
+    push = lw.Load(point="B", link="cart", force=("3 + 3*(d < 5.05)", 0))
+    more: dict[str, Any] = {"gravity": None, "loads": [push], "stops": [stop]}
+    motion = lw.linkage(**(CART | more)).simulate(until=0.6, step=0.2, at={"d": 5, "bar": -90})
+    assert motion["d"].max() < 5.05 + 1e-9
+    assert "stop of d" in motion.limit

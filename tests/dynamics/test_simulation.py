@@ -205,6 +205,16 @@ def test_rows_of_switches_have_the_load_after_them(force: str) -> None:
         assert motion["d.acceleration"][event] == pytest.approx(0.0, abs=1e-13)
 
 
+@pytest.mark.parametrize("roundings", [0, 1, 2, 4, 8, 16, 32, 64])
+def test_a_stop_next_to_a_switch_is_hit(roundings: int) -> None:
+    for place in np.linspace(3.05, 3.3, 6).tolist():
+        push = lw.Load(point="B", link="block", force=(f"10 + 5*(d < {place!r})", 0))
+        stop = lw.Stop(of="d", stop=place + roundings * float(np.spacing(place)), restitution=0.5)
+        motion = lw.linkage(**SLIDER, loads=[push], stops=[stop]).simulate(1, step=0.25)
+        assert motion["d"].max() < place + 1e-9, place
+        assert "stop of d" in motion.limit
+
+
 def test_a_mass_bounces_on_a_stop_and_comes_to_rest() -> None:
     stop = lw.Stop(of="d", stop=3.2, restitution=0.5)
     push = lw.Load(point="B", link="block", force=(10, 0))

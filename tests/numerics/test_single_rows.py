@@ -240,7 +240,7 @@ def test_rows_are_compiled_when_that_pays(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(kernel_cache, "_was_compiled", lambda loop: True)
     monkeypatch.setattr(kernel_cache, "is_loaded", lambda loop: False)
     monkeypatch.setattr(quick_rows, "is_loaded", lambda loop: False)
-    monkeypatch.setitem(quick_rows._WORK, "", 0)
+    monkeypatch.setitem(quick_rows._WORK, "blocks", 0)
     assert quick_rows.quick_rows(blocks, 20_000) is None
     assert quick_rows.quick_rows(blocks, 20_000) is not None
     monkeypatch.setattr(kernel_cache, "_was_compiled", lambda loop: False)
@@ -258,3 +258,19 @@ def test_rows_with_laws_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -> Non
         if quick_rows.quick_rows(lw.example(name).model.compiled.solver.singles, 16) is not None
     ]
     assert served == _LOOPS_AND_LINES
+
+
+def test_plain_numbers_serve_where_code_cannot_be_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = lw.example("four-bar").model.compiled.solver.singles
+    tried = []
+
+    def refuse(blocks: object) -> None:
+        tried.append(blocks)
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr(quick_rows, "is_loaded", lambda loop: True)
+    monkeypatch.setattr(quick_rows, "_FAILED", [])
+    monkeypatch.setattr(quick_rows, "QuickRows", refuse)
+    assert quick_rows.quick_rows(blocks, 1) is None
+    assert quick_rows.quick_rows(blocks, 1) is None
+    assert len(tried) == 1

@@ -60,6 +60,12 @@ class Bound:
         margin, slope = self._near(leg, s, t, gain)
         return math.copysign(1.0, slope) if margin <= self._rounding(slope) else 0.0
 
+    def is_passed(self, leg: ReducedLeg, s: float, speed: float, t: float, gain: Array) -> bool:
+        """Whether a motion is at the stop or behind it, and moves outwards."""
+        here, pace, now = (np.array([x]) for x in (s, speed, t))
+        outside = float(self.margin(leg, here, pace, now, gain)[0]) <= 0.0
+        return outside and self.way(leg, s, t, gain) * speed < 0.0
+
     def is_beyond(self, leg: ReducedLeg, s: float, t: float, gain: Array) -> bool:
         """Whether the margin is negative by more than rounding."""
         margin, slope = self._near(leg, s, t, gain)

@@ -121,6 +121,10 @@ class InputTravel:
         self.recent = [*(t for t in self.recent if t > limit), self.t]
         if len(self.recent) > _MOST_EVENTS:
             self._end("a comparison in a load switches without end there")
+        for number in range(len(self.bounds)):
+            way = self._normal(number) @ self._whole(self.speed, 1)
+            if self._margin(number) <= 0.0 and way < 0.0:
+                self._hit(number)
 
     def _hit(self, number: int) -> None:
         """A shock at a stop: an impulse along its normal."""

@@ -207,6 +207,9 @@ class Travel:
             self._hold()
             self._record(self.t, self.s, self.speed, self._now(), "switch")
             self._check_chatter()
+            for bound in self.bounds:
+                if bound.is_passed(self.leg, self.s, self.speed, self.t, self.gain):
+                    self._hit(bound)
 
     def _switch(self) -> None:
         """Let every comparison have the value that it has now."""
@@ -280,7 +283,6 @@ class Travel:
             return
         period, lap_steps = self.t - known[0], self.steps[known[2] :]
         times = self.times[self.taken :]
-        ways = 1 if ahead else -1
         for t in times:
             laps = math.floor((t - known[0]) / period)
             own = t - laps * period
@@ -289,13 +291,11 @@ class Travel:
             )
             s, speed, a = (float(x[0]) for x in step.at(np.array([own])))
             self.number = number
-            turned, self.lap = self.lap, lap + ways * laps
+            turned, self.lap = self.lap, lap + (laps if ahead else -laps)
             self._record(float(t), s, speed, a)
             self.lap = turned
         self.taken, self.t = len(self.times), self.until
         self.number = last
-
-    # Stops
 
     def _hit(self, bound: Bound) -> None:
         self._record(self.t, self.s, self.speed, self._now(), f"stop of {bound.asked.name}")

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.equations.leader_solvers import LeaderSolvers
 from linkwork.equations.model import LawEquation, LoopEquations, Term
-from linkwork.equations.parametrized_table import LeaderSolvers
 from linkwork.equations.real_rows import FormulaRow
 from linkwork.expression.tree import names_in
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray

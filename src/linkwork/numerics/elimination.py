@@ -1,4 +1,4 @@
-"""Linear equations with few unknowns, in plain numbers: LAPACK would take as long."""
+"""Linear equations with few unknowns, in plain numbers and with the roundings of compiled code."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def inverse_and_sign(matrix: Sequence[Row]) -> tuple[list[Row], int]:
 def _eliminate(matrix: list[Row], right: list[Row]) -> int:
     """Solve A X = B, in place of B, with partial pivoting; the sign of det A.
 
-    It is 0 where A is singular, and no number stays in B, or A is no number.
+    It is 0 where A is singular, B then NaN, or has NaN.
     """
     n, sign = len(matrix), 1
     for k in range(n):

@@ -263,18 +263,26 @@ def dot(a: Sequence[float], b: Sequence[float]) -> float:
     return total
 
 
+def _total(terms: Sequence[float]) -> float:
+    """The sum, each addition rounded as in compiled code; ``sum`` is exacter in some Pythons."""
+    total = 0.0
+    for x in terms:
+        total += x
+    return total
+
+
 def _condition(block: SingleBlock, part: SingleLinear) -> float:
     """‖J‖·‖J⁻¹‖ in the system's own weights."""
     w, s = block.weights, block.equation_scale
     forward = max(
         [
-            sum([abs(x) * own for x, own in zip(row, w, strict=False)]) / scale
+            _total([abs(x) * own for x, own in zip(row, w, strict=False)]) / scale
             for row, scale in zip(part.jacobian, s, strict=True)
         ]
     )
     backward = max(
         [
-            sum([abs(x) * scale for x, scale in zip(row, s, strict=True)]) / own
+            _total([abs(x) * scale for x, scale in zip(row, s, strict=True)]) / own
             for row, own in zip(part.inverse, w, strict=True)
         ]
     )
@@ -292,10 +300,10 @@ def _nearness(block: SingleBlock, part: SingleLinear, condition: float) -> float
     longest = [max([row[k] for row in scaled]) for k in columns]
     if not all(longest):
         return condition
-    forward = max([sum([x / y for x, y in zip(row, longest, strict=True)]) for row in scaled])
+    forward = max([_total([x / y for x, y in zip(row, longest, strict=True)]) for row in scaled])
     backward = max(
         [
-            sum([abs(x) * scale for x, scale in zip(row, s, strict=True)]) * own
+            _total([abs(x) * scale for x, scale in zip(row, s, strict=True)]) * own
             for row, own in zip(part.inverse, longest, strict=True)
         ]
     )

@@ -472,11 +472,11 @@ def test_a_fit_whose_start_angles_were_found_has_its_structural_error(
         ),
         (
             {**_LOGARITHM, "fit": "minimax", "wanted": {"input": {"from": 50, "to": 100}}},
-            "from 50 to 100 leaves out the input 45 of the function",
+            "from 50 to 100 leaves out inputs of the function, which are from 45 to 105: move",
         ),
         (
             {**_LOGARITHM, "wanted": {"input": {"from": 410, "to": 460}}},
-            "from 410 to 460 leaves out the input 49.0192 of the function",
+            "from 410 to 460 leaves out inputs of the function, which are from 409.019 to 460.981",
         ),
         ({**_LOGARITHM, "input": (0, 400)}, "input  spans inputs of more than a turn, 360"),
         ({**_LOGARITHM, "wanted": {"lengths": {"least": 50}}}, "exclude the ground, which is 1 l"),

@@ -153,6 +153,23 @@ def test_turning_fully_is_wished_of_mechanisms_of_all_kinds(
     assert np.isnan(design.transmission)
 
 
+def test_ranges_of_several_inputs_have_as_many_rows_as_the_mechanism(tmp_path: Path) -> None:
+    text = "".join(
+        line
+        for line in lw.example_text("double-pendulum").splitlines(keepends=True)
+        if not line.startswith(("from", "to ", "step"))
+    )
+    (tmp_path / "free.toml").write_text(text)
+    goal = {"of": "max(B.x)", "least": -1e6}
+    wanted = {"input": {"from": 0, "to": 90}}
+    task = lw.Task.improve(tmp_path / "free.toml", goals=[goal], starts=1, wanted=wanted)
+    (design,) = task.solve().delivered
+    motion = lw.api.Mechanism(design.linkage).sweep(certify=False)
+    lead = next(iter(motion.inputs.values()))
+    assert len(lead) == 361
+    assert lead[[0, -1]] == pytest.approx([0.0, 90.0])
+
+
 def test_an_input_that_does_not_turn_fully_is_a_defect() -> None:
     goal = {"of": "max(P.x)", "least": -1e6}
     task = lw.Task.improve("evans", goals=[goal], starts=1, wanted={"input": "turns fully"})

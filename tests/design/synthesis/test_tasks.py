@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -246,4 +247,34 @@ def test_a_fit_to_given_lengths_that_close_no_loop_has_no_design() -> None:
     given = {"lengths": {"A0 A": 2.0, "A B": 3.0, "B0 B": 4.0}, "fixed_pivots": [(0, 9), (90, 9)]}
     points, improve = [(0, 0), (1, 1), (4, 2), (9, 3)], {"starts": 40}
     found = lw.Task.path(points, given=given, improve=improve).solve()
-    assert {design.mechanism for design in found.designs} <= {"slider-crank"}
+    assert {design.mechanism for design in found.designs} == {"slider-crank"}
+
+
+def test_wishes_that_some_design_has_are_not_refused() -> None:
+    """Sliders have no ground, fits may miss points, double sliders have no pivots."""
+    square: dict[str, Any] = {"x": (0, 1), "input": (30, 120), "output": (10, 20)}
+    square["given"] = {"fixed_pivots": [(0, 0), (100, 0)]}
+    square["wanted"] = {"lengths": {"most": 90}}
+    assert lw.Task.function("x^2", mechanism="slider-crank", **square).solve().delivered
+    points = [(10 * i, i * i % 7) for i in range(12)]
+    lw.Task.path(points, improve={"starts": 40}, wanted={"clear_of": [[0, 0.02, 0.03]]})
+    region = {"fixed_pivots": {"inside": [[0, 1000], [1, 1000], [1, 1001]]}}
+    wanted = {**region, "clear_of": [[0, 1000, 5]]}
+    poses = [(0, 0, 0), (40, -40, 10), (100, -80, 25)]
+    lw.Task.motion(poses, mechanism="double-slider", wanted=wanted)
+    with pytest.raises(lw.MechanismError, match="no design can be clear of it"):
+        lw.Task.motion(poses, wanted=wanted)
+    bow = [[0, -50], [50, 0], [50, -50], [0, 0]]
+    lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": bow}})
+    with pytest.raises(lw.MechanismError, match="encloses no area"):
+        lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": [[0, 0], [1, 1], [3, 3]]}})
+
+
+def test_given_numbers_that_no_design_has_are_refused() -> None:
+    points: list[tuple[float, float]] = [(0, 0), (1, 1), (4, 2), (9, 3)]
+    with pytest.raises(lw.MechanismError, match="is the same place as the first"):
+        lw.Task.path(points, given={"fixed_pivots": [(1, 1), (1, 1)]}, improve={"starts": 40})
+    sides = {"lengths": {"A0 A": 2.0, "A B": 30.0}}
+    ratio = {"lengths": {"ratio": 10}}
+    with pytest.raises(lw.MechanismError, match='excludes "A B" = 30 with "A0 A" = 2'):
+        lw.Task.path(points, given=sides, improve={"starts": 40}, wanted=ratio)

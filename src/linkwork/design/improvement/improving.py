@@ -16,6 +16,7 @@ from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import fit_numbers
 from linkwork.design.improvement.proved_design import fitted_design
 from linkwork.design.improvement.settings import Goal, Improvement, Points
+from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
     InputError,
@@ -76,10 +77,7 @@ def improved_designs(
     try:
         fits = _fits(model, numbers, box, points, others, settings, progress)
     except NotElementwise:
-        raise InputError(
-            f'a link of "{model.description.name}" has dimensions that are solved together, which '
-            "fits do not follow: give those from which its points follow one after another"
-        ) from None
+        raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
         return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
     best = sorted(
@@ -236,6 +234,19 @@ def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
         return freely_timed(model, motion, spelled, places, goal.order != "any")
     inputs = np.asarray(goal.inputs, dtype=float) * float(model.input_scale[0])
     return (PathGoal(point=spelled, places=places, inputs=inputs, timed=True, ordered=True),)
+
+
+def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:
+    """Which numbers fits do not follow."""
+    names = []
+    for number in numbers:
+        try:
+            DesignWriter(model, [number])
+        except NotElementwise:
+            names.append(f'"{number.name}"')
+    told = f"changes of {', '.join(names)}" if names else "so many numbers together"
+    advice = "vary other numbers" if names else "vary fewer"
+    return f'fits do not follow {told} in "{model.description.name}": {advice}'
 
 
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:

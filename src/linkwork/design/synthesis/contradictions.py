@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -16,6 +17,7 @@ __all__ = ["length_contradictions", "place_contradictions", "unreached_places"]
 _Key = tuple[str | int, ...]
 _LENGTHS = ("wanted", "lengths")
 _REGION = ("wanted", "fixed_pivots", "inside")
+_EQUAL = 1e-9  # relative: lengths that differ by less are equal
 
 
 def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problems:
@@ -34,7 +36,7 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problem
     if len(sides) < 2 or min(sides.values()) <= 0:
         return
     short, *_, long = sorted(sides, key=lambda name: sides[name])
-    if sides[long] > wanted.ratio * sides[short]:
+    if sides[long] > wanted.ratio * sides[short] * (1.0 + _EQUAL):
         told = f'excludes "{long}" = {sides[long]:g} with "{short}" = {sides[short]:g}'
         yield (*_LENGTHS, "ratio"), f"{told}, which are given: change one of them"
     if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
@@ -43,10 +45,15 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problem
 
 
 def place_contradictions(
-    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition]
+    wanted: Wanted, given: Given, positions: Sequence[PrecisionPosition], pivoted: bool
 ) -> Problems:
-    """Places in obstacles, and pivots outside their region."""
-    if wanted.region and _area(wanted.region) == 0:
+    """Places in obstacles, pivots outside their region, and equal ones.
+
+    ``positions``: those that are to be met; ``pivoted``: whether all designs have fixed pivots.
+    """
+    if len(given.fixed_pivots) == 2 and given.fixed_pivots[0] == given.fixed_pivots[1]:
+        yield ("given", "fixed_pivots", 1), "is the same place as the first: a link needs two"
+    if wanted.region and _is_flat(wanted.region):
         yield _REGION, "encloses no area"
         return
     for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
@@ -59,7 +66,7 @@ def place_contradictions(
             if math.dist(position.point, (x, y)) + position.tolerance <= radius:
                 told = f"contains the point of position {j + 1}, so no design can be clear of it"
                 yield ("wanted", "clear_of", k), told
-        for key, corners in _pivots(wanted, given):
+        for key, corners in _pivots(wanted, given) if pivoted else ():
             if all(math.dist(corner, (x, y)) <= radius for corner in corners):
                 yield key, f"is in circle {k + 1} of clear_of, so no design can be clear of it"
 
@@ -102,6 +109,8 @@ def _away(place: Point, corners: Sequence[Point]) -> float:
     return float(distances_to_segments(z, region, np.roll(region, -1)).min())
 
 
-def _area(corners: Sequence[Point]) -> float:
-    pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
-    return sum(x * v - u * y for (x, y), (u, v) in pairs) / 2
+def _is_flat(corners: Sequence[Point]) -> bool:
+    """Whether all corners lie on one line."""
+    (x, y), *others = corners
+    ways = [(u - x, v - y) for u, v in others]
+    return all(a * d - c * b == 0 for (a, b), (c, d) in combinations(ways, 2))

@@ -185,9 +185,12 @@ class FunctionGoal:
         inputs, (low, high) = self.points()[0], sorted(ends)
         slack = EQUAL_ROWS * turn
         turned = math.ceil((low - slack - inputs.min()) / turn) * turn
-        for outside in inputs[inputs + turned > high + slack][:1]:
-            told = f"from {low:g} to {high:g} leaves out the input {outside:.6g} of the function"
-            yield ("wanted", "input"), f"{told}: move or widen it"
+        first, last = float(inputs.min()), float(inputs.max())
+        if last + turned > high + slack:
+            near = round((low + high - first - last) / 2 / turn) * turn
+            told = f"from {low:g} to {high:g} leaves out inputs of the function, which are from"
+            told = f"{told} {first + near:.6g} to {last + near:.6g}: move or widen it"
+            yield ("wanted", "input"), told
 
     @property
     def _count(self) -> int:

@@ -132,8 +132,8 @@ def _driven(description: Description, task: Task) -> Description:
     wanted = task.wanted
     if not (wanted.turns_fully or wanted.range) or not description.inputs:
         return description
-    driven, turn = description.inputs[0], description.angle.turn
-    kinds = {x.name: x.kind for x in model_of(description).equations.inputs}
+    driven, turn, model = description.inputs[0], description.angle.turn, model_of(description)
+    kinds = {x.name: x.kind for x in model.equations.inputs}
     is_angle = kinds[driven.column] == Kind.ANGLE.value
     told = ""
     if wanted.turns_fully and not is_angle:
@@ -142,14 +142,13 @@ def _driven(description: Description, task: Task) -> Description:
         told = "has no effect on a mechanism that is driven by a law of time: leave it out"
     if told:
         task.refuse([(("wanted", "input"), told)])
-    ends = (driven.start, driven.stop)
-    begin, end = (0.0 if own is None else description.numbers(own) for own in ends)
+    begin = 0.0 if driven.start is None else description.numbers(driven.start)
     start, stop = wanted.range or (begin, begin + turn)
     usual = turn / _ROWS if is_angle else abs(stop - start) / _PARTS
     step = abs(description.numbers(driven.step)) if driven.step is not None else usual
-    if len(description.inputs) > 1 and begin != end:
-        step *= abs((stop - start) / (end - begin))  # as many rows as the other inputs have
     count = max(1, math.ceil(abs(stop - start) / step * (1.0 - EQUAL_ROWS)))
+    if len(description.inputs) > 1:  # as many rows as the other inputs have
+        count = max(1, len(model.rows) - 1)
     ranged = replace(driven, start=start, stop=stop, step=(stop - start) / count)
     return replace(description, inputs=(ranged, *description.inputs[1:]))
 

@@ -129,8 +129,8 @@ def _other_goals(task: Task) -> Iterator[tuple[str, FunctionGoal]]:
     if goal.starts_fixed:
         free = goal.freed
         spans = [f"{name} = {getattr(free, name)[1]:g}" for name in free.free]
-        told = "Without input and output" if goal.pairs else f"With {' and '.join(spans)}"
-        yield f"{told}, which leave the start angles free,", free
+        told = "leave out input and output" if goal.pairs else " and ".join(spans)
+        yield f"With free start angles ({told})", free
     for fit in FITS:
         if fit != goal.fit:
             yield f'With fit = "{fit}"', replace(goal, fit=fit)

@@ -278,18 +278,21 @@ class Task:
         if goal is not None and ends and goal.starts_fixed and not [*goal.problems()]:
             yield from goal.range_problems(ends, self.angle.turn)
         yield from length_contradictions(wanted, self._given_sides())
-        yield from place_contradictions(wanted, self.given, self.positions)
+        held = not self.is_approximate or any(p.tolerance for p in self.positions)
+        pivoted = self.kind != "improve" and {*self.mechanisms} != {"double-slider"}
+        met = self.positions if held else ()
+        yield from place_contradictions(wanted, self.given, met, pivoted)
         if self.kind != "improve" and not {*GUIDED} & {*self.mechanisms}:
-            held = not self.is_approximate or any(p.tolerance for p in self.positions)
             # farther places say the same
             yield from islice(unreached_places(wanted, self.given, self.positions, held), 1)
 
     def _given_sides(self) -> dict[str, float]:
-        """The sides of a four-bar that are given, if the task makes no other loops."""
+        """The sides of loops that are given, as far as all kinds of wanted mechanisms have them."""
         pivots, lengths = self.given.fixed_pivots, self.given.lengths
         sides = {name: lengths[name] for name in LENGTHS[:_SIDES] if name in lengths}
-        if self.is_approximate and "slider-crank" in self.mechanisms:
-            sides = {}
+        many = self.is_approximate or self.kind == "function"
+        if many and "slider-crank" in self.mechanisms:
+            return {name: size for name, size in sides.items() if name in ("A0 A", "A B")}
         if len(pivots) == 2:
             return {**sides, "A0 B0": math.dist(*pivots)}
         unit = self.kind == "function" and self.mechanisms[0] == "four-bar"

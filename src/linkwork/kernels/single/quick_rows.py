@@ -16,8 +16,9 @@ __all__ = ["QuickRows", "quick_rows"]
 _LOADING = 30_000
 # or to compile it
 _COMPILING = 300_000
-#: Blocks that were to be solved, since compiled code was looked for last.
-_WORK = {"": 0}
+#: Blocks that were to be solved in this process, until compiled code is loaded or cannot be.
+_WORK = {"blocks": 0}
+_FAILED: list[Exception] = []
 
 
 class QuickRows:
@@ -56,11 +57,20 @@ def quick_rows(blocks: Sequence[PackedBlock], rows: int) -> QuickRows | None:
     """
     if any(block.one.has_laws for block in blocks):
         return None
-    if not is_loaded(SINGLE_LOOP):
-        _WORK[""] += rows * len(blocks)
-        work = _WORK[""]
-        if work < _LOADING and not any(map(is_loaded, LOOPS)):
-            return None
-        if not loop_serves(SINGLE_LOOP, 0) and (work < _COMPILING or find_spec("numba") is None):
-            return None
-    return QuickRows(blocks)
+    if _FAILED or not (is_loaded(SINGLE_LOOP) or _pays(rows * len(blocks))):
+        return None
+    try:
+        return QuickRows(blocks)
+    except Exception as reason:  # Numba cannot compile or keep code here: plain numbers serve
+        _FAILED.append(reason)
+        return None
+
+
+def _pays(blocks: int) -> bool:
+    """Whether it pays to load, or to compile, code for so many more blocks."""
+    _WORK["blocks"] += blocks
+    work = _WORK["blocks"]
+    if work < _LOADING and not any(map(is_loaded, LOOPS)):
+        return False
+    serves = loop_serves(SINGLE_LOOP, 0) or work >= _COMPILING
+    return serves and find_spec("numba") is not None

@@ -20,7 +20,7 @@ def eliminate(matrix: Array, right: Array) -> int:
     Returns
     -------
     int
-        The sign of det A: 0 where A is singular, of no sign where it is not a number.
+        The sign of det A: 0 where A is singular, B then NaN, or has NaN.
     """
     n, sign = len(matrix), 1
     for k in range(n):

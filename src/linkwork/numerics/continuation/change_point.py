@@ -113,8 +113,10 @@ def locate_change_point(
             continue
         if not abs(found.t - last.t) <= near / _drive(solver, path, block, last):
             continue
-        v = predict(last, found.t)
-        v[mine], v[solver.unknowns :] = found.x, path.at(found.t)
+        # second derivatives of other blocks have no bound where these are nearly singular, too
+        places = np.stack([last.v + (found.t - last.t) * last.first, predict(last, found.t)])
+        places[:, mine], places[:, solver.unknowns :] = found.x, path.at(found.t)
+        v = min(places, key=lambda place: float(solver.residual(place[None, :])[0]))
         return _place_point(solver, path.rate, block, mine, v, found)
     return None
 
