@@ -511,3 +511,12 @@ def test_the_structural_error_holds_in_whatever_turn_angles_are_counted(
     assert motion.inputs["crank"][[0, -1]] == pytest.approx(ends)
     error = np.abs(motion["structural_error"]).max()
     assert error == pytest.approx(found.delivered[0].error, rel=2e-3)
+
+
+def test_a_range_that_touches_a_dead_point_is_not_proved() -> None:
+    task = lw.Task.function(
+        "sin(x)", x=(0, 1.5), input=(200, 290), output=(10, 70), mechanism="four-bar", fit="minimax"
+    )
+    (design,) = task.solve().designs
+    (defect,) = design.defects
+    assert defect.message == "not proved: to rounding, the driven range touches a dead point"

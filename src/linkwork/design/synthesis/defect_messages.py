@@ -155,6 +155,8 @@ class _Words:
         sides = np.abs(loops.side[k])
         if not sides.min() > loops.sign_error[k]:
             return f"not proved: position {int(sides.argmin()) + 1} is at a dead point", None
+        if self.verdicts.transmission[k] == 0.0:
+            return "not proved: to rounding, the driven range touches a dead point", None
         return "not proved: the order of the positions depends on rounding", None
 
     def _dead_points(self) -> list[float]:

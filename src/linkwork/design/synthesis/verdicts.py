@@ -127,7 +127,8 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         index = np.flatnonzero(nearly)
         met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
     found[DefectKind.OBSTACLE] = met
-    found[DefectKind.NOT_PROVED] = ~travel.decided
+    # a bound of zero leaves it open whether the range ends in front of a dead point
+    found[DefectKind.NOT_PROVED] = ~travel.decided | (open_ & (transmission == 0.0))
     return Verdicts(
         loops=loops,
         travel=travel,
