@@ -217,8 +217,8 @@ _POSES = "".join(
          "  line 12  given.fixed_pivots[1]  is outside the region that is wanted for it\n"
          "  line 12  given.fixed_pivots[2]  is in circle 1 of clear_of, so no design can\n"
          "                                  be clear of it\n"
-         "  line 14  wanted.lengths         exclude the ground, which is 460.977 long;\n"
-         "                                  [given] fixed_pivots changes that"),
+         "  line 14  wanted.lengths         exclude the ground of length 460.977: change\n"
+         "                                  them, or [given] fixed_pivots"),
     ],
 )  # fmt: skip
 def test_a_bad_task_is_refused_with_its_whole_message(

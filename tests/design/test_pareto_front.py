@@ -216,7 +216,7 @@ def test_fronts_without_a_meaning_are_refused() -> None:
         ([rocker, {"of": "rocker", "least": 3}], {"front": 4}, "bounds only limit it"),
         ([rocker, {**rocker, "weight": 2.0}], {"front": 4}, "has no effect on a front"),
         ([rocker, rocker], {"front": 1}, "2 designs or more"),
-        ([rocker, rocker], {"front": 4, "fit": "minimax"}, "count by themselves"),
+        ([rocker, rocker], {"front": 4, "fit": "minimax"}, "does not add up its goals"),
     ):
         own: dict[str, Any] = given
         with pytest.raises(MechanismError, match=message):

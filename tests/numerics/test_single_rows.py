@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import platform
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -13,12 +14,13 @@ from linkwork.foundation.arrays import Array
 from linkwork.foundation.status import Status
 from linkwork.kernels.program import kernel_cache
 from linkwork.kernels.single import quick_rows
+from linkwork.kernels.single.packed_blocks import pack
 from linkwork.numerics.block_solver import BlockSolver
 from linkwork.numerics.elimination import inverse_and_sign, solve_linear
 from linkwork.numerics.newton import NewtonOptions
 from linkwork.numerics.proof.position_proof import expansions, prove, reach
 from linkwork.numerics.rows import SolvedRows
-from linkwork.numerics.single_rows import SingleRows
+from linkwork.numerics.single_rows import SingleBlock, SingleRows
 
 #: Dyads, coupled loops, sliding lengths, gears and belts.
 _LOOPS_AND_LINES = [
@@ -185,6 +187,12 @@ def test_small_systems_are_solved_as_by_lapack(n: int) -> None:
     assert np.isnan(inverse_and_sign(nothing)[0]).all()
 
 
+def _compiled(blocks: Sequence[SingleBlock], _rows: int) -> quick_rows.QuickRows:
+    packed = pack(blocks)
+    assert packed is not None
+    return quick_rows.QuickRows(*packed)
+
+
 #: Processors for which C compilers do not fuse products and sums.
 _EXACT = platform.machine().lower() in {"x86_64", "amd64"}
 
@@ -193,7 +201,7 @@ _EXACT = platform.machine().lower() in {"x86_64", "amd64"}
 def test_compiled_rows_are_those_of_plain_numbers(name: str) -> None:
     arrays, numbers, start = _both(name)
     plain = SingleRows(numbers.singles, None)
-    quick = SingleRows(numbers.singles, lambda blocks, rows: quick_rows.QuickRows(blocks))
+    quick = SingleRows(numbers.singles, _compiled)
     for _ in range(20):  # the first ones are solved in plain numbers
         quick.solve_row(start[0].copy(), NewtonOptions())
     within = 0.0 if _EXACT else 1e-6
@@ -226,7 +234,7 @@ def test_compiled_code_is_not_copied() -> None:
     solver = lw.example("four-bar").model.compiled.solver
     for _ in range(20):
         solver.one_by_one.solve_row(np.array([0.4, 1.2, 0.5]), NewtonOptions())
-    solver.one_by_one._quick = quick_rows.QuickRows(solver.singles)
+    solver.one_by_one._quick = _compiled(solver.singles, 0)
     copy = pickle.loads(pickle.dumps(solver))
     assert copy.one_by_one._quick is None
     a, b = (
@@ -260,12 +268,14 @@ def test_rows_with_laws_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -> Non
     assert served == _LOOPS_AND_LINES
 
 
-def test_plain_numbers_serve_where_code_cannot_be_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plain_numbers_serve_where_code_cannot_be_compiled(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
     blocks = lw.example("four-bar").model.compiled.solver.singles
     tried = []
 
-    def refuse(blocks: object) -> None:
-        tried.append(blocks)
+    def refuse(*packed: object) -> None:
+        tried.append(packed)
         raise RuntimeError("cannot cache function: no locator available")
 
     monkeypatch.setattr(quick_rows, "is_loaded", lambda loop: True)
@@ -274,3 +284,7 @@ def test_plain_numbers_serve_where_code_cannot_be_compiled(monkeypatch: pytest.M
     assert quick_rows.quick_rows(blocks, 1) is None
     assert quick_rows.quick_rows(blocks, 1) is None
     assert len(tried) == 1
+    assert caplog.messages == [
+        "compiled code cannot be used here, plain numbers take longer: "
+        "cannot cache function: no locator available"
+    ]

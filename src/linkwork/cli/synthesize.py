@@ -57,6 +57,9 @@ def synthesize(
         check_folder(as_path(output), options, asked.described)
     with progress("solving the task") as tell:
         found = asked.solve(progress=tell)
+    if not found.sound:
+        with progress("trying changes of the task"):
+            advice_of(found)  # which is kept
     files: dict[int, str] = {}
     if output is not None:
         with progress("writing designs") as tell:

@@ -19,8 +19,8 @@ from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
 from linkwork.kernels.real_rows import FunctionRow, LinearRows
-from linkwork.kernels.single_laws import SingleWithLaws
-from linkwork.kernels.single_position import SinglePosition
+from linkwork.kernels.single.single_laws import SingleWithLaws
+from linkwork.kernels.single.single_position import SinglePosition
 
 __all__ = ["LoopTable", "TableSplitter"]
 

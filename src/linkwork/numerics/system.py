@@ -82,10 +82,6 @@ class SingleSystem(Protocol):
         """How many of the m equations belong to loops."""
 
     @property
-    def loops(self) -> int:
-        """L, each of two equations."""
-
-    @property
     def loop_phases(self) -> int:
         """How many of the phases belong to loops; each later one belongs to one sum."""
 
@@ -94,20 +90,8 @@ class SingleSystem(Protocol):
         """Variables and weights of the G phases."""
 
     @property
-    def fixed(self) -> Sequence[tuple[int, int, complex]]:
-        """Loop, phase and coefficient of terms."""
-
-    @property
-    def sliding(self) -> Sequence[tuple[int, int, complex, int]]:
-        """The same and the variable length of terms that have one."""
-
-    @property
-    def lines(self) -> Sequence[tuple[float, Sequence[tuple[int, float]]]]:
-        """The constant, and variables with weights, of linear rows."""
-
-    @property
-    def has_laws(self) -> bool:
-        """Whether other rows follow."""
+    def packed(self) -> tuple[list[int], list[float]] | None:
+        """The terms as numbers, for compiled code; ``None`` if it does not know them."""
 
     @property
     def pairs(self) -> Sequence[tuple[int, int]]:

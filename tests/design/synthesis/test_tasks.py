@@ -70,10 +70,10 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "given.fixed_pivots[1]", "is 99 from position 1, out of reach of links of at most 40"),
         (_points(4) + "[given]\nlengths = { 'A0 A' = 2, 'A B' = 9 }\n"
          "[wanted]\nlengths = { ratio = 4 }\n", 14, "wanted.lengths.ratio",
-         'excludes "A B" = 9 with "A0 A" = 2, which are given: change one of them'),
+         'is exceeded by the given lengths "A B" = 9 and "A0 A" = 2: change one of them'),
         (_points(2) + "[given]\nfixed_pivots = [[0, 9], [9, 9]]\n"
          "lengths = { 'A0 A' = 2, 'A B' = 3, 'B0 B' = 4 }\n", 9, "given.lengths",
-         'close no loop: "A0 B0" is as long as the others together, or longer: change one'),
+         'cannot close a loop: "A0 B0" is not shorter than the others together; change one'),
         (_MOTION + "[wanted]\ntransmission = { least = 90 }\n", 19, "wanted.transmission.least",
          "must be at least 0 and below 90, got 90"),
         (_MOTION + "[wanted]\ninput = { from = 20, to = 20 }\n", 19, "wanted.input",
@@ -276,5 +276,5 @@ def test_given_numbers_that_no_design_has_are_refused() -> None:
         lw.Task.path(points, given={"fixed_pivots": [(1, 1), (1, 1)]}, improve={"starts": 40})
     sides = {"lengths": {"A0 A": 2.0, "A B": 30.0}}
     ratio = {"lengths": {"ratio": 10}}
-    with pytest.raises(lw.MechanismError, match='excludes "A B" = 30 with "A0 A" = 2'):
+    with pytest.raises(lw.MechanismError, match='given lengths "A B" = 30 and "A0 A" = 2: ch'):
         lw.Task.path(points, given=sides, improve={"starts": 40}, wanted=ratio)

@@ -237,16 +237,17 @@ def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
 
 
 def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:
-    """Which numbers fits do not follow."""
+    """Which numbers a fit cannot vary, in words."""
     names = []
     for number in numbers:
         try:
             DesignWriter(model, [number])
         except NotElementwise:
             names.append(f'"{number.name}"')
-    told = f"changes of {', '.join(names)}" if names else "so many numbers together"
-    advice = "vary other numbers" if names else "vary fewer"
-    return f'fits do not follow {told} in "{model.description.name}": {advice}'
+    own = f'of "{model.description.name}"'
+    if not names:
+        return f"a fit cannot vary all these numbers {own} together: vary fewer"
+    return f"a fit cannot vary {', '.join(names)} {own}: vary other numbers"
 
 
 def _is_known(x: Array, designs: Sequence[ImprovedDesign]) -> bool:

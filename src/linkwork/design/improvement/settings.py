@@ -177,7 +177,7 @@ class Improvement:
         if self.front < 0 or self.front == 1:
             yield ("front",), f"must be 2 designs or more, got {self.front}"
         if self.front and self.fit == "minimax":
-            told = "has no effect on a front, whose goals count by themselves: leave it out"
+            told = "has no effect on a front, which does not add up its goals: leave it out"
             yield ("goal",), told
         for name, (low, high) in self.bounds.items():
             if not low <= high:

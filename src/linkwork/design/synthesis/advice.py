@@ -63,7 +63,7 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
     if (wanted.shortest, wanted.longest, wanted.ratio) == (0.0, math.inf, math.inf):
         usual = has_usual_ratio(task)
         bound = USUAL_RATIO * (_AT_BOUND if usual else 1.0)
-        told, ratio = ("at the usual", "…") if usual else ("over", f"{USUAL_RATIO:g}")
+        told, ratio = ("at the default bound,", "…") if usual else ("over", f"{USUAL_RATIO:g}")
         yield _Doubt(
             f"a longest link {told} {USUAL_RATIO:g} times the shortest",
             f"[wanted] lengths = {{ ratio = {ratio} }}",
@@ -84,8 +84,8 @@ def advice_of(found: Synthesis) -> str:
     """
     if found.sound:
         return ""
-    if helps := found.what_helps():
-        return helps
+    if found.helpful_change:
+        return found.helpful_change
     if found.costliest is not None:
         return ""
     if found.task.kind == "improve":

@@ -31,16 +31,16 @@ def length_contradictions(wanted: Wanted, sides: Mapping[str, float]) -> Problem
         yield (*_LENGTHS, "ratio"), f"must be 1 or more, got {wanted.ratio:g}"
     ground = sides.get("A0 B0")
     if ground is not None and not least <= ground <= most:
-        told = f"exclude the ground, which is {ground:g} long; [given] fixed_pivots changes that"
+        told = f"exclude the ground of length {ground:g}: change them, or [given] fixed_pivots"
         yield _LENGTHS, told
     if len(sides) < 2 or min(sides.values()) <= 0:
         return
     short, *_, long = sorted(sides, key=lambda name: sides[name])
     if sides[long] > wanted.ratio * sides[short] * (1.0 + _EQUAL):
-        told = f'excludes "{long}" = {sides[long]:g} with "{short}" = {sides[short]:g}'
-        yield (*_LENGTHS, "ratio"), f"{told}, which are given: change one of them"
+        given = f'"{long}" = {sides[long]:g} and "{short}" = {sides[short]:g}'
+        yield (*_LENGTHS, "ratio"), f"is exceeded by the given lengths {given}: change one of them"
     if len(sides) == 4 and 2.0 * sides[long] >= sum(sides.values()):
-        told = f'close no loop: "{long}" is as long as the others together, or longer: change one'
+        told = f'cannot close a loop: "{long}" is not shorter than the others together; change one'
         yield ("given", "lengths"), told
 
 

@@ -238,7 +238,7 @@ class SynthesizedDesign(JudgedDesign):
         return linkage_of(self.design, self.task, self._name, self.group.output)
 
 
-@internal("what_helps")
+@internal("helpful_change", "what_helps")
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Synthesis:
     """All designs for a task, sound ones first.
@@ -281,6 +281,11 @@ class Synthesis:
     starts: int = 0
     interrupted: bool = False
     what_helps: Callable[[], str] = str
+
+    @cached_property
+    def helpful_change(self) -> str:
+        """A change of the task that has sound designs, in words; tried when first asked for."""
+        return self.what_helps()
 
     @property
     def delivered(self) -> tuple[JudgedDesign, ...]:

@@ -1,4 +1,4 @@
-"""Rows one by one in compiled code, which is loaded when first used."""
+"""Equations of one row, in plain numbers and in compiled code, which is loaded when first used."""
 
 from __future__ import annotations
 

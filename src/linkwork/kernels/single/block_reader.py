@@ -1,7 +1,7 @@
 """Reading packed blocks in compiled code, and a block's equations at one position.
 
 The formulas, their order and so every rounding are those of
-:mod:`linkwork.kernels.single_position`.
+:mod:`linkwork.kernels.single.single_position`.
 """
 
 from __future__ import annotations

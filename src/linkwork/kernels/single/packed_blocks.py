@@ -10,37 +10,19 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["HEAD", "PackedBlock", "pack"]
+__all__ = ["HEAD", "Packed", "PackedBlock", "Parts", "pack", "packed_terms"]
 
+#: Whole numbers and floats.
+Packed = tuple[list[int], list[float]]
+#: Variables with weights.
+Parts = Sequence[tuple[int, float]]
 HEAD = 9  # numbers of a block that say how long its lists are
 
 
-class Terms(Protocol):
-    """The terms of a block's loops and lines."""
-
+class _Terms(Protocol):
     @property
-    def loops(self) -> int:
-        """L."""
-
-    @property
-    def phases(self) -> Sequence[Sequence[tuple[int, float]]]:
-        """Variable and weight of the parts of every phase."""
-
-    @property
-    def fixed(self) -> Sequence[tuple[int, int, complex]]:
-        """Loop, phase and coefficient of terms."""
-
-    @property
-    def sliding(self) -> Sequence[tuple[int, int, complex, int]]:
-        """The same and the variable length of terms that have one."""
-
-    @property
-    def lines(self) -> Sequence[tuple[float, Sequence[tuple[int, float]]]]:
-        """The constant, and variables with weights, of linear rows."""
-
-    @property
-    def has_laws(self) -> bool:
-        """Whether other rows follow, which compiled code does not know."""
+    def packed(self) -> Packed | None:
+        """The terms, see :func:`packed_terms`; ``None`` if there are others."""
 
 
 class PackedBlock(Protocol):
@@ -56,36 +38,64 @@ class PackedBlock(Protocol):
     angles: list[int]
 
     @property
-    def one(self) -> Terms:
-        """Its terms."""
+    def one(self) -> _Terms:
+        """Its equations."""
 
 
-def pack(blocks: Sequence[PackedBlock]) -> tuple[IndexArray, Array]:
-    """Whole numbers, their count of blocks first, and floats of all blocks.
+def pack(blocks: Sequence[PackedBlock]) -> tuple[IndexArray, Array] | None:
+    """Whole numbers, their count of blocks first, and floats of all blocks; ``None`` if compiled
+    code does not know the terms of one.
 
     :func:`linkwork.kernels.single.block_reader.read` reads them in the same order.
     """
     whole: list[int] = [len(blocks)]
     floats: list[float] = []
     for block in blocks:
-        own = block.one
-        parts, ties = list(chain(*own.phases)), list(chain(*(line for _, line in own.lines)))
-        n = len(block.weights)
-        whole += [n, len(block.variables), own.loops, len(own.phases), len(parts)]
-        whole += [len(own.fixed), len(own.sliding), len(own.lines), len(ties)]
-        whole += [*block.variables, *(k in block.angles for k in range(n))]
-        whole += [*_firsts(own.phases), *(k for k, _ in parts)]
-        whole += [*(row for row, _, _ in own.fixed), *(g for _, g, _ in own.fixed)]
-        whole += [*(t[0] for t in own.sliding), *(t[1] for t in own.sliding)]
-        whole += [t[3] for t in own.sliding]
-        whole += [*_firsts([line for _, line in own.lines]), *(k for k, _ in ties)]
-        floats += [*block.equation_scale, *block.weights, *(w for _, w in parts)]
-        for terms in (own.fixed, own.sliding):
-            coefficients = [complex(term[2]) for term in terms]
-            floats += [c.real for c in coefficients]
-            floats += [c.imag for c in coefficients]
-        floats += [*(constant for constant, _ in own.lines), *(w for _, w in ties)]
+        terms, n = block.one.packed, len(block.weights)
+        if terms is None:
+            return None
+        sizes, lists = terms[0][: HEAD - 2], terms[0][HEAD - 2 :]
+        flags = [int(k in block.angles) for k in range(n)]
+        whole += [n, len(block.variables), *sizes, *block.variables, *flags, *lists]
+        floats += [*block.equation_scale, *block.weights, *terms[1]]
     return np.array(whole, dtype=np.int64), np.array(floats, dtype=float)
+
+
+def packed_terms(
+    loops: int,
+    phases: Sequence[Parts],
+    fixed: Sequence[tuple[int, int, complex]],
+    sliding: Sequence[tuple[int, int, complex, int]],
+    lines: Sequence[tuple[float, Parts]],
+) -> Packed:
+    """The terms of loops and lines: the lengths of their lists, and these.
+
+    Parameters
+    ----------
+    loops
+        L.
+    phases
+        The parts of every phase.
+    fixed
+        Loop, phase and coefficient.
+    sliding
+        The same and the variable length.
+    lines
+        The constant and the parts of linear rows.
+    """
+    parts, ties = list(chain(*phases)), list(chain(*(own for _, own in lines)))
+    whole = [loops, len(phases), len(parts), len(fixed), len(sliding), len(lines), len(ties)]
+    whole += [*_firsts(phases), *(k for k, _ in parts)]
+    whole += [*(row for row, _, _ in fixed), *(g for _, g, _ in fixed)]
+    whole += [*(term[0] for term in sliding), *(term[1] for term in sliding)]
+    whole += [*(term[3] for term in sliding)]
+    whole += [*_firsts([own for _, own in lines]), *(k for k, _ in ties)]
+    floats = [w for _, w in parts]
+    for terms in ([c for _, _, c in fixed], [term[2] for term in sliding]):
+        sizes = [complex(c) for c in terms]  # some may be real
+        floats += [*(c.real for c in sizes), *(c.imag for c in sizes)]
+    floats += [*(constant for constant, _ in lines), *(w for _, w in ties)]
+    return whole, floats
 
 
 def _firsts(lists: Sequence[Sequence[object]]) -> list[int]:

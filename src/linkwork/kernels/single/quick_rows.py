@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from importlib.util import find_spec
 
-from linkwork.foundation.arrays import Array, StatusArray
+from linkwork.foundation.arrays import Array, IndexArray, StatusArray
 from linkwork.kernels import single
 from linkwork.kernels.program.kernel_cache import LOOPS, SINGLE_LOOP, is_loaded, loop_serves
 from linkwork.kernels.single.packed_blocks import PackedBlock, pack
@@ -22,15 +23,15 @@ _FAILED: list[Exception] = []
 
 
 class QuickRows:
-    """Some blocks in compiled code.
+    """Blocks that are packed, in compiled code.
 
     Results equal those of :mod:`linkwork.numerics.single_rows`, bit for bit where a machine rounds
     every operation by itself.
     """
 
-    def __init__(self, blocks: Sequence[PackedBlock]) -> None:
+    def __init__(self, code: IndexArray, numbers: Array) -> None:
         self._solve_row, self._take_rates = single.solve_row, single.take_rates
-        self._code, self._numbers = pack(blocks)
+        self._code, self._numbers = code, numbers
 
     def solve(
         self, v: Array, max_steps: int, limits: tuple[float, float, float, float, float]
@@ -55,14 +56,18 @@ def quick_rows(blocks: Sequence[PackedBlock], rows: int) -> QuickRows | None:
     rows : int
         Rows of these blocks that have been solved since the last call.
     """
-    if any(block.one.has_laws for block in blocks):
-        return None
     if _FAILED or not (is_loaded(SINGLE_LOOP) or _pays(rows * len(blocks))):
         return None
+    packed = pack(blocks)
+    if packed is None:
+        return None
     try:
-        return QuickRows(blocks)
-    except Exception as reason:  # Numba cannot compile or keep code here: plain numbers serve
+        return QuickRows(*packed)
+    except Exception as reason:  # whatever Numba lacks here
         _FAILED.append(reason)
+        logging.getLogger("linkwork").warning(
+            "compiled code cannot be used here, plain numbers take longer: %s", reason
+        )
         return None
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.kernels.curvature import Curvature
 from linkwork.kernels.law_row import LawRow
-from linkwork.kernels.single_position import SingleCurvature, SinglePosition
+from linkwork.kernels.single.single_position import SingleCurvature, SinglePosition
 
 __all__ = ["SingleWithLaws"]
 
@@ -27,15 +27,13 @@ class SingleWithLaws:
     ``curvature``: bounds as of arrays.
     """
 
-    has_laws = True
+    #: Compiled code knows no laws.
+    packed = None
 
     def __init__(self, rest: SinglePosition, laws: Sequence[LawRow], curvature: _Bounds) -> None:
         self.rest, self.laws, self._curvature = rest, laws, curvature
         self.unknowns, self.variables = rest.unknowns, rest.variables
         self.loop_rows, self.loop_phases, self.pairs = rest.loop_rows, rest.loop_phases, rest.pairs
-        self.loops, self.fixed, self.sliding, self.lines = (
-            rest.loops, rest.fixed, rest.sliding, rest.lines,
-        )  # fmt: skip
         #: Every law turns along one sum of variables, as a phase does.
         self.phases = [*rest.phases, *([(k, w) for k, _, w in law.terms] for law in laws)]
         self.work = rest.work + len(laws) * (_WORK + rest.variables)

@@ -11,11 +11,13 @@ import math
 from cmath import rect
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import hypot
 
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.kernels.curvature import PhaseGroups
 from linkwork.kernels.real_rows import LinearRows
+from linkwork.kernels.single.packed_blocks import Packed, packed_terms
 
 __all__ = ["SingleCurvature", "SinglePosition"]
 
@@ -40,14 +42,12 @@ class SinglePosition:
     ``work``: of one evaluation, about the number of products.
     """
 
-    has_laws = False
-
     def __init__(self, groups: PhaseGroups, lines: LinearRows, unknowns: int) -> None:
         loops = groups.rows
         self.unknowns, self.variables, self.loops = unknowns, loops.variables, loops.rows
         self._take_loops(groups)
         self._take_lines(lines)
-        self.equations = 2 * self.loops + len(self.lines)
+        self.equations = 2 * self.loops + len(self._lines)
         self._take_sizes(groups)
         self.loop_rows, self.loop_phases = 2 * self.loops, len(self.phases)
         lengths, pair_phases, _ = groups.pairs
@@ -73,21 +73,21 @@ class SinglePosition:
         if len(self._plain) < len(self.phases):
             self._plain = []
         fixed: dict[tuple[int, int], complex] = {}
-        self.sliding: list[tuple[int, int, complex, int]] = []
+        self._sliding: list[tuple[int, int, complex, int]] = []
         terms = (loops.row, loops.coefficient, loops.length)
         for g, row, c, length in zip(members, *(x.tolist() for x in terms), strict=True):
             if length < 0:
                 fixed[row, g] = fixed.get((row, g), 0.0) + c
             else:
-                self.sliding.append((row, g, c, length))
-        self.fixed = [(row, g, c) for (row, g), c in fixed.items()]
+                self._sliding.append((row, g, c, length))
+        self._fixed = [(row, g, c) for (row, g), c in fixed.items()]
 
     def _take_lines(self, lines: LinearRows) -> None:
         entries: list[dict[int, float]] = [{} for _ in lines.constant]
         parts = (lines.row, lines.variable, lines.weight)
         for row, k, w in zip(*(x.tolist() for x in parts), strict=True):
             entries[row][k] = entries[row].get(k, 0.0) + w  # a variable may occur twice in a row
-        self.lines = list(
+        self._lines = list(
             zip(lines.constant.tolist(), (list(e.items()) for e in entries), strict=True)
         )
         self._line_slopes = [[own.get(k, 0.0) for k in range(self.variables)] for own in entries]
@@ -112,12 +112,17 @@ class SinglePosition:
             self._pair_sums.append([(r, c, size) for r, (c, size) in enumerate(column) if size])
         self._still = [
             (weights, constant, UNIT_ROUNDOFF * (self.variables + 2))
-            for constant, weights in self.lines
+            for constant, weights in self._lines
         ]
         self._line_rounding = [
             [UNIT_ROUNDOFF * (self.equations + 4) * abs(x) for x in row]
             for row in self._line_slopes
         ]
+
+    @cached_property
+    def packed(self) -> Packed:
+        """All terms as numbers, for compiled code."""
+        return packed_terms(self.loops, self.phases, self._fixed, self._sliding, self._lines)
 
     # ---------------------------------------------------------------- values
 
@@ -139,17 +144,17 @@ class SinglePosition:
         """F, (m,)."""
         e = self._phasors(v)
         value = [0j] * self.loops
-        for row, g, c in self.fixed:
+        for row, g, c in self._fixed:
             value[row] += c * e[g]
-        for row, g, c, length in self.sliding:
+        for row, g, c, length in self._sliding:
             value[row] += c * e[g] * v[length]
         found = [z.real for z in value]
         found += [z.imag for z in value]
-        return found + self._line_values(v) if self.lines else found
+        return found + self._line_values(v) if self._lines else found
 
     def _line_values(self, v: Sequence[float]) -> Row:
         found = []
-        for constant, weights in self.lines:
+        for constant, weights in self._lines:
             total = constant
             for k, w in weights:
                 total += w * v[k]
@@ -161,14 +166,14 @@ class SinglePosition:
         e, phases, columns = self._phasors(v), self.phases, self.variables
         value = [0j] * self.loops
         real, imag = ([[0.0] * columns for _ in value] for _ in range(2))
-        for row, g, c in self.fixed:
+        for row, g, c in self._fixed:
             term = c * e[g]
             value[row] += term
             x, y, above, below = term.real, term.imag, real[row], imag[row]
             for k, w in phases[g]:  # eq. (2): turning
                 above[k] -= w * y
                 below[k] += w * x
-        for row, g, c, length in self.sliding:
+        for row, g, c, length in self._sliding:
             bare = c * e[g]
             term = bare * v[length]
             value[row] += term
@@ -180,7 +185,7 @@ class SinglePosition:
                 below[k] += w * x
         found = [z.real for z in value]
         found += [z.imag for z in value]
-        if self.lines:
+        if self._lines:
             return found + self._line_values(v), real + imag + self._line_slopes
         return found, real + imag
 
@@ -193,14 +198,14 @@ class SinglePosition:
             for k, w in phase:
                 turn += w * d[k]
             turns.append(turn)
-        for row, g, c in self.fixed:
+        for row, g, c in self._fixed:
             value[row] -= c * e[g] * (turns[g] * turns[g])  # eq. (3) with a = b
-        for row, g, c, length in self.sliding:
+        for row, g, c, length in self._sliding:
             turn = turns[g]
             value[row] += c * e[g] * complex(-v[length] * turn * turn, 2.0 * d[length] * turn)
         found = [z.real for z in value]
         found += [z.imag for z in value]
-        return found + [0.0] * len(self.lines) if self.lines else found
+        return found + [0.0] * len(self._lines) if self._lines else found
 
     # ---------------------------------------------------------------- bounds
 
@@ -209,9 +214,9 @@ class SinglePosition:
         loops = self.loops
         sums = [[0j] * loops for _ in self.phases]
         sizes = [[0.0] * loops for _ in self.phases]
-        for row, g, c in self.fixed:
+        for row, g, c in self._fixed:
             sums[g][row] += c
-        for row, g, c, length in self.sliding:
+        for row, g, c, length in self._sliding:
             sums[g][row] += c * v[length]
         rounding, slopes = self._rounding(v, sizes)
         phase, slide = [], []
