@@ -74,6 +74,21 @@ def test_second_derivative_equals_a_complex_step_of_the_first(examples: list[Exa
         assert agree(example.table.second_directional_derivative(v, d), wanted, scale), seed
 
 
+def test_hessians_of_sums_equal_second_derivatives_along_directions(
+    examples: list[Example],
+) -> None:
+    rng = np.random.default_rng(2)
+    for seed, example in enumerate(examples):
+        table, d = example.table, example.d
+        weights = rng.normal(size=(3, table.equations))
+        scale = size(example) * float(np.abs(d).max()) ** 2 * float(np.abs(weights).sum())
+        bends = table.second_directional_derivative(example.v, d)
+        for v, direction, bend in zip(example.v, d, bends, strict=True):
+            hessians = table.hessians(v, weights)
+            assert agree(hessians @ direction @ direction, weights @ bend, scale), seed
+            assert agree(hessians, hessians.transpose(0, 2, 1), scale), seed
+
+
 def test_jet_of_a_curved_path_adds_the_slope_along_its_bend(examples: list[Example]) -> None:
     rng = np.random.default_rng(1)
     for seed, example in enumerate(examples[:200]):

@@ -55,6 +55,12 @@ class Cubic:
     def second_directional_derivative(self, v: Array, d: Array) -> Array:
         return np.asarray((6 * v[:, 0] * d[:, 0] ** 2 + 2 * d[:, 0] * d[:, 1])[:, None])
 
+    def hessians(self, v: Array, weights: Array) -> Array:
+        x = float(v[0])
+        return np.asarray(
+            weights[:, :, None] * np.array([[6.0 * x, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+        )
+
     @property
     def single(self) -> None:
         return None

@@ -230,28 +230,38 @@ def test_a_regular_solution_is_on_no_curve() -> None:
     assert not roots_module._on_a_curve(system, real_solution(t))
 
 
-def _dyad(p: complex, q: complex, f: complex) -> BilinearSystem:
-    return angles_only(np.array([[p, q]]), np.array([f]))
+def _dyads(*closures: tuple[complex, complex, complex]) -> BilinearSystem:
+    """Dyads p, q, f with p t + q s + f = 0, as one stack."""
+    alone = [angles_only(np.array([[p, q]]), np.array([f])) for p, q, f in closures]
+    left = np.stack([system.left for system in alone])
+    return BilinearSystem(left=left, right=left.conj(), rows=alone[0].rows)
 
 
-def test_a_dyad_has_two_solutions_in_closed_form() -> None:
+def _closes(closures: np.ndarray) -> np.ndarray:
+    """Which p, q, f (K, 3) are the sides of a triangle."""
+    p, q, f = np.abs(closures).T
+    return np.asarray((f < p + q) & (f > np.abs(p - q)))
+
+
+def test_dyads_have_two_solutions_each_in_closed_form() -> None:
     rng = np.random.default_rng(0)
-    for _ in range(50):
-        p, q, f = rng.normal(size=3) + 1j * rng.normal(size=3)
-        system = _dyad(p, q, f)
-        roots = quadratic_roots(system)
-        assert (len(roots.x), roots.paths, roots.at_infinity) == (2, 2, 0)
-        proofs = prove_roots(system, roots.x, _exact(system))
-        assert proofs.holds.all()
-        assert proofs.apart
-        triangle = abs(f) < abs(p) + abs(q) and abs(f) > abs(abs(p) - abs(q))
-        assert proofs.real.all() == triangle
-        assert proofs.unreal.all() == (not triangle)
+    closures = rng.normal(size=(50, 3)) + 1j * rng.normal(size=(50, 3))
+    systems = _dyads(*map(tuple, closures))
+    found = quadratic_roots(systems)
+    assert {(len(roots.x), roots.paths, roots.at_infinity) for roots in found} == {(2, 2, 0)}
+    of = np.repeat(np.arange(50), 2)
+    proofs = prove_roots(
+        systems.take(of), np.concatenate([roots.x for roots in found]), _exact(systems)[of]
+    )
+    assert proofs.holds.all()
+    assert all(proofs.take(np.flatnonzero(of == k)).apart for k in range(50))
+    assert np.array_equal(proofs.real, _closes(closures)[of])
+    assert np.array_equal(proofs.unreal, ~_closes(closures)[of])
 
 
 @pytest.mark.parametrize("far", [3.5, 1.5])
 def test_a_dyad_in_line_is_one_double_solution(far: float) -> None:
-    roots = quadratic_roots(_dyad(2.5, 1.0, -far * np.exp(0.7j)))
+    (roots,) = quadratic_roots(_dyads((2.5, 1.0, -far * np.exp(0.7j))))
     assert (len(roots.x), len(roots.multiple), roots.singular, roots.continuum) == (0, 1, 2, False)
     assert abs(roots.multiple[0, 0] - np.exp(0.7j)) < 1e-15 * 8
 
@@ -259,19 +269,34 @@ def test_a_dyad_in_line_is_one_double_solution(far: float) -> None:
 @pytest.mark.parametrize("beside", [1e-5, 1e-9])
 def test_a_dyad_beside_its_limit_is_told_apart(beside: float) -> None:
     for sign, real in ((-1, True), (1, False)):
-        system = _dyad(2.5, 1.0, -3.5 * (1 + sign * beside))
-        roots = quadratic_roots(system)
+        system = _dyads((2.5, 1.0, -3.5 * (1 + sign * beside)))
+        (roots,) = quadratic_roots(system)
         assert (len(roots.x), len(roots.multiple)) == (2, 0)
-        proofs = prove_roots(system, roots.x, _exact(system))
+        mine = system.take(np.zeros(2, dtype=np.intp))
+        proofs = prove_roots(mine, roots.x, _exact(mine))
         assert proofs.real.all() == real
         # with coefficients this uncertain it might as well be at its limit, or beyond
-        assert not prove_roots(system, roots.x, _exact(system) + 10 * beside).holds.any()
+        assert not prove_roots(mine, roots.x, _exact(mine) + 10 * beside).holds.any()
 
 
 def test_a_dyad_that_folds_onto_itself_is_a_continuum() -> None:
-    roots = quadratic_roots(_dyad(2.5, -2.5, 0.0))
+    (roots,) = quadratic_roots(_dyads((2.5, -2.5, 0.0)))
     assert roots.continuum
     assert len(roots.x) == 0
+
+
+def test_dyads_are_solved_together_as_they_are_alone() -> None:
+    cases = [
+        (2.5, 1.0, -3.5),
+        (2.5, -2.5, 0.0),
+        (1.0, 1.0, 1.5j),
+        (2.5, 1.0, -1.5),
+        (1.0, 2.0, 9.0),
+    ]
+    for case, roots in zip(cases, quadratic_roots(_dyads(*cases)), strict=True):
+        (alone,) = quadratic_roots(_dyads(case))
+        for name, value in vars(alone).items():
+            assert np.array_equal(getattr(roots, name), value), (case, name)
 
 
 def test_null_spaces_are_orthonormal() -> None:

@@ -113,7 +113,7 @@ class DirectionForm:
         return left, away
 
     def system(self, left: ComplexArray) -> BilinearSystem:
-        """The bilinear system of one closure matrix (L, M + 1).
+        """The bilinear system of one closure matrix (L, M + 1), or those of stacked ones.
 
         Raises
         ------
@@ -146,7 +146,7 @@ class DirectionForm:
 
 
 def check_independent(left: ComplexArray) -> None:
-    """Reject closures (L, M + 1) that are not independent.
+    """Reject closures (..., L, M + 1) that are not independent.
 
     Raises
     ------
@@ -154,7 +154,7 @@ def check_independent(left: ComplexArray) -> None:
         If the loops are not independent.
     """
     sizes = np.linalg.svd(left, compute_uv=False)
-    if sizes[-1] <= _DEPENDENT * sizes[0]:
+    if (sizes[..., -1] <= _DEPENDENT * sizes[..., 0]).any():
         raise NoDirectionForm("are not independent: one follows from the others")
 
 

@@ -8,11 +8,12 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, ComplexArray
 
-__all__ = ["matrix_vector", "tall_product"]
+__all__ = ["Numbers", "matrix_vector", "tall_product"]
 
 _MOST = 16384  # multiplications at once, below the number from which on threads are used
 _TALLEST, _SHORTEST = 256, 16  # rows at once
 
+#: Real or complex numbers.
 Numbers = TypeVar("Numbers", Array, ComplexArray)
 
 

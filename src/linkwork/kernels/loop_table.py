@@ -18,7 +18,7 @@ from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import FunctionRow, LinearRows
+from linkwork.kernels.real_rows import FunctionRow, LinearRows, hessian_of
 from linkwork.kernels.single.single_laws import SingleWithLaws
 from linkwork.kernels.single.single_position import SinglePosition
 
@@ -135,6 +135,18 @@ class LoopTable:
             parts.append(np.zeros((len(v), len(self.linear.constant))))
             parts += [row.second_directional_derivative(v, d)[:, None] for row in self.functions]
         return np.concatenate(parts, axis=1)
+
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations at one position v (N,), (K, N, N).
+
+        ``weights`` (K, m): the factor of every equation in each sum.
+        """
+        rows = self.loops.rows
+        found = self.loops.hessians(v, weights[:, :rows] - 1j * weights[:, rows : 2 * rows])
+        first = self.equations - len(self.functions)
+        for k, row in enumerate(self.functions, first):
+            found += weights[:, k, None, None] * hessian_of(row, v)
+        return found
 
     def repeats_after(self, turns: Array) -> bool:
         """Whether variables (N,) moved by this many whole turns each satisfy the same equations.

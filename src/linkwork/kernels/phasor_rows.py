@@ -128,6 +128,26 @@ class PhasorRows:
         g = self._gather
         return tall_product(value, g), tall_product(first, g), tall_product(second, g)
 
+    def hessians(self, v: Array, weights: ComplexArray) -> Array:
+        """Second derivatives of the real parts of K sums of rows at one position, (K, N, N).
+
+        Parameters
+        ----------
+        v : (N,)
+        weights : (K, R) complex
+            The factor of every row in each sum.
+        """
+        phasors = weights[:, self.row] * self._phasors(v[None, :])
+        terms = self._terms(np.broadcast_to(v, (len(phasors), len(v))), phasors)
+        turning, sliding = self._weights, self._sliding
+        found: Array = -(turning * terms.real[:, None, :]) @ turning.T  # eq. (3)
+        if len(sliding):
+            slopes = np.zeros_like(found)
+            both = turning[:, sliding] * -phasors.imag[:, None, sliding]
+            np.add.at(slopes.transpose(2, 0, 1), self.length[sliding], both.transpose(2, 0, 1))
+            found += slopes + slopes.transpose(0, 2, 1)
+        return found
+
     def moduli(self, v: Array, factor: Array) -> tuple[Array, Array]:
         """|terms|, (B, T), and in dF/dv sums of moduli times each term's factor, (B, R, N)."""
         modulus = np.broadcast_to(np.abs(self.coefficient), factor.shape)

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["FunctionRow", "LinearRows"]
+__all__ = ["FunctionRow", "LinearRows", "hessian_of"]
 
 
 class FunctionRow(Protocol):
@@ -30,6 +30,18 @@ class FunctionRow(Protocol):
 
     def repeats_after(self, turns: Array) -> bool:
         """Whether ``variables`` (k,) moved by these whole turns are known to satisfy the same."""
+
+
+def hessian_of(row: FunctionRow, v: Array) -> Array:
+    """The second derivatives of a row at one position v (N,), (N, N)."""
+    # a row may name a variable twice
+    i, j = (index.ravel() for index in np.meshgrid(*[np.unique(row.variables)] * 2))
+    steps, places = np.eye(len(v)), np.tile(v, (len(i), 1))
+    along = row.second_directional_derivative(places, steps[i] + steps[j])
+    across = row.second_directional_derivative(places, steps[i] - steps[j])
+    found = np.zeros((len(v), len(v)))
+    found[i, j] = 0.25 * (along - across)  # eq. (5)
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)

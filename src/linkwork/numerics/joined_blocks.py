@@ -134,6 +134,19 @@ class JoinedBlocks:
         ]
         return np.concatenate(parts, axis=1)
 
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations, (K, N, N), with ``weights`` (K, n)."""
+        whole, order = self._whole(v[None, :])[0], self.order
+        found = np.zeros((len(weights), self.solver.variables, self.solver.variables))
+        row = 0
+        for block in self.blocks:
+            own, n = block.variables, len(block.unknowns)
+            found[:, own[:, None], own] += block.system.hessians(
+                whole[own], weights[:, row : row + n]
+            )
+            row += n
+        return found[:, order[:, None], order]
+
     def mixed(self, v: Array, a: Array, b: Array) -> Array:
         """D²F[a, b], (B, n), by polarisation."""
         # eq. (5)

@@ -77,7 +77,8 @@ def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
         r = f[0] / scale
         j = system.jacobian(v)[0, :, :n] * weights / scale[:, None]
         gradient = j.T @ r
-        hessian = j.T @ j + _curvature(system, v, r / scale)  # eq. (10)
+        bends = system.hessians(v[0], (r / scale)[None, :])[0, :n, :n]
+        hessian = j.T @ j + weights[:, None] * bends * weights  # eq. (10)
         try:
             # only a positive definite Hessian leads downhill, and then to a minimum
             np.linalg.cholesky(hessian)
@@ -94,26 +95,3 @@ def _refine_minimum(system: System, v: Array, f: Array) -> tuple[Array, Array]:
         if np.abs(change).max() < 1e-14:
             break
     return v, f
-
-
-def _curvature(system: System, v: Array, weighted: Array) -> Array:
-    """Σ r_k ∇²r_k in scaled variables, (n, n), from second derivatives along single directions.
-
-    2 D²F[a, b] = D²F[a + b, a + b] - D²F[a, a] - D²F[b, b] gives the mixed ones.
-    """
-    n = system.unknowns
-    first, second = np.triu_indices(n)
-    along = np.zeros((len(first), v.shape[1]))
-    lanes = np.arange(len(first))
-    along[lanes, first] = system.variable_scale[first]
-    along[lanes, second] = system.variable_scale[second]  # the same one where both are one
-    bends = system.second_directional_derivative(np.repeat(v, len(first), axis=0), along) @ weighted
-    curvature = np.zeros((n, n))
-    curvature[first, second] = bends
-    own = np.diag(curvature).copy()
-    mixed = first != second
-    # 2 D²F[a, b] from sums of both directions, instead of eq. (5): fewer lanes
-    halves = 0.5 * (bends[mixed] - own[first[mixed]] - own[second[mixed]])
-    curvature[first[mixed], second[mixed]] = halves
-    curvature[second[mixed], first[mixed]] = halves
-    return curvature

@@ -54,6 +54,11 @@ class System(SmallSystem, Protocol):
     def second_directional_derivative(self, v: Array, d: Array) -> Array:
         """D²F[d, d], (B, m)."""
 
+    def hessians(self, v: Array, weights: Array) -> Array:
+        """Second derivatives of K sums of equations at one position v (N,), (K, N, N); ``weights``
+        (K, m): the factor of every equation in each sum.
+        """
+
     @property
     def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` gives a bound."""

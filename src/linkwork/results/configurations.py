@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from linkwork.foundation.completeness import Completeness
@@ -61,15 +61,14 @@ class PathCount:
     bound: int = 0
     theorem: str = ""
 
-    def plus(self, other: PathCount) -> PathCount:
-        """The sum of two counts."""
-        kept = ("unknowns", "solved", "theorem")
-        numbers = [f.name for f in fields(self) if f.name not in kept]
-        sums = {name: getattr(self, name) + getattr(other, name) for name in numbers}
-        theorem = self.theorem
-        if other.theorem not in theorem:
-            theorem = f"{theorem} and {other.theorem}"
-        return replace(self, solved=self.solved + other.solved, theorem=theorem, **sums)
+    @classmethod
+    def total(cls, counts: Sequence[PathCount]) -> PathCount:
+        """The sum of the counts of one block, one at least."""
+        kept = ("unknowns", "theorem")
+        numbers = [f.name for f in fields(cls) if f.name not in kept]
+        sums = {name: sum(getattr(count, name) for count in counts) for name in numbers}
+        theorems = dict.fromkeys(count.theorem for count in counts)
+        return cls(unknowns=counts[0].unknowns, theorem=" and ".join(theorems), **sums)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -7,6 +7,8 @@ the whole are counted like a product.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import reduce
+from operator import itemgetter
 
 import numpy as np
 
@@ -22,7 +24,7 @@ from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.block_solver import Block, Linearised, linearise_block
-from linkwork.numerics.homotopy.bilinear import prove_roots
+from linkwork.numerics.homotopy.bilinear import BilinearSystem, ProvedRoots, prove_roots
 from linkwork.numerics.homotopy.bilinear_family import structure_of
 from linkwork.numerics.homotopy.isolated_roots import isolated_roots
 from linkwork.numerics.homotopy.pencil_roots import roots_of_two_loops
@@ -239,7 +241,8 @@ def _block_configurations(
         closures = list(zip(*form.closures(known, spread), strict=True))
         keys = [(left.tobytes(), off.tobytes()) for left, off in closures]
         different = dict(zip(keys, closures, strict=True))
-        once = {key: _solve_block(form, *pair) for key, pair in different.items()}
+        left, off = (np.stack(part) for part in zip(*different.values(), strict=True))
+        once = dict(zip(different, _solve_block(form, left, off), strict=True))
         solved = [once[key] for key in keys]
     else:  # angles that follow from others without a loop
         solved = [_FOLLOWS] * len(v)
@@ -250,9 +253,7 @@ def _block_configurations(
     start[:, block.unknowns] = form.unknowns(x, known[rows], near)
     end, good, iterations = _polish_roots(model, block, start, multiple)
     good[good] = _find_distinct(model, end[good], rows[good])
-    grade, count = solved[0].grade, solved[0].paths
-    for part in solved[1:]:
-        grade, count = grade.and_then(part.grade), count.plus(part.paths)
+    grade = reduce(Completeness.and_then, (part.grade for part in solved))
     if (~good & ~multiple).any():  # proved as directions, but not as angles and lengths
         grade = grade.and_then(Completeness.NOT_PROVED)
     return _BlockFound(
@@ -261,7 +262,7 @@ def _block_configurations(
         multiple=multiple[good],
         iterations=iterations[good],
         completeness=grade,
-        paths=replace(count, real=int(good.sum())),
+        paths=replace(PathCount.total([part.paths for part in solved]), real=int(good.sum())),
     )
 
 
@@ -286,10 +287,14 @@ def _polish_roots(
 def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
     """Which positions (R, N) are no repetition of an earlier one of the same row (ascending)."""
     size, turns = model.compiled.solver.variable_scale, model.compiled.table.is_angle
+    earlier, later = np.triu_indices(len(v), 1)
+    mine = np.flatnonzero(rows[earlier] == rows[later])
+    earlier, later = earlier[mine], later[mine]
+    gap = within_half_a_turn(v[earlier] - v[later], turns)
+    equal = np.flatnonzero((np.abs(gap) <= _SAME_POSITION * size).all(axis=1))
     fresh = np.ones(len(v), dtype=bool)
-    for k, begin in enumerate(np.searchsorted(rows, rows)):
-        gap = within_half_a_turn(v[begin:k] - v[k], turns)
-        fresh[k] = not ((np.abs(gap) <= _SAME_POSITION * size).all(axis=1) & fresh[begin:k]).any()
+    for first, second in sorted(zip(earlier[equal], later[equal], strict=True), key=itemgetter(1)):
+        fresh[second] &= not fresh[first]
     return fresh
 
 
@@ -312,17 +317,31 @@ _FOLLOWS = _BlockRoots(
 )
 
 
-def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> _BlockRoots:
-    system = form.system(left)
-    if system.loops == 1:
-        roots, bound = quadratic_roots(system), bound_by_products(system.products)
-    else:
-        family = structure_of(system)
-        known = roots_of_two_loops(system) if system.loops == 2 else None
-        roots = isolated_roots(system, family, known)
-        bound = family.bound_of(system, off, len(roots.x))
-    proofs = prove_roots(system, roots.x, off)
-    m = system.size
+def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> list[_BlockRoots]:
+    """The roots of a block for each of K closures (K, L, M + 1), known within ``off``."""
+    if form.table.loops.rows > 1:
+        return [_solve_loops(form.system(left[k]), off[k]) for k in range(len(left))]
+    systems = form.system(left)
+    found = quadratic_roots(systems)
+    of = np.repeat(np.arange(len(found)), [len(roots.x) for roots in found])
+    proofs = prove_roots(systems.take(of), np.concatenate([roots.x for roots in found]), off[of])
+    bound = bound_by_products(systems.products)
+    return [
+        _graded(roots, proofs.take(np.flatnonzero(of == k)), bound) for k, roots in enumerate(found)
+    ]
+
+
+def _solve_loops(system: BilinearSystem, off: Array) -> _BlockRoots:
+    """The roots of two or more loops."""
+    family = structure_of(system)
+    known = roots_of_two_loops(system) if system.loops == 2 else None
+    roots = isolated_roots(system, family, known)
+    bound = family.bound_of(system, off, len(roots.x))
+    return _graded(roots, prove_roots(system, roots.x, off), bound)
+
+
+def _graded(roots: Roots, proofs: ProvedRoots, bound: SolutionBound) -> _BlockRoots:
+    m = roots.x.shape[1] // 2
     # roots that no proof decides are taken by a tolerance, and lower the grade of the list
     real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < ALMOST_REAL))
     undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()

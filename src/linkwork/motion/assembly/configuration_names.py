@@ -27,13 +27,12 @@ def order_configurations(
     dyad = form.table.loops.rows == 1
     single = len(form.turning) == 0 or form.rows.shape[1] == 0 or (dyad and folded)
     turns = block.system.is_angle[: len(block.unknowns)]
+    own = v[:, block.unknowns]
+    # an angle that is zero but for rounding is sorted as zero, not as a full turn
+    angle = np.mod(own + _ROUND, 2.0 * np.pi)
     keys: list[tuple[float, ...]] = []
     names = []
-    for k in range(len(v)):
-        own = v[k, block.unknowns]
-        # an angle that is zero but for rounding is sorted as zero, not as a full turn
-        angle = np.mod(own + _ROUND, 2.0 * np.pi)
-        values = np.round(np.where(turns, angle, own) / _ROUND).tolist()
+    for k, values in enumerate(np.round(np.where(turns, angle, own) / _ROUND).tolist()):
         name = "" if single else "number"
         rank = 0.0
         if dyad and not single:

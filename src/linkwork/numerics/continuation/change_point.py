@@ -351,13 +351,7 @@ def _ratios(solver: BlockSolver, v: Array) -> Iterator[float]:
 
 def _near(system: System, v: Array) -> Array:
     """How long the columns of J become near v (N,): the largest change by a natural step, (n,)."""
-    n, count = len(system.equation_scale), len(v)
-    i, j = (index.ravel() for index in np.indices((n, count)))
-    column, step = np.eye(count)[i], np.diag(system.variable_scale)[j]
-    lanes = np.repeat(v[None, :], 2 * n * count, axis=0)
-    both = np.concatenate([column + step, column - step])
-    along = system.second_directional_derivative(lanes, both)
-    mixed = 0.25 * (along[: n * count] - along[n * count :])  # eq. (5)
-    changes: Array = np.abs(mixed / system.equation_scale).max(axis=1).reshape(n, count)
-    largest: Array = changes.max(axis=1)
+    n = len(system.equation_scale)
+    changes = np.abs(system.hessians(v, np.diag(1.0 / system.equation_scale)))
+    largest: Array = (changes[:, :n] * system.variable_scale).max(axis=(0, 2))
     return largest

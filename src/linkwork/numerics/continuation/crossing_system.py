@@ -55,7 +55,7 @@ class Equations(Protocol):
     def variable_scale(self) -> Array: ...
     def jacobian(self, v: Array) -> Array: ...
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array]: ...
-    def second_directional_derivative(self, v: Array, d: Array) -> Array: ...
+    def hessians(self, v: Array, weights: Array) -> Array: ...
 
 
 class CrossingSystem:
@@ -84,14 +84,8 @@ class CrossingSystem:
 
     def bend(self, x: Array, t: float, w: Array) -> Array:
         """wᵀD²F over all pairs of scaled unit steps, (n + 1, n + 1)."""
-        size = self.n + 1
-        i, j = np.triu_indices(size)
         v, basis, second = self._at(x, t)
-        lanes = np.repeat(v, 2 * len(i), axis=0)
-        both = np.concatenate([basis[i] + basis[j], basis[i] - basis[j]])
-        along = self.system.second_directional_derivative(lanes, both) / self.scale @ w
-        matrix = np.zeros((size, size))
-        matrix[i, j] = matrix[j, i] = 0.25 * (along[: len(i)] - along[len(i) :])  # eq. (5)
+        matrix: Array = basis @ self.system.hessians(v[0], (w / self.scale)[None, :])[0] @ basis.T
         if second.any():  # known variables that do not move at a constant rate
             slope = self.system.jacobian(v)[0, :, self.n :]
             matrix[self.n, self.n] += float(w @ (slope @ second / self.scale))

@@ -12,12 +12,12 @@ V = conj(U). On the two null spaces the M products are bilinear equations in P^L
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
-from linkwork.foundation.products import matrix_vector
+from linkwork.foundation.products import Numbers, matrix_vector
 from linkwork.foundation.rounding import PROOF_SLACK, UNIT_ROUNDOFF
 from linkwork.foundation.stacked_systems import inverses
 from linkwork.numerics.proof.kantorovich import radii
@@ -27,11 +27,11 @@ __all__ = ["BilinearSystem", "ProvedRoots", "prove_roots"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BilinearSystem:
-    """One system.
+    """One system, or B systems with the same products.
 
     Parameters
     ----------
-    left, right : (L, M + 1) complex
+    left, right : (L, M + 1) or (B, L, M + 1) complex
         Sizes of order one: lengths are divided by a length of the mechanism.
     rows : (4, M) int
         p, q, p', q' of every product.
@@ -44,12 +44,12 @@ class BilinearSystem:
     @property
     def loops(self) -> int:
         """L."""
-        return len(self.left)
+        return int(self.left.shape[-2])
 
     @property
     def size(self) -> int:
         """M = 2L, the unknowns in U and in V."""
-        return 2 * len(self.left)
+        return 2 * self.loops
 
     @property
     def products(self) -> tuple[tuple[int, ...], ...]:
@@ -65,15 +65,18 @@ class BilinearSystem:
         kappa += 2.0 * ((p1 != one) & (q1 != one))
         return kappa
 
+    def take(self, index: IndexArray) -> BilinearSystem:
+        """Some of B systems, (R,), each as often as it is named."""
+        return replace(self, left=self.left[index], right=self.right[index])
+
     def residual_and_jacobian(self, x: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """F, (B, 2M), and its derivative, (B, 2M, 2M), at x = (U, V), (B, 2M)."""
         count, m, loops = len(x), self.size, self.loops
         u, v = _with_one(x[:, :m]), _with_one(x[:, m:])
         p, q, p1, q1 = self.rows
         # eq. (45)
-        f = np.concatenate(
-            [u @ self.left.T, v @ self.right.T, u[:, p] * v[:, q] - u[:, p1] * v[:, q1]], axis=1
-        )
+        products = u[:, p] * v[:, q] - u[:, p1] * v[:, q1]
+        f = np.concatenate([_rows_at(self.left, u), _rows_at(self.right, v), products], axis=1)
         wide = np.zeros((count, 2 * m, 2, m + 1), dtype=complex)
         wide[:, :loops, 0] = self.left
         wide[:, loops:m, 1] = self.right
@@ -87,15 +90,36 @@ class BilinearSystem:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProvedRoots:
-    """The proofs of roots, (R,): ``holds``, and ``real`` or ``unreal``.
+    """The proofs of roots x (R, 2M): ``holds`` (R,), and ``real`` or ``unreal``.
 
-    A root is neither if that could not be decided. ``apart``: no two proved roots are the same.
+    A root is neither if that could not be decided. ``radius`` (R,): how far it is from x at most.
     """
 
+    x: ComplexArray
     holds: BoolArray
     real: BoolArray
     unreal: BoolArray
-    apart: bool
+    radius: Array
+
+    @property
+    def apart(self) -> bool:
+        """Whether no two proved roots are the same."""
+        x, radius = self.x[self.holds], PROOF_SLACK * self.radius[self.holds]
+        return all(
+            (np.abs(x[k:] - x[k - 1]).max(axis=1) > radius[k:] + radius[k - 1]).all()
+            for k in range(1, len(x))
+        )
+
+    def take(self, index: IndexArray) -> ProvedRoots:
+        """Some of the roots."""
+        own = (self.x, self.holds, self.real, self.unreal, self.radius)
+        x, holds, real, unreal, radius = (part[index] for part in own)
+        return ProvedRoots(x=x, holds=holds, real=real, unreal=unreal, radius=radius)
+
+
+def _rows_at(rows: Numbers, u: Numbers) -> Numbers:
+    """Rows (L, K), or (B, L, K), times vectors (B, K): (B, L)."""
+    return u @ rows.T if rows.ndim == 2 else matrix_vector(rows, u)
 
 
 def _with_one(u: ComplexArray) -> ComplexArray:
@@ -110,8 +134,10 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
 
     Parameters
     ----------
+    system : BilinearSystem
+        One, or that of each root.
     x : (R, 2M)
-    spread : (L, M + 1)
+    spread : (L, M + 1) or (R, L, M + 1)
         How far each coefficient of ``left`` (and of ``right``) may be from its true value.
 
     Notes
@@ -120,7 +146,7 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     conjugate of its box meets the ball in which it is the only one, and not real if the two boxes
     are apart.
     """
-    count, m = len(x), system.size
+    m = system.size
     f, j = system.residual_and_jacobian(x)
     a = inverses(j)
     a = np.where(np.isfinite(a).all(axis=(1, 2), keepdims=True), a, 0.0)  # then Z0 ≥ 1
@@ -131,10 +157,11 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     slip = spread + weight * np.abs(system.left)
     slip_right = spread + weight * np.abs(system.right)
     products = u[:, p] * v[:, q] + u[:, p1] * v[:, q1]
-    error = np.concatenate([u @ slip.T, v @ slip_right.T, weight * products], axis=1)
-    blur = np.zeros((2 * m, 2 * m))
-    blur[: system.loops, :m] = slip[:, :m]
-    blur[system.loops : m, m:] = slip_right[:, :m]
+    parts = [_rows_at(slip, u), _rows_at(slip_right, v), weight * products]
+    error = np.concatenate(parts, axis=1)
+    blur = np.zeros((*slip.shape[:-2], 2 * m, 2 * m))
+    blur[..., : system.loops, :m] = slip[..., :m]
+    blur[..., system.loops : m, m:] = slip_right[..., :m]
     y = np.abs(matrix_vector(a, f)) + matrix_vector(size, error + weight * np.abs(f))
     z = np.abs(np.eye(2 * m) - a @ j) + size @ (blur + weight * np.abs(j))
     y_max, z_max = PROOF_SLACK * y.max(axis=1), PROOF_SLACK * z.sum(axis=2).max(axis=1)
@@ -143,13 +170,10 @@ def prove_roots(system: BilinearSystem, x: ComplexArray, spread: Array) -> Prove
     # a real root has V = conj(U), so it is its own mirror image
     mirrored = np.concatenate([x[:, m:], x[:, :m]], axis=1).conj()
     gap = np.abs(x - mirrored).max(axis=1, initial=0.0)
-    apart = True
-    for k in range(count - 1):
-        away = np.abs(x[k + 1 :] - x[k]).max(axis=1)
-        apart &= bool((away > (exists[k + 1 :] + exists[k]) * PROOF_SLACK)[holds[k + 1 :]].all())
     return ProvedRoots(
+        x=x,
         holds=holds,
         real=holds & (gap + exists < unique),  # eq. (52)
         unreal=holds & (gap > 2.0 * exists * PROOF_SLACK),
-        apart=apart,
+        radius=exists,
     )
