@@ -73,15 +73,21 @@ class PointTable:
             ),
         )
 
+    def places(self, v: Array) -> ComplexArray:
+        """Positions x + iy, (B, points)."""
+        with np.errstate(all="ignore"):  # too far away for floats
+            return self._from_parents(self.rows.value(v))
+
+    def _from_parents(self, part: ComplexArray) -> ComplexArray:
+        for child, parent in self.levels:
+            # level by level: the parents are complete
+            part[:, child] += part[:, parent]
+        return part
+
     def jet(self, v: Array, first: Array, second: Array) -> tuple[ComplexArray, ...]:
         """Positions x + iy with first and second derivatives along a path, (B, points) each."""
         with np.errstate(all="ignore"):  # too far away or too fast for floats
-            parts = self.rows.jet(v, first, second)
-            for child, parent in self.levels:
-                for part in parts:
-                    # level by level: the parents are complete
-                    part[:, child] += part[:, parent]
-        return parts
+            return tuple(map(self._from_parents, self.rows.jet(v, first, second)))
 
 
 def phasor_rows(rows: Sequence[Iterable[Term]], index: Mapping[str, int]) -> PhasorRows:

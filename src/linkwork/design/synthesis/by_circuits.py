@@ -22,9 +22,8 @@ from linkwork.motion.circuit.followed_circuit import (
 from linkwork.motion.curve_branches import CurveBranch
 from linkwork.motion.drive import Drive
 from linkwork.motion.model import Model
-from linkwork.motion.named_quantities import RowValues
 from linkwork.motion.start import first_position
-from linkwork.numerics.continuation.local_parametrization import coincide
+from linkwork.numerics.continuation.local_parametrization import coincide, same_position
 from linkwork.numerics.newton import NewtonOptions
 
 __all__ = ["defects_by_circuits"]
@@ -32,6 +31,8 @@ __all__ = ["defects_by_circuits"]
 # of a point's way: a position that is missed by less lies on the branch, and other branches are
 # farther away, unless the input is nearer than the square of this to a dead point
 _MISSED = 1e-6
+# of the mechanism's size: positions that are missed by more lie elsewhere, however they are rounded
+_ELSEWHERE = 1e-3
 # of the mechanism's size: nearer to a place than this, configurations are equally near
 _EQUALLY_NEAR = 1e-9
 
@@ -78,6 +79,10 @@ class _Search:
         self.drive, self.model, self.leads = drive, drive.model, drive.leads
         self.values = [float(value) * drive.unit for value in inputs]
         self.places = places
+        names = self.model.compiled.points.names
+        # names that do not exist have a message of their own
+        found = [self.model.quantities.find(f"{name}.x").own.name for name in places[0]]
+        self._numbers = [names.index(name.removesuffix(".x")) for name in found]
         self.explorer = explorer_of(drive)
         self._lists: dict[int, Assemblies] = {}
         self._ways: dict[CurveBranch, float] = {}
@@ -88,7 +93,7 @@ class _Search:
             return ()
         guess = self._guess()
         way = None if guess is None else straight_way(self.drive, guess, self.values[:1])
-        mine = [] if way is None else [way[0]]
+        mine = [] if way is None or np.isnan(way.v).any() else [way.v[0]]
         if any(self._is_straight(v) for v in mine):
             return ()
         others = [
@@ -96,6 +101,10 @@ class _Search:
         ]
         if any(self._is_straight(v) for v in others):
             return ()
+        if not self.leads.is_angle[self.leads.parameter]:
+            decided = self._decided_straight()
+            if decided is not None:
+                return decided
         starts = self._starts(guess)
         found = [] if starts else [self._no_start()]
         for start in starts:
@@ -112,13 +121,60 @@ class _Search:
         return done.v if done.status.ok and is_regular(self.leads, done.v) else None
 
     def _is_straight(self, v: Array) -> bool:
-        """Whether the branch of a position (N,) passes all positions, followed straight."""
-        here = straight_way(self.drive, v, self.values)
-        if here is None:
+        """Whether the branch of a position (N,) passes all positions exactly, followed straight."""
+        way = straight_way(self.drive, v, self.values)
+        if way is None or np.isnan(way.v).any():
             return False
-        way = sum(float(np.abs(np.diff(z)).sum()) for z in self._points(here))
-        missed = [self._distances(here[k : k + 1], k)[0] for k in range(len(here))]
-        return bool(max(missed) <= _MISSED * way)
+        missed = [self._distances(way.v[k : k + 1], k)[0] for k in range(len(way.v))]
+        return bool(max(missed) <= _MISSED * self._length(way.v))
+
+    def _decided_straight(self) -> tuple[Defect, ...] | None:
+        """The answer of an input that does not turn, so that no branch has an input twice; ``None``
+        if it is in doubt which branch passes the most positions.
+
+        Only the circuits of branches that pass the most are followed.
+        """
+        starts = self._regular_starts()
+        passed = [self._passed(v) for v in starts]
+        known = [count for count in passed if count is not None]
+        if not starts or len(known) < len(passed):
+            return None
+        most, found = max(known), []
+        for v in [
+            v for v, count in zip(starts, known, strict=True) if count == most < len(self.values)
+        ]:
+            found.append(self._change(FollowedCircuit(self.explorer, v), most))
+            if found[-1].kind is DefectKind.BRANCH:
+                return (found[-1],)
+        return (min(found, key=_claim),) if found else ()
+
+    def _passed(self, v: Array) -> int | None:
+        """How many positions the branch of a position (N,) passes, the first of them, before it
+        ends or is clearly elsewhere; ``None`` in doubt.
+        """
+        way = straight_way(self.drive, v, self.values)
+        if way is None:
+            return None
+        length, size = (
+            self._length(way.v[~np.isnan(way.v[:, 0])]),
+            self.model.equations.length_scale,
+        )
+        edge = _MISSED * float(self.leads.scale[self.leads.parameter])
+        for k, value in enumerate(self.values[1:], start=1):
+            if value < way.low - edge or value > way.high + edge:
+                return k
+            if value < way.low + edge or value > way.high - edge:
+                return None
+            missed = self._distances(way.v[k : k + 1], k)[0]
+            if missed <= _MISSED * length:
+                continue
+            if not any(same_position(self.leads, way.v[k], near) for near in self._nearest(k)):
+                return k if missed > _ELSEWHERE * size else None
+        return len(self.values)
+
+    def _length(self, v: Array) -> float:
+        """How long the paths of the points are through positions (K, N)."""
+        return sum(float(np.abs(np.diff(z)).sum()) for z in self._points(v))
 
     def _starts(self, guess: Array | None) -> list[_Start]:
         """Every circuit and branch that the first position may lie on."""
@@ -146,7 +202,7 @@ class _Search:
         for k in range(1, len(self.values)):
             branches = self._passing(start.circuit, branches, k)
             if not branches:
-                return self._change(start, k)
+                return self._change(start.circuit, k)
         return None
 
     def _passing(
@@ -170,13 +226,12 @@ class _Search:
     def _way(self, branch: CurveBranch) -> float:
         """How long the paths of the points are along a branch."""
         if branch not in self._ways:
-            way = sum(float(np.abs(np.diff(z)).sum()) for z in self._points(branch.v))
-            self._ways[branch] = way
+            self._ways[branch] = self._length(branch.v)
         return self._ways[branch]
 
-    def _change(self, start: _Start, k: int) -> Defect:
+    def _change(self, circuit: FollowedCircuit, k: int) -> Defect:
         """The defect in front of a position that the branches of the one before do not pass."""
-        circuit, listed = start.circuit, self._list(k)
+        listed = self._list(k)
         if listed.completeness is Completeness.NOT_LISTED:
             if any(self._passes(circuit, branch, k) for branch in circuit.branches()):
                 return _changes(DefectKind.BRANCH, k)
@@ -270,12 +325,8 @@ class _Search:
 
     def _points(self, v: Array) -> list[ComplexArray]:
         """The points that have places at variables (K, N), (K,) each."""
-        still = np.zeros_like(v)
-        rows = RowValues(self.model, v, still, still, np.ones(len(v), dtype=bool))
-        return [
-            rows.series(f"{name}.x").value + 1j * rows.series(f"{name}.y").value
-            for name in self.places[0]
-        ]
+        places = self.model.compiled.points.places(v)
+        return [places[:, number] for number in self._numbers]
 
 
 def _claim(defect: Defect) -> tuple[bool, int, bool]:

@@ -61,8 +61,7 @@ class BodyPoses:
 
     def of(self, v: Array) -> dict[str, tuple[ComplexArray, ComplexArray]]:
         """Origin [mm] and direction of every body in positions (B, N)."""
-        nothing = np.zeros_like(v)
-        places = self.millimetres * self.model.compiled.points.jet(v, nothing, nothing)[0]
+        places = self.millimetres * self.model.compiled.points.places(v)
         one = np.ones(len(v), dtype=complex)
         found: dict[str, tuple[ComplexArray, ComplexArray]] = {GROUND: (one - one, one)}
         for body in self.bodies:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,25 +23,43 @@ from linkwork.numerics.continuation.local_parametrization import (
     same_position,
 )
 
-__all__ = ["FollowedCircuit", "explorer_of", "is_regular", "straight_way"]
+__all__ = ["FollowedCircuit", "StraightWay", "explorer_of", "is_regular", "straight_way"]
 
 
-def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> Array | None:
-    """The positions (K, N) at values of the input on the branch of a position (N,).
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StraightWay:
+    """A branch over some values of the input, followed without turning back.
 
-    ``None`` if the branch, followed straight to the least and the greatest value, ends before, or
-    redundant links do not fit along it.
+    ``v`` (K, N): the positions at the values, NaN where the branch ends before; ``low`` and
+    ``high``: the input at its ends, infinite where it was not followed to one.
+    """
+
+    v: Array
+    low: float
+    high: float
+
+
+def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> StraightWay | None:
+    """The branch of a position (N,) between the least and the greatest of K values of the input.
+
+    ``None`` if redundant links do not fit along it, or a position at a value was not found.
     """
     solver, t = drive.solver, np.array(values)
     node = node_at(solver, drive.path, float(start[drive.leads.parameter]), start)
     track = track_to(solver, drive.path, node, values)
-    if track.ends:
+    v = np.full((len(t), len(start)), np.nan)
+    inside = np.flatnonzero((t >= track.first_t) & (t <= track.last_t))
+    if len(inside):
+        rows = rows_on_track(solver, drive.path, track, t[inside])
+        if not (rows.status == CONVERGED).all():
+            return None
+        v[inside] = rows.v
+    way = np.concatenate([np.stack([node.v for node in track.nodes]), v[inside]])
+    if (misfit(drive.model.equations, way) > FITS).any():
         return None
-    rows = rows_on_track(solver, drive.path, track, t)
-    way = np.concatenate([np.stack([node.v for node in track.nodes]), rows.v])
-    if not (rows.status == CONVERGED).all() or (misfit(drive.model.equations, way) > FITS).any():
-        return None
-    return rows.v
+    low = -np.inf if track.below is None else track.first_t
+    high = np.inf if track.above is None else track.last_t
+    return StraightWay(v=v, low=low, high=high)
 
 
 def explorer_of(drive: Drive) -> Explorer:

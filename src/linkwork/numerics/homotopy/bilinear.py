@@ -112,9 +112,13 @@ class ProvedRoots:
 
     def take(self, index: IndexArray) -> ProvedRoots:
         """Some of the roots."""
-        own = (self.x, self.holds, self.real, self.unreal, self.radius)
-        x, holds, real, unreal, radius = (part[index] for part in own)
-        return ProvedRoots(x=x, holds=holds, real=real, unreal=unreal, radius=radius)
+        return ProvedRoots(
+            x=self.x[index],
+            holds=self.holds[index],
+            real=self.real[index],
+            unreal=self.unreal[index],
+            radius=self.radius[index],
+        )
 
 
 def _rows_at(rows: Numbers, u: Numbers) -> Numbers:
