@@ -19,8 +19,7 @@ def stay_open(designs: Designs) -> BoolArray:
     form one side. No polygon has a side longer than all others together.
     """
     loops, n = designs.base.compiled.table.loops, designs.base.compiled.table.unknowns
-    weights = np.zeros((loops.variables, len(loops.row)))
-    np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
+    weights = loops.weight_matrix
     vectors = designs.loops * np.exp(1j * (designs.start[:, n:] @ weights[n:]))
     found = np.zeros(len(designs), dtype=bool)
     for row in range(loops.rows):

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
 from linkwork.equations.leader_solvers import LeaderSolvers
 from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.equations.real_rows import FormulaRow
@@ -42,6 +43,26 @@ class Compiled:
         """The equations with any variable as the known one."""
         single = self.table.variables == self.table.unknowns + 1
         return LeaderSolvers(self.table, self.solver if single else None)
+
+
+    def direction_form(self, number: int) -> DirectionForm:
+        """A block over unknown directions, by its number in solving order.
+
+        Raises
+        ------
+        NoDirectionForm
+            If the block has no such form.
+        """
+        if number not in self._direction_forms:
+            table = self.solver.blocks[number].system
+            if not isinstance(table, LoopTable):
+                raise NoDirectionForm("are not loops")
+            self._direction_forms[number] = direction_form(table)
+        return self._direction_forms[number]
+
+    @cached_property
+    def _direction_forms(self) -> dict[int, DirectionForm]:
+        return {}
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ weights. Otherwise the block has no such form, and the error gives the reason.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -63,12 +64,12 @@ class DirectionForm:
         """D, the number of unknown directions."""
         return int(self.angles.shape[1])
 
-    @property
+    @cached_property
     def turning(self) -> IndexArray:
         """The unknowns of the block that are angles."""
         return np.flatnonzero(self.table.is_angle[: self.table.unknowns])
 
-    @property
+    @cached_property
     def sliding(self) -> IndexArray:
         """The unknowns of the block that are lengths."""
         return np.flatnonzero(~self.table.is_angle[: self.table.unknowns])
@@ -91,8 +92,7 @@ class DirectionForm:
         off = np.zeros_like(v)
         off[:, self.turning], off[:, n:] = shifted_off, spread
         size = float(table.equation_scale[0])
-        weights = np.zeros((table.variables, len(loops.row)))
-        np.add.at(weights, (loops.phase_variable, loops.phase_term), loops.phase_weight)
+        weights = loops.weight_matrix
         phase = v @ weights
         turned = np.abs(v) @ np.abs(weights)
         slack = off @ np.abs(weights) + UNIT_ROUNDOFF * (4.0 * turned + 16.0 + len(loops.row))
@@ -175,11 +175,9 @@ def direction_form(table: LoopTable, free: int = 0) -> DirectionForm:
     turning = np.flatnonzero(table.is_angle[:n])
     sliding = np.flatnonzero(~table.is_angle[:n])
     reduce, shift, free_angles = _solve_lines(table, turning, sliding)
-    phases = np.zeros((len(loops.row), table.variables))
-    np.add.at(phases, (loops.phase_term, loops.phase_variable), loops.phase_weight)
-    if np.abs(phases[:, sliding]).max(initial=0.0) > 0.0:
+    if np.abs(loops.weight_matrix[sliding]).max(initial=0.0) > 0.0:
         raise NoDirectionForm("relate an angle to a length, as racks and rolling wheels do")
-    sums = phases[:, turning] @ reduce
+    sums = loops.weight_matrix[turning].T @ reduce
     directions, number = _directions(sums)
     angles = reduce @ _inverse(directions, reduce.shape[1])
     along = _along(table, number, sliding)

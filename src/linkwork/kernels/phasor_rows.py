@@ -47,8 +47,8 @@ class PhasorRows:
     phase_weight: Array
 
     @cached_property
-    def _weights(self) -> Array:
-        """W, (N, T)."""
+    def weight_matrix(self) -> Array:
+        """W, (N, T): what every variable turns the phase of every term by."""
         w = np.zeros((self.variables, len(self.row)))
         np.add.at(w, (self.phase_variable, self.phase_term), self.phase_weight)
         return w
@@ -79,7 +79,7 @@ class PhasorRows:
     def _phasors(self, v: Array, coefficient: ComplexArray | None = None) -> ComplexArray:
         # eq. (1)
         own = self.coefficient if coefficient is None else coefficient
-        phasors: ComplexArray = own * np.exp(1j * tall_product(v, self._weights))
+        phasors: ComplexArray = own * np.exp(1j * tall_product(v, self.weight_matrix))
         return phasors
 
     def _terms(self, v: Array, phasors: ComplexArray) -> ComplexArray:
@@ -116,7 +116,7 @@ class PhasorRows:
         For d2 = 0 the last one is the directional second derivative D²F[d1, d1].
         """
         e = self._phasors(v)
-        psi1, psi2 = tall_product(d1, self._weights), tall_product(d2, self._weights)
+        psi1, psi2 = tall_product(d1, self.weight_matrix), tall_product(d2, self.weight_matrix)
         s, s1, s2 = np.ones_like(psi1), np.zeros_like(psi1), np.zeros_like(psi1)
         sliding = self._sliding
         index = self.length[sliding]
@@ -139,7 +139,7 @@ class PhasorRows:
         """
         phasors = weights[:, self.row] * self._phasors(v[None, :])
         terms = self._terms(np.broadcast_to(v, (len(phasors), len(v))), phasors)
-        turning, sliding = self._weights, self._sliding
+        turning, sliding = self.weight_matrix, self._sliding
         found: Array = -(turning * terms.real[:, None, :]) @ turning.T  # eq. (3)
         if len(sliding):
             slopes = np.zeros_like(found)

@@ -12,7 +12,7 @@ from operator import itemgetter
 
 import numpy as np
 
-from linkwork.equations.directions import DirectionForm, NoDirectionForm, direction_form
+from linkwork.equations.directions import DirectionForm, NoDirectionForm
 from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
 from linkwork.foundation.completeness import Completeness
@@ -109,11 +109,11 @@ class _Assembly:
 
     def run(self) -> Assemblies:
         """Solve every block for every row on which redundant links fit so far."""
-        for block in self.solver.blocks:
+        for number, block in enumerate(self.solver.blocks):
             if not len(self.v):
                 break
             try:
-                self._add(block)
+                self._add(number, block)
             except NoDirectionForm as reason:
                 self._give_up(f"the equations of {', '.join(self._names(block))} {reason}")
                 break
@@ -150,14 +150,14 @@ class _Assembly:
         self.v, self.proof = self.v[:0], _rows_of(self.proof, np.zeros(0, dtype=np.intp))
         self.iterations, self.labels = self.iterations[:0], []
 
-    def _add(self, block: Block) -> None:
+    def _add(self, number: int, block: Block) -> None:
         table = block.system
         if not isinstance(table, LoopTable):
             raise NoDirectionForm("are not loops")
         if table.is_straight and (table.functions or not table.is_angle[: table.unknowns].all()):
             self._follow(block)
             return
-        form = direction_form(table)
+        form = self.model.compiled.direction_form(number)
         found = _block_configurations(self.model, block, form, self.v, self.proof.error_bound)
         self.completeness = self.completeness.and_then(found.completeness)
         count = replace(found.paths, unknowns=self._names(block))
