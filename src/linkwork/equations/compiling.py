@@ -44,7 +44,6 @@ class Compiled:
         single = self.table.variables == self.table.unknowns + 1
         return LeaderSolvers(self.table, self.solver if single else None)
 
-
     def direction_form(self, number: int) -> DirectionForm:
         """A block over unknown directions, by its number in solving order.
 

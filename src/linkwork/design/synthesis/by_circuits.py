@@ -67,11 +67,16 @@ def defects_by_circuits(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Start:
-    """A first position (N,), its circuit, and the branches that it may lie on."""
+    """A first position (N,), and how many positions its branches pass.
+
+    ``circuit``: its own, once it is followed. ``ends``: whether one of the branches ends at the
+    position that they do not pass.
+    """
 
     v: Array
-    circuit: FollowedCircuit
-    branches: list[CurveBranch]
+    passed: int
+    circuit: FollowedCircuit | None = None
+    ends: bool = False
 
 
 class _Search:
@@ -81,7 +86,9 @@ class _Search:
         self.places = places
         names = self.model.compiled.points.names
         # names that do not exist have a message of their own
-        found = [self.model.quantities.find(f"{name}.x").own.name for name in places[0]]
+        found = [
+            self.model.quantities.find(f"{name}.x").own.name for one in places[:1] for name in one
+        ]
         self._numbers = [names.index(name.removesuffix(".x")) for name in found]
         self.explorer = explorer_of(drive)
         self._lists: dict[int, Assemblies] = {}
@@ -101,18 +108,27 @@ class _Search:
         ]
         if any(self._is_straight(v) for v in others):
             return ()
-        if not self.leads.is_angle[self.leads.parameter]:
-            decided = self._decided_straight()
-            if decided is not None:
-                return decided
-        starts = self._starts(guess)
-        found = [] if starts else [self._no_start()]
-        for start in starts:
-            defect = self._first_defect(start)
-            if defect is None:
-                return ()
-            found.append(defect)
-        return (min(found, key=_claim),)
+        starts = self._straight_starts() or self._followed_starts(guess)
+        if not starts:
+            return (self._no_start(),)
+        most = max(start.passed for start in starts)
+        return () if most == len(self.values) else (self._defect_behind(starts, most),)
+
+    def _defect_behind(self, starts: Sequence[_Start], most: int) -> Defect:
+        """The defect between the last position that any branch passes and the next one.
+
+        A change of branch is the mildest; whether other branches change circuits is no matter then.
+        """
+        found: list[Defect] = []
+        rest = sorted(starts, key=lambda start: -start.passed)
+        while rest and rest[0].passed == most:
+            start = rest.pop(0)
+            circuit = start.circuit or FollowedCircuit(self.explorer, start.v)
+            found.append(self._change(circuit, most))
+            if found[-1].kind is DefectKind.BRANCH:
+                break
+        found += [_at_dead_point(start.passed) for start in rest if start.ends]
+        return min(found, key=_claim)
 
     def _guess(self) -> Array | None:
         """The position (N,) of the guess, if the input can lead there."""
@@ -128,25 +144,18 @@ class _Search:
         missed = [self._distances(way.v[k : k + 1], k)[0] for k in range(len(way.v))]
         return bool(max(missed) <= _MISSED * self._length(way.v))
 
-    def _decided_straight(self) -> tuple[Defect, ...] | None:
-        """The answer of an input that does not turn, so that no branch has an input twice; ``None``
-        if it is in doubt which branch passes the most positions.
-
-        Only the circuits of branches that pass the most are followed.
+    def _straight_starts(self) -> list[_Start]:
+        """The first positions, if the input does not turn, so that no branch has one of its values
+        twice; none if it is in doubt how many positions some branch passes.
         """
+        if self.leads.is_angle[self.leads.parameter]:
+            return []
         starts = self._regular_starts()
         passed = [self._passed(v) for v in starts]
-        known = [count for count in passed if count is not None]
-        if not starts or len(known) < len(passed):
-            return None
-        most, found = max(known), []
-        for v in [
-            v for v, count in zip(starts, known, strict=True) if count == most < len(self.values)
-        ]:
-            found.append(self._change(FollowedCircuit(self.explorer, v), most))
-            if found[-1].kind is DefectKind.BRANCH:
-                return (found[-1],)
-        return (min(found, key=_claim),) if found else ()
+        known = [
+            _Start(v=v, passed=k) for v, k in zip(starts, passed, strict=True) if k is not None
+        ]
+        return known if len(known) == len(starts) else []
 
     def _passed(self, v: Array) -> int | None:
         """How many positions the branch of a position (N,) passes, the first of them, before it
@@ -176,34 +185,35 @@ class _Search:
         """How long the paths of the points are through positions (K, N)."""
         return sum(float(np.abs(np.diff(z)).sum()) for z in self._points(v))
 
-    def _starts(self, guess: Array | None) -> list[_Start]:
-        """Every circuit and branch that the first position may lie on."""
+    def _followed_starts(self, guess: Array | None) -> list[_Start]:
+        """Every circuit that the first position may lie on."""
         if self._list(0).completeness is Completeness.NOT_LISTED:
             if guess is None:
                 return []
             circuit = FollowedCircuit(self.explorer, guess)
             branches = [b for b in circuit.branches() if self._passes(circuit, b, 0)]
-            return [_Start(v=guess, circuit=circuit, branches=branches)] if branches else []
+            return [self._start(guess, circuit, branches)] if branches else []
         starts: list[_Start] = []
         for v in self._regular_starts():
             circuit = FollowedCircuit(self.explorer, v)
             branch = next((b for b in circuit.known if circuit.lies_on(b, v)), None)
             if branch is not None:
-                starts.append(_Start(v=v, circuit=circuit, branches=[branch]))
+                starts.append(self._start(v, circuit, [branch]))
         return starts
 
     def _regular_starts(self) -> list[Array]:
         """The configurations (N,) nearest to the first position at which the input can lead."""
         return [v for v in self._nearest(0) if is_regular(self.leads, v)]
 
-    def _first_defect(self, start: _Start) -> Defect | None:
-        """Where the first branch is left that passes all positions up to there."""
-        branches = start.branches
+    def _start(self, v: Array, circuit: FollowedCircuit, branches: Sequence[CurveBranch]) -> _Start:
+        """How far branches of a circuit, on one of which a first position (N,) lies, pass."""
         for k in range(1, len(self.values)):
-            branches = self._passing(start.circuit, branches, k)
-            if not branches:
-                return self._change(start.circuit, k)
-        return None
+            passing = self._passing(circuit, branches, k)
+            if not passing:
+                ends = any(self._ends_at(branch, k) for branch in branches)
+                return _Start(v=v, passed=k, circuit=circuit, ends=ends)
+            branches = passing
+        return _Start(v=v, passed=len(self.values), circuit=circuit)
 
     def _passing(
         self, circuit: FollowedCircuit, branches: Sequence[CurveBranch], k: int
@@ -278,20 +288,23 @@ class _Search:
             min(ahead, key=lambda one: len(one.arcs)).follow_next()
 
     def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
-        """Whether a position is at an end of a branch, to the rounding of its input."""
+        """Whether a position is at an end of a branch of a circuit."""
+        return any(self._ends_at(branch, k) for branch in circuit.branches())
+
+    def _ends_at(self, branch: CurveBranch, k: int) -> bool:
+        """Whether a branch ends at a position, to the rounding of its input."""
         p = self.leads.parameter
         scale, turns = float(self.leads.scale[p]), self.leads.is_angle[p : p + 1]
-        for branch in circuit.branches():
-            for turn in (branch.begin, branch.end):
-                if turn is None:
-                    continue
-                gap = within_half_a_turn(np.array([turn.t - self.values[k]]), turns)
-                if abs(float(gap[0])) > _MISSED * scale:
-                    continue
-                missed = float(self._distances(turn.v[None, :], k)[0])
-                # next to a dead point places move by about the square root of the input's change
-                if missed <= np.sqrt(_MISSED) * self._way(branch):
-                    return True
+        for turn in (branch.begin, branch.end):
+            if turn is None:
+                continue
+            gap = within_half_a_turn(np.array([turn.t - self.values[k]]), turns)
+            if abs(float(gap[0])) > _MISSED * scale:
+                continue
+            missed = float(self._distances(turn.v[None, :], k)[0])
+            # next to a dead point places move by about the square root of the input's change
+            if missed <= np.sqrt(_MISSED) * self._way(branch):
+                return True
         return False
 
     def _no_start(self) -> Defect:
