@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import linkwork as lw
@@ -11,7 +13,7 @@ from linkwork.motion.circuit.followed_circuit import FollowedCircuit, explorer_o
 from linkwork.motion.curve_branches import TracedCurve, trace_boldly
 from linkwork.motion.drive import Drive
 from tests.campaigns import library_defects
-from tests.campaigns.library_defects import judged_change, library_cases
+from tests.campaigns.library_defects import branches_at, judged_change, library_cases
 
 _FEW = ("chebyshev", "inverted-slider-crank", "slider-input", "stephenson-far-crank", "pumpjack")
 _MORE = ("klann-leg", "galloway", "geneva-drive", "rapier-drive", "roberts", "toggle-press")
@@ -95,8 +97,67 @@ def test_a_position_off_the_only_known_circuit_is_not_decided() -> None:
 def test_the_straight_way_ends_at_a_dead_point() -> None:
     model = lw.example("chebyshev").model
     drive, start = Drive.of_circuits(model), model.equations.start
-    assert straight_way(drive, start, [0.7, 1.7]) is not None
-    assert straight_way(drive, start, [0.7, 1.8]) is None
+    short, long = (straight_way(drive, start, [0.7, to]) for to in (1.7, 1.8))
+    assert short is not None
+    assert long is not None
+    assert np.isfinite(short.v).all()
+    assert (short.low, short.high) == (-np.inf, np.inf)
+    assert np.isnan(long.v).all(axis=1).tolist() == [False, True]
+    (_, dead) = lw.example("chebyshev").circuits()[0].branches[0].input_range
+    assert long.low == -np.inf
+    assert long.high == pytest.approx(np.radians(dead), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["slider-input", "three-rpr"])
+def test_straight_tracks_decide_inputs_that_do_not_turn_as_circuits_do(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mechanism = lw.example(name)
+    exact = list(library_cases(mechanism, 12, 5))
+    cases = [
+        replace(case, places=tuple(place * by for place in case.places))
+        for case in exact
+        for by in (1.0, 1.0 + 1e-7, 1.01)
+    ]
+    traced = _traced(monkeypatch)
+    straight = [judged_change(mechanism, case) for case in cases]
+    few = len(traced)
+    assert straight[::3] == [case.change for case in exact]
+    assert len({change and change[0] for change in straight}) > 1
+    undecided = "linkwork.design.synthesis.by_circuits._Search._straight_starts"
+    monkeypatch.setattr(undecided, lambda _: [])
+    assert [judged_change(mechanism, case) for case in cases] == straight
+    assert 0 < few < len(traced) - few
+
+
+def test_branches_that_pass_fewer_positions_do_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the places of C depend on the input alone: two branches pass two positions, two only one
+    mechanism = lw.example("kempe-translator")
+    circuits = mechanism.circuits(certify=False)
+    inputs = np.concatenate([circuit.motion["lower_bar"] for circuit in circuits])
+    traced = np.concatenate([circuit.motion.trace("C") for circuit in circuits])
+    rows = [int(np.abs(inputs - value).argmin()) for value in (264.7614, 359.597, 1.43)]
+    places = [complex(place) for place in traced[rows]]
+    found = [
+        branches_at(circuits, value, {"C": place}, 1e-5)
+        for value, place in zip(inputs[rows], places, strict=True)
+    ]
+    assert 0 < len(found[0] & found[1]) < len(found[0])
+    assert not found[0] & found[1] & found[2]
+    task = lw.Task.path([(place.real, place.imag) for place in places])
+    (defect,) = task.defects_of(mechanism, inputs[rows].tolist(), point="C")
+    assert (defect.kind, defect.between) == (lw.DefectKind.BRANCH, (2, 3))
+    # unless one of them ends at the position that it does not pass
+    ends = "linkwork.design.synthesis.by_circuits._Search._ends_at"
+    monkeypatch.setattr(ends, lambda _, branch, k: k == 1)
+    (defect,) = task.defects_of(mechanism, inputs[rows].tolist(), point="C")
+    assert defect.message == "not proved: position 2 is at a dead point"
+
+
+def test_an_unknown_point_is_named_with_its_neighbours() -> None:
+    task = lw.Task.path([(0.0, 0.0), (1.0, 0.0)])
+    with pytest.raises(lw.UnknownNameError, match=r'^there is no "C.x" \(nearest: '):
+        task.defects_of(lw.example("four-bar"), (0, 10), point="C")
 
 
 def test_branches_behind_change_points_are_followed_when_they_are_asked_for() -> None:
@@ -112,6 +173,14 @@ def test_branches_behind_change_points_are_followed_when_they_are_asked_for() ->
 def test_defects_are_found_without_all_circuits(monkeypatch: pytest.MonkeyPatch) -> None:
     leg = lw.example("klann-leg")
     (case, *_) = (case for case in library_cases(leg, 8, 3) if case.change is not None)
+    traced = _traced(monkeypatch)
+    assert judged_change(leg, case) == case.change
+    # one of three circuits
+    assert len(traced) == 1
+
+
+def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
+    """A list that every curve is added to which is traced from now on."""
     traced: list[TracedCurve] = []
 
     def counted(*given: Any, **options: Any) -> TracedCurve:
@@ -119,6 +188,4 @@ def test_defects_are_found_without_all_circuits(monkeypatch: pytest.MonkeyPatch)
         return traced[-1]
 
     monkeypatch.setattr("linkwork.motion.circuit.walks.trace_boldly", counted)
-    assert judged_change(leg, case) == case.change
-    # one of three circuits
-    assert len(traced) == 1
+    return traced

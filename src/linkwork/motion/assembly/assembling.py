@@ -8,29 +8,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import reduce
-from operator import itemgetter
 
 import numpy as np
 
 from linkwork.equations.directions import DirectionForm, NoDirectionForm
 from linkwork.foundation.angles import within_half_a_turn
-from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, CountArray, IndexArray
+from linkwork.foundation.arrays import Array, BoolArray, CountArray, IndexArray
 from linkwork.foundation.completeness import Completeness
-from linkwork.foundation.rounding import ALMOST_DOUBLE, ALMOST_REAL
 from linkwork.foundation.status import Status
 from linkwork.kernels.loop_table import LoopTable
+from linkwork.motion.assembly.block_roots import FOLLOWS, solve_block
 from linkwork.motion.assembly.configuration_names import combined_name, order_configurations
 from linkwork.motion.assembly.turned_slides import TurnedSlide, turned_slides
 from linkwork.motion.model import Model
 from linkwork.motion.redundancy import FITS, misfit
 from linkwork.numerics.block_solver import Block, Linearised, linearise_block
-from linkwork.numerics.homotopy.bilinear import BilinearSystem, ProvedRoots, prove_roots
-from linkwork.numerics.homotopy.bilinear_family import structure_of
-from linkwork.numerics.homotopy.isolated_roots import isolated_roots
-from linkwork.numerics.homotopy.pencil_roots import roots_of_two_loops
-from linkwork.numerics.homotopy.polynomial_system import Roots
-from linkwork.numerics.homotopy.quadratic_roots import quadratic_roots
-from linkwork.numerics.homotopy.solution_bound import SolutionBound, bound_by_products
 from linkwork.numerics.newton import newton
 from linkwork.numerics.proof.position_proof import Proof, prove_block, rounding_of_inputs
 from linkwork.results.configurations import PathCount
@@ -185,7 +177,7 @@ class _Assembly:
         v = self.v.copy()
         v[:, block.unknowns] = done.v[:, : len(block.unknowns)]
         every = np.arange(len(v))
-        self.paths.append(replace(_FOLLOWS.paths, unknowns=self._names(block)))
+        self.paths.append(replace(FOLLOWS.paths, unknowns=self._names(block)))
         self._place(block, linearise_block(block, v), v, every, every)
 
     def _place(
@@ -242,10 +234,10 @@ def _block_configurations(
         keys = [(left.tobytes(), off.tobytes()) for left, off in closures]
         different = dict(zip(keys, closures, strict=True))
         left, off = (np.stack(part) for part in zip(*different.values(), strict=True))
-        once = dict(zip(different, _solve_block(form, left, off), strict=True))
+        once = dict(zip(different, solve_block(form, left, off), strict=True))
         solved = [once[key] for key in keys]
     else:  # angles that follow from others without a loop
-        solved = [_FOLLOWS] * len(v)
+        solved = [FOLLOWS] * len(v)
     rows = np.repeat(np.arange(len(v)), [len(part.x) for part in solved])
     x = np.concatenate([part.x for part in solved])
     multiple = np.concatenate([part.multiple for part in solved])
@@ -287,109 +279,17 @@ def _polish_roots(
 def _find_distinct(model: Model, v: Array, rows: IndexArray) -> BoolArray:
     """Which positions (R, N) are no repetition of an earlier one of the same row (ascending)."""
     size, turns = model.compiled.solver.variable_scale, model.compiled.table.is_angle
-    earlier, later = np.triu_indices(len(v), 1)
-    mine = np.flatnonzero(rows[earlier] == rows[later])
-    earlier, later = earlier[mine], later[mine]
+    begin, every = np.searchsorted(rows, rows), np.arange(len(v))
+    # pairs of one row, by the later one
+    count = every - begin
+    later = np.repeat(every, count)
+    earlier = np.arange(len(later)) - (np.cumsum(count) - count - begin)[later]
     gap = within_half_a_turn(v[earlier] - v[later], turns)
     equal = np.flatnonzero((np.abs(gap) <= _SAME_POSITION * size).all(axis=1))
     fresh = np.ones(len(v), dtype=bool)
-    for first, second in sorted(zip(earlier[equal], later[equal], strict=True), key=itemgetter(1)):
+    for first, second in zip(earlier[equal], later[equal], strict=True):
         fresh[second] &= not fresh[first]
     return fresh
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _BlockRoots:
-    """The real solutions of one system, (R, 2M), with the grade of completeness."""
-
-    x: ComplexArray
-    multiple: BoolArray
-    grade: Completeness
-    paths: PathCount
-
-
-#: A block without loops: its only solution has no directions.
-_FOLLOWS = _BlockRoots(
-    x=np.zeros((1, 0), dtype=complex),
-    multiple=np.zeros(1, dtype=bool),
-    grade=Completeness.PROVED,
-    paths=PathCount(unknowns=(), finite=1, real=1, expected=1),
-)
-
-
-def _solve_block(form: DirectionForm, left: ComplexArray, off: Array) -> list[_BlockRoots]:
-    """The roots of a block for each of K closures (K, L, M + 1), known within ``off``."""
-    if form.table.loops.rows > 1:
-        return [_solve_loops(form.system(left[k]), off[k]) for k in range(len(left))]
-    systems = form.system(left)
-    found = quadratic_roots(systems)
-    of = np.repeat(np.arange(len(found)), [len(roots.x) for roots in found])
-    proofs = prove_roots(systems.take(of), np.concatenate([roots.x for roots in found]), off[of])
-    bound = bound_by_products(systems.products)
-    return [
-        _graded(roots, proofs.take(np.flatnonzero(of == k)), bound) for k, roots in enumerate(found)
-    ]
-
-
-def _solve_loops(system: BilinearSystem, off: Array) -> _BlockRoots:
-    """The roots of two or more loops."""
-    family = structure_of(system)
-    known = roots_of_two_loops(system) if system.loops == 2 else None
-    roots = isolated_roots(system, family, known)
-    bound = family.bound_of(system, off, len(roots.x))
-    return _graded(roots, prove_roots(system, roots.x, off), bound)
-
-
-def _graded(roots: Roots, proofs: ProvedRoots, bound: SolutionBound) -> _BlockRoots:
-    m = roots.x.shape[1] // 2
-    # roots that no proof decides are taken by a tolerance, and lower the grade of the list
-    real = proofs.real | (~proofs.holds & (_mirror_gap(roots.x, m) < ALMOST_REAL))
-    undecided = not (proofs.holds & (proofs.real | proofs.unreal)).all()
-    unproved = real & ~proofs.holds
-    doubles = roots.multiple[_mirror_gap(roots.multiple, m) < ALMOST_DOUBLE]
-    if roots.continuum:
-        grade = Completeness.CONTINUUM
-    elif (
-        not roots.sure
-        or roots.failed
-        or roots.paths != len(roots.x) + roots.at_infinity + roots.singular
-    ):
-        grade = Completeness.NOT_PROVED
-    elif roots.singular or unproved.any():
-        grade = Completeness.MULTIPLE
-    elif len(roots.x) == bound.number and proofs.apart and not undecided:
-        grade = Completeness.PROVED
-    else:
-        grade = Completeness.WITH_PROBABILITY_ONE
-    x = np.concatenate([roots.x[real], doubles])
-    return _BlockRoots(
-        x=x,
-        multiple=np.concatenate([unproved[real], np.ones(len(doubles), dtype=bool)]),
-        grade=grade,
-        paths=_count(roots, int(real.sum()) + len(doubles), bound),
-    )
-
-
-def _count(roots: Roots, real: int, bound: SolutionBound) -> PathCount:
-    return PathCount(
-        unknowns=(),
-        paths=roots.paths,
-        finite=len(roots.x),
-        real=real,
-        at_infinity=roots.at_infinity,
-        multiple=roots.singular,
-        failed=roots.failed,
-        expected=roots.expected,
-        bound=bound.number,
-        theorem=bound.theorem.value,
-    )
-
-
-def _mirror_gap(x: ComplexArray, m: int) -> Array:
-    """How far solutions (R, 2M) are from their mirror images, relative to their size."""
-    gap = np.abs(x[:, :m] - x[:, m:].conj()).max(axis=1, initial=0.0)
-    relative: Array = gap / (1.0 + np.abs(x).max(axis=1, initial=0.0))
-    return relative
 
 
 def _theorem_note(count: PathCount) -> str:

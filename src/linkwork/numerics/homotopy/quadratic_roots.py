@@ -43,7 +43,6 @@ def quadratic_roots(systems: BilinearSystem) -> list[Roots]:
         # (B, 2, 2, 3): of every zero, (U, 1) and (V, 1) but for their factors
         ends = np.stack([u @ nu.swapaxes(1, 2), v @ nv.swapaxes(1, 2)], axis=2)
         x = (ends[..., :2] / ends[..., 2:]).reshape(len(u), 2, 4)
-    # a double zero comes twice
     once = np.stack([np.ones_like(double), ~(double | everywhere)], axis=1)
     finite = once & (np.abs(ends[..., 2]).min(axis=2) > _FINITE)
     beyond = once & free[..., 0] & (np.abs(ends[:, :, 0, 2]) > _FINITE)
@@ -75,8 +74,8 @@ def _det(a: ComplexArray, b: ComplexArray) -> ComplexArray:
 
 
 def _zeros(quadratic: ComplexArray) -> tuple[ComplexArray, BoolArray]:
-    """Zeros (û_0, û_1), (B, 2, 2), of length 1, of q0 û_0² + q1 û_0 û_1 + q2 û_1²; whether they
-    coincide.
+    """Zeros (û_0, û_1), (B, 2, 2), of length 1, of q0 û_0² + q1 û_0 û_1 + q2 û_1²; whether both
+    coincide, and only the first one counts.
     """
     q0, q1, q2 = quadratic.T
     square = q1 * q1 - 4.0 * q0 * q2
@@ -85,11 +84,10 @@ def _zeros(quadratic: ComplexArray) -> tuple[ComplexArray, BoolArray]:
     # the root without cancellation; the other one follows from their product
     far = np.where(np.abs(q1 + root) >= np.abs(q1 - root), q1 + root, q1 - root)
     pair = np.array([[-far, 2.0 * q0], [-2.0 * q2, far]]).transpose(2, 0, 1)
-    # where both coincide one of them may be zero
+    # where both coincide one of them may be zero: the other one comes first
     shorter = double & (np.abs(q0) < np.abs(q2))
-    pair[double, 1] = pair[double, 0]
-    pair[shorter] = np.stack([2.0 * q2, -q1], axis=1)[shorter, None]
-    with np.errstate(all="ignore"):  # all of it zero: no zero is needed
+    pair[shorter, 0] = np.stack([2.0 * q2, -q1], axis=1)[shorter]
+    with np.errstate(all="ignore"):  # zeros that do not count may have no length
         return pair / np.linalg.norm(pair, axis=2)[..., None], double
 
 
