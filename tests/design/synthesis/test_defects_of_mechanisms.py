@@ -160,6 +160,13 @@ def test_an_unknown_point_is_named_with_its_neighbours() -> None:
         task.defects_of(lw.example("four-bar"), (0, 10), point="C")
 
 
+def test_nothing_is_said_of_a_way_to_a_change_point() -> None:
+    model = lw.example("parallelogram").model
+    drive, start = Drive.of_circuits(model), model.equations.start
+    assert straight_way(drive, start, [np.pi / 3.0, 3.1]) is not None
+    assert straight_way(drive, start, [np.pi / 3.0, 3.2]) is None
+
+
 def test_branches_behind_change_points_are_followed_when_they_are_asked_for() -> None:
     model = lw.example("galloway").model
     explorer = explorer_of(Drive.of_circuits(model))

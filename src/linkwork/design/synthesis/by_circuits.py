@@ -151,23 +151,21 @@ class _Search:
         if self.leads.is_angle[self.leads.parameter]:
             return []
         starts = self._regular_starts()
-        passed = [self._passed(v) for v in starts]
+        passed = [self._count_passed(v) for v in starts]
         known = [
             _Start(v=v, passed=k) for v, k in zip(starts, passed, strict=True) if k is not None
         ]
         return known if len(known) == len(starts) else []
 
-    def _passed(self, v: Array) -> int | None:
-        """How many positions the branch of a position (N,) passes, the first of them, before it
-        ends or is clearly elsewhere; ``None`` in doubt.
+    def _count_passed(self, v: Array) -> int | None:
+        """How many positions the branch of the first one (N,) passes before it ends or is clearly
+        elsewhere; ``None`` in doubt.
         """
         way = straight_way(self.drive, v, self.values)
         if way is None:
             return None
-        length, size = (
-            self._length(way.v[~np.isnan(way.v[:, 0])]),
-            self.model.equations.length_scale,
-        )
+        length = self._length(way.v[~np.isnan(way.v[:, 0])])
+        far = _ELSEWHERE * self.model.equations.length_scale
         edge = _MISSED * float(self.leads.scale[self.leads.parameter])
         for k, value in enumerate(self.values[1:], start=1):
             if value < way.low - edge or value > way.high + edge:
@@ -178,7 +176,7 @@ class _Search:
             if missed <= _MISSED * length:
                 continue
             if not any(same_position(self.leads, way.v[k], near) for near in self._nearest(k)):
-                return k if missed > _ELSEWHERE * size else None
+                return k if missed > far else None
         return len(self.values)
 
     def _length(self, v: Array) -> float:

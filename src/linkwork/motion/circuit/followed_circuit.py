@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.foundation.rounding import REGULAR_CONDITION
-from linkwork.foundation.status import CONVERGED
+from linkwork.foundation.status import CONVERGED, Status
 from linkwork.motion.circuit.arcs import Arc, Explorer, positions_at_value
 from linkwork.motion.circuit.walks import Walks
 from linkwork.motion.curve_branches import CurveBranch
@@ -31,7 +31,7 @@ class StraightWay:
     """A branch over some values of the input, followed without turning back.
 
     ``v`` (K, N): the positions at the values, NaN where the branch ends before; ``low`` and
-    ``high``: the input at its ends, infinite where it was not followed to one.
+    ``high``: the input at its dead points, infinite where it was not followed to one.
     """
 
     v: Array
@@ -42,11 +42,14 @@ class StraightWay:
 def straight_way(drive: Drive, start: Array, values: Sequence[float]) -> StraightWay | None:
     """The branch of a position (N,) between the least and the greatest of K values of the input.
 
-    ``None`` if redundant links do not fit along it, or a position at a value was not found.
+    ``None`` if it was lost on the way or ends at a change point, if a position at a value was not
+    found, or if redundant links do not fit along it.
     """
     solver, t = drive.solver, np.array(values)
     node = node_at(solver, drive.path, float(start[drive.leads.parameter]), start)
     track = track_to(solver, drive.path, node, values)
+    if any(end.status is not Status.OUT_OF_REACH for end in track.ends):
+        return None
     v = np.full((len(t), len(start)), np.nan)
     inside = np.flatnonzero((t >= track.first_t) & (t <= track.last_t))
     if len(inside):
