@@ -12,6 +12,7 @@ import linkwork as lw
 from linkwork.motion.circuit.followed_circuit import FollowedCircuit, explorer_of, straight_way
 from linkwork.motion.curve_branches import TracedCurve, trace_boldly
 from linkwork.motion.drive import Drive
+from linkwork.results.circuits import Circuits
 from tests.campaigns import library_defects
 from tests.campaigns.library_defects import branches_at, judged_change, library_cases
 
@@ -130,28 +131,62 @@ def test_straight_tracks_decide_inputs_that_do_not_turn_as_circuits_do(
     assert 0 < few < len(traced) - few
 
 
+def _rows_near(
+    circuits: Circuits, name: str, point: str, *values: float
+) -> tuple[list[float], list[complex]]:
+    """The rows of all circuits at which an input is nearest to values: its values and places."""
+    inputs = np.concatenate([circuit.motion[name] for circuit in circuits])
+    traced = np.concatenate([circuit.motion.trace(point) for circuit in circuits])
+    rows = [int(np.abs(inputs - value).argmin()) for value in values]
+    return inputs[rows].tolist(), traced[rows].tolist()
+
+
 def test_branches_that_pass_fewer_positions_do_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
     # the places of C depend on the input alone: two branches pass two positions, two only one
     mechanism = lw.example("kempe-translator")
     circuits = mechanism.circuits(certify=False)
-    inputs = np.concatenate([circuit.motion["lower_bar"] for circuit in circuits])
-    traced = np.concatenate([circuit.motion.trace("C") for circuit in circuits])
-    rows = [int(np.abs(inputs - value).argmin()) for value in (264.7614, 359.597, 1.43)]
-    places = [complex(place) for place in traced[rows]]
+    inputs, places = _rows_near(circuits, "lower_bar", "C", 264.7614, 359.597, 1.43)
     found = [
         branches_at(circuits, value, {"C": place}, 1e-5)
-        for value, place in zip(inputs[rows], places, strict=True)
+        for value, place in zip(inputs, places, strict=True)
     ]
     assert 0 < len(found[0] & found[1]) < len(found[0])
     assert not found[0] & found[1] & found[2]
     task = lw.Task.path([(place.real, place.imag) for place in places])
-    (defect,) = task.defects_of(mechanism, inputs[rows].tolist(), point="C")
+    (defect,) = task.defects_of(mechanism, inputs, point="C")
     assert (defect.kind, defect.between) == (lw.DefectKind.BRANCH, (2, 3))
-    # unless one of them ends at the position that it does not pass
-    ends = "linkwork.design.synthesis.by_circuits._Search._ends_at"
-    monkeypatch.setattr(ends, lambda _, branch, k: k == 1)
-    (defect,) = task.defects_of(mechanism, inputs[rows].tolist(), point="C")
-    assert defect.message == "not proved: position 2 is at a dead point"
+    # even if all of them end at positions that they may not pass
+    ends = "linkwork.design.synthesis.by_circuits._Search._end_at"
+    monkeypatch.setattr(ends, lambda _, branch, k: "change point" if k == 1 else "")
+    assert task.defects_of(mechanism, inputs, point="C") == (defect,)
+    with monkeypatch.context() as patched:
+        changes = replace(defect, kind=lw.DefectKind.CIRCUIT)
+        patched.setattr("linkwork.design.synthesis.by_circuits._Search._change", lambda *_: changes)
+        (undecided,) = task.defects_of(mechanism, inputs, point="C")
+        assert undecided.message == "not proved: position 2 is at a change point"
+    monkeypatch.setattr(ends, lambda _, branch, k: "change point" if k == 2 else "")
+    (defect,) = task.defects_of(mechanism, inputs, point="C")
+    assert defect.message == "not proved: position 3 is at a change point"
+
+
+def test_a_position_at_a_change_point_is_not_decided_by_the_last_bit() -> None:
+    # two branches pass all positions, and end at the second one, to rounding
+    mechanism = lw.example("kempe-translator")
+    circuits = mechanism.circuits(certify=False)
+    inputs, places = _rows_near(circuits, "lower_bar", "E", 1.578, 1.4298474194765434, 36.34)
+    task = lw.Task.path([(place.real, place.imag) for place in places])
+    for more, decided in ((1e-10, True), (1e-7, True), (-1e-10, False), (-1e-7, False)):
+        values = [inputs[0], inputs[1] + more, inputs[2]]
+        found = [defect.message for defect in task.defects_of(mechanism, values, point="E")]
+        assert found == [] if decided else ["not proved: position 2 is at a change point"]
+
+
+def test_configurations_are_compared_where_one_unknown_is_exactly_zero() -> None:
+    # the proof around the first one reaches no farther than 1e-25 in that unknown
+    places = [(37.72045528047715, 19.869667231025673), (59.98628593851241, 0.04471367377968823)]
+    inputs = (96.54463711240005, 0.107931768194817)
+    task = lw.Task.path(places)
+    assert task.defects_of(lw.example("parallelogram"), inputs, point="B") == ()
 
 
 def test_an_unknown_point_is_named_with_its_neighbours() -> None:

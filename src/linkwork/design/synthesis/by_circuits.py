@@ -31,7 +31,8 @@ __all__ = ["defects_by_circuits"]
 # of a point's way: a position that is missed by less lies on the branch, and other branches are
 # farther away, unless the input is nearer than the square of this to a dead point
 _MISSED = 1e-6
-# of the mechanism's size: positions that are missed by more lie elsewhere, however they are rounded
+# of the mechanism's size: positions that are missed by more lie elsewhere, however they are
+# rounded; inputs at least this far from a branch's ends are clearly inside or outside
 _ELSEWHERE = 1e-3
 # of the mechanism's size: nearer to a place than this, configurations are equally near
 _EQUALLY_NEAR = 1e-9
@@ -67,16 +68,16 @@ def defects_by_circuits(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Start:
-    """A first position (N,), and how many positions its branches pass.
+    """A first position (N,), and how many positions its branches pass at most.
 
-    ``circuit``: its own, once it is followed. ``ends``: whether one of the branches ends at the
-    position that they do not pass.
+    ``circuit``: its own, once it is followed. ``doubt``: that they end at one of the positions, to
+    rounding, so that they may not pass it.
     """
 
     v: Array
     passed: int
     circuit: FollowedCircuit | None = None
-    ends: bool = False
+    doubt: Defect | None = None
 
 
 class _Search:
@@ -112,23 +113,26 @@ class _Search:
         if not starts:
             return (self._no_start(),)
         most = max(start.passed for start in starts)
-        return () if most == len(self.values) else (self._defect_behind(starts, most),)
+        leading = [start for start in starts if start.passed == most]
+        if most == len(self.values):
+            doubts = [start.doubt for start in leading if start.doubt is not None]
+            return tuple(doubts[:1]) if len(doubts) == len(leading) else ()
+        return (self._defect_behind(leading, most),)
 
-    def _defect_behind(self, starts: Sequence[_Start], most: int) -> Defect:
+    def _defect_behind(self, leading: Sequence[_Start], most: int) -> Defect:
         """The defect between the last position that any branch passes and the next one.
 
         A change of branch is the mildest; whether other branches change circuits is no matter then.
         """
+        doubts = [start.doubt for start in leading if start.doubt is not None]
         found: list[Defect] = []
-        rest = sorted(starts, key=lambda start: -start.passed)
-        while rest and rest[0].passed == most:
-            start = rest.pop(0)
-            circuit = start.circuit or FollowedCircuit(self.explorer, start.v)
-            found.append(self._change(circuit, most))
-            if found[-1].kind is DefectKind.BRANCH:
-                break
-        found += [_at_dead_point(start.passed) for start in rest if start.ends]
-        return min(found, key=_claim)
+        for start in leading:
+            if start.doubt is None:
+                circuit = start.circuit or FollowedCircuit(self.explorer, start.v)
+                found.append(self._change(circuit, most))
+                if found[-1].kind is DefectKind.BRANCH:
+                    return found[-1]
+        return min([*doubts, *found], key=_claim)
 
     def _guess(self) -> Array | None:
         """The position (N,) of the guess, if the input can lead there."""
@@ -166,7 +170,8 @@ class _Search:
             return None
         length = self._length(way.v[~np.isnan(way.v[:, 0])])
         far = _ELSEWHERE * self.model.equations.length_scale
-        edge = _MISSED * float(self.leads.scale[self.leads.parameter])
+        # the last node in front of a dead point is a little before it
+        edge = _ELSEWHERE * float(self.leads.scale[self.leads.parameter])
         for k, value in enumerate(self.values[1:], start=1):
             if value < way.low - edge or value > way.high + edge:
                 return k
@@ -205,13 +210,16 @@ class _Search:
 
     def _start(self, v: Array, circuit: FollowedCircuit, branches: Sequence[CurveBranch]) -> _Start:
         """How far branches of a circuit, on one of which a first position (N,) lies, pass."""
+        passed, doubt = 1, None
         for k in range(1, len(self.values)):
             passing = self._passing(circuit, branches, k)
             if not passing:
-                ends = any(self._ends_at(branch, k) for branch in branches)
-                return _Start(v=v, passed=k, circuit=circuit, ends=ends)
-            branches = passing
-        return _Start(v=v, passed=len(self.values), circuit=circuit)
+                passing = [branch for branch in branches if self._end_at(branch, k)]
+                if not passing:
+                    break
+                doubt = doubt or _at_limit(self._end_at(passing[0], k), k)
+            passed, branches = k + 1, passing
+        return _Start(v=v, passed=passed, circuit=circuit, doubt=doubt)
 
     def _passing(
         self, circuit: FollowedCircuit, branches: Sequence[CurveBranch], k: int
@@ -245,14 +253,16 @@ class _Search:
                 return _changes(DefectKind.BRANCH, k)
             return _unlisted(k)
         near = self._nearest(k)
-        if not near and not self._is_limit(circuit, k):
+        limit = "" if near else self._limit_at(circuit, k)
+        if not near and not limit:
             return _unreached(listed, k)
         near = [v for v in near if is_regular(self.leads, v)]
         joined = self._are_joined(circuit, near) if near else None
         if joined:
             return _changes(DefectKind.BRANCH, k)
-        if not near or self._is_limit(circuit, k):
-            return _at_dead_point(k)
+        limit = limit or self._limit_at(circuit, k)
+        if not near or limit:
+            return _at_limit(limit or "dead point or change point", k)
         if joined is None:
             return _not_proved(f"the circuit of position {k} was not followed to its end")
         return _changes(DefectKind.CIRCUIT, k)
@@ -285,25 +295,24 @@ class _Search:
             # from both sides
             min(ahead, key=lambda one: len(one.arcs)).follow_next()
 
-    def _is_limit(self, circuit: FollowedCircuit, k: int) -> bool:
-        """Whether a position is at an end of a branch of a circuit."""
-        return any(self._ends_at(branch, k) for branch in circuit.branches())
+    def _limit_at(self, circuit: FollowedCircuit, k: int) -> str:
+        """Where a branch of a circuit ends at a position: "dead point", "change point" or ""."""
+        ends = (self._end_at(branch, k) for branch in circuit.branches())
+        return next(filter(None, ends), "")
 
-    def _ends_at(self, branch: CurveBranch, k: int) -> bool:
-        """Whether a branch ends at a position, to the rounding of its input."""
+    def _end_at(self, branch: CurveBranch, k: int) -> str:
+        """Where a branch ends at a position, to rounding: "dead point", "change point" or ""."""
         p = self.leads.parameter
         scale, turns = float(self.leads.scale[p]), self.leads.is_angle[p : p + 1]
-        for turn in (branch.begin, branch.end):
-            if turn is None:
+        for limit, v in ((branch.limits[end], branch.v[end]) for end in (0, -1)):
+            gap = within_half_a_turn(v[p : p + 1] - self.values[k], turns)
+            if not limit or abs(float(gap[0])) > _MISSED * scale:
                 continue
-            gap = within_half_a_turn(np.array([turn.t - self.values[k]]), turns)
-            if abs(float(gap[0])) > _MISSED * scale:
-                continue
-            missed = float(self._distances(turn.v[None, :], k)[0])
+            missed = float(self._distances(v[None, :], k)[0])
             # next to a dead point places move by about the square root of the input's change
             if missed <= np.sqrt(_MISSED) * self._way(branch):
-                return True
-        return False
+                return limit
+        return ""
 
     def _no_start(self) -> Defect:
         """Why no circuit of the first position can be followed."""
@@ -312,7 +321,9 @@ class _Search:
             return _unlisted(0)
         if self._regular_starts():
             return _not_proved("the circuit of position 1 cannot be followed")
-        return _at_dead_point(0) if len(listed.v) else _unreached(listed, 0)
+        if len(listed.v):
+            return _at_limit("dead point or change point", 0)
+        return _unreached(listed, 0)
 
     def _list(self, k: int) -> Assemblies:
         """All configurations at the input of a position."""
@@ -356,8 +367,8 @@ def _not_proved(why: str) -> Defect:
     return Defect(kind=DefectKind.NOT_PROVED, between=None, message=f"not proved: {why}")
 
 
-def _at_dead_point(k: int) -> Defect:
-    return _not_proved(f"position {k + 1} is at a dead point")
+def _at_limit(limit: str, k: int) -> Defect:
+    return _not_proved(f"position {k + 1} is at a {limit}")
 
 
 def _unlisted(k: int) -> Defect:

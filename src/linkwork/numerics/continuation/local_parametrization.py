@@ -146,7 +146,8 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
     ``gained`` (N,): turns from a to b, and what lengths have gained in units of 2π.
 
     Both are iterated down to rounding with the parameter in the lead. Then it is a matter of proof:
-    one lies where only the other is. Where nothing is proved, they agree if they do to rounding.
+    one lies where only the other is, or both lie apart. Where neither is proved, they agree if they
+    do to rounding.
     """
     turns, p = whole_turns(leads, a, b) if gained is None else gained, leads.parameter
     # the equations are the same whole turns away, but the numbers have to agree
@@ -174,7 +175,11 @@ def same_position(leads: Parametrizations, a: Array, b: Array, gained: Array | N
             prove(own.solver, found[1:], input_radius, places[1]),
         )
         if first.holds[0] and second.holds[0]:
-            return bool((off[:-1] + second.error_bound[0, :-1] < first.isolation_radius[0]).all())
+            errors = second.error_bound[0, :-1]
+            if (off[:-1] + errors < first.isolation_radius[0]).all():
+                return True
+            if (off[:-1] > errors + first.error_bound[0]).any():
+                return False
     rates = own.solver.rates(found, own.path.rate)
     allowed = min(_COINCIDE, _ROUNDINGS * EPSILON * float(rates.condition.max()) * size)
     close = (off / own.solver.variable_scale).max() <= allowed

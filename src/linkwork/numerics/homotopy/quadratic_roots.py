@@ -31,7 +31,8 @@ def quadratic_roots(systems: BilinearSystem) -> list[Roots]:
     u, double = _zeros(quadratic)
     # any û has its v̂: one of them shows whether the curve is finite
     u[everywhere], double = _ANY_U, double & ~everywhere
-    w = u[:, :, None, :1] * forms[:, None, :, 0] + u[:, :, None, 1:] * forms[:, None, :, 1]
+    with np.errstate(all="ignore"):  # of zeros that do not count
+        w = u[:, :, None, :1] * forms[:, None, :, 0] + u[:, :, None, 1:] * forms[:, None, :, 1]
     # both are parallel; the longer one is rounded less
     lengths = np.linalg.norm(w, axis=3)
     longer = lengths.argmax(axis=2)[:, :, None]
