@@ -30,7 +30,7 @@ _LARGEST_DAMPING, _SMALLEST_DAMPING = 1e10, 1e-14
 _IDLE = 1e-13  # relative decrease of the sum of squares: rounding
 _MOST_IDLE = 3  # steps in a row
 _ROUNDINGS = 8.0 * EPSILON  # relative change of numbers: rounding
-_SINGULAR = 1e-13  # of the largest diagonal entry: keeps the matrix regular
+_SINGULAR = 1e-13  # of a diagonal entry: keeps the matrix regular
 
 
 @dataclass(frozen=True, eq=False)
@@ -377,7 +377,8 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
     held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
     held |= box.least == box.most
     largest = scale.max(axis=1, keepdims=True)
-    diagonal = work.damping[:, None] * scale + _SINGULAR * largest + 1e-300
+    own = np.where(scale > 0.0, scale, largest)  # parameters have units of their own
+    diagonal = work.damping[:, None] * scale + _SINGULAR * own + 1e-300
     parameters = normal.shape[1]
     matrix = normal + diagonal[:, :, None] * np.eye(parameters)
     if held.any():

@@ -11,8 +11,11 @@ import pytest
 import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.synthesis_page import synthesis_lines
+from linkwork.design.synthesis import improvement_synthesis
+from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.synthesis.solving import wishes_of
 from linkwork.foundation.errors import MechanismFileError
 from linkwork.mechanism.linkage import Linkage
 
@@ -260,8 +263,37 @@ def test_points_are_passed_within_the_driven_range() -> None:
         for design in found.delivered:
             assert min(design.inputs) >= 60.0
             assert max(design.inputs) <= 130.0
+    # a page improves what it has at hand towards any inputs, and says what is wrong with them
     timed = [{**own, "input": at} for own, at in zip(positions, range(70, 140, 20), strict=True)]
     wanted = {"input": {"from": 60.0, "to": 125.0}}
-    found = lw.Task.improve("four-bar", positions=timed, starts=1, wanted=wanted, **given).solve()
-    message = found.designs[0].defects[0].message
+    task = lw.Task.improve("four-bar", positions=timed, starts=1, wanted=wanted, **given).described
+    description = improvement_synthesis.mechanism_of(task)
+    wishes = wishes_of(task, Drive.A0)
+    designs = improvement_synthesis.improve_description(description, task, wishes, None)[0]
+    message = designs[0].defects[0].message
     assert message == "position 4 is passed at 130, outside the driven range from 60 to 125"
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        (_HERE.format("B", 3, 4).replace("= [1, 2]", "= [1, 2]\ninput = 40") + "input = 420\n",
+         "positions[1].input"),
+        ("[improve]\n" + _GOAL.replace("[0, 90, 180]", "[90, 201, 420]"), "improve.goals[1].at[2]"),
+    ],
+)  # fmt: skip
+def test_inputs_outside_the_driven_range_are_refused_before_solving(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: str, key: str
+) -> None:
+    def solved(*_: object, **__: object) -> None:
+        raise AssertionError("solved")
+
+    monkeypatch.setattr(improvement_synthesis, "improved_designs", solved)
+    wanted = "[wanted]\ninput = { from = 60, to = 200 }\n"
+    (tmp_path / "task.toml").write_text(_HEAD + wanted + table)
+    with pytest.raises(MechanismFileError) as caught:
+        lw.Task.load(tmp_path / "task.toml").solve()
+    told = "is outside the driven range from 60 to 200: move it, or widen [wanted] input"
+    assert re.fullmatch(
+        rf"1 problem in .*\n  line \d+  {re.escape(key)}  {re.escape(told)}", str(caught.value)
+    )

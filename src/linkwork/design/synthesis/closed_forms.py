@@ -41,15 +41,17 @@ def circumcentres(points: ComplexArray, far: Array) -> tuple[ComplexArray, Array
     return points[:, 0] + centre, error
 
 
-def solve_with_bound(matrix: Array, right: Array, doubt: Array) -> tuple[Array, Array]:
+def solve_with_bound(
+    matrix: Array, right: Array, doubt: Array, right_doubt: Array
+) -> tuple[Array, Array]:
     """The solutions x (B, n) of linear systems, and bounds of their errors.
 
     Parameters
     ----------
     matrix : (B, n, n)
     right : (B, n)
-    doubt : (B,)
-        A bound of the errors of all their entries.
+    doubt, right_doubt : (B,)
+        Bounds of the errors of all entries of the matrices, and of the right sides.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def solve_with_bound(matrix: Array, right: Array, doubt: Array) -> tuple[Array, 
     x = (inverse @ right[..., None])[..., 0]
     size = np.abs(inverse)
     rest = right - (safe @ x[..., None])[..., 0]
-    entries = doubt[:, None] * (1.0 + np.abs(x).sum(axis=1, keepdims=True))
+    entries = right_doubt[:, None] + doubt[:, None] * np.abs(x).sum(axis=1, keepdims=True)
     loss = (n + 2) * UNIT_ROUNDOFF
     rest = (
         np.abs(rest)

@@ -11,8 +11,10 @@ import numpy as np
 from linkwork.design.improvement.settings import Problems
 from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.foundation.arrays import Array
+from linkwork.foundation.rounding import EQUAL_ROWS
 
-__all__ = ["length_contradictions", "place_contradictions", "unreached_places"]
+__all__ = ["length_contradictions", "outside_range", "place_contradictions", "unreached_places"]
 
 _Key = tuple[str | int, ...]
 _LENGTHS = ("wanted", "lengths")
@@ -89,6 +91,20 @@ def unreached_places(
                 told = f"is {apart:g} from position {j + 1}, out of reach of links of at most "
                 arms = "two arms reach" if key[0] == "positions" else "crank and arm reach"
                 yield key, f"{told}{wanted.longest:g}: {arms} {reach:g}"
+
+
+def outside_range(
+    inputs: Sequence[float], table: Array, turn: float
+) -> Iterator[tuple[int, float, str]]:
+    """Inputs outside a table, to the accuracy of rows, in whatever turn: their numbers, where they
+    are in its turn, and what is wrong. ``turn``: infinite for lengths.
+    """
+    low, high = float(table.min()), float(table.max())
+    slack, at = EQUAL_ROWS * (high - low), np.array(inputs, dtype=float)
+    if math.isfinite(turn):
+        at = at + np.round((0.5 * (low + high) - at) / turn) * turn
+    for k in np.flatnonzero((at < low - slack) | (at > high + slack)):
+        yield int(k), float(at[k]), f"outside the driven range from {low:g} to {high:g}"
 
 
 def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:

@@ -23,6 +23,7 @@ __all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 _VARIABLE = "x"
 _ANGLES = ("rocker",)  # outputs that are angles
 _LARGEST_STEP = 0.5  # of all values: between neighbours it is a pole
+_EQUAL = 1e-9  # relative: ranges that differ by less are equal
 _DENSE = 181  # points over the range for fits and structural errors
 
 Pair = tuple[float, float]
@@ -176,7 +177,8 @@ class FunctionGoal:
                 yield ("function", key), "is missing: fix both start angles, or none"
             elif ends is not None and count:
                 span = self.pairs[-1][place] - self.pairs[0][place]
-                if not math.isclose(ends[1] - ends[0], span, rel_tol=1e-9, abs_tol=1e-9):
+                slack = _EQUAL * max(map(abs, ends))
+                if not math.isclose(ends[1] - ends[0], span, rel_tol=_EQUAL, abs_tol=slack):
                     told = f"spans {ends[1] - ends[0]:g}, but the pairs span {span:g}"
                     yield ("function", key), told
 

@@ -53,6 +53,26 @@ def solve_function(
     v = np.array([outputs * (1.0 if slides else task.angle.radians)])
     if not goal.starts_fixed:
         u, v = u - u[:, :1], v - v[:, :1]
+    unit = _unit(task, v, slides)
+    wishes = replace(wishes, shortest=wishes.shortest / unit, longest=wishes.longest / unit)
+    found = _solved(task, wishes, u, v / unit if slides else v, progress)
+    return _placed(found, task, unit, slides)
+
+
+def _unit(task: Task, v: Array, slides: bool) -> float:
+    """The length that is 1 where a function is solved: the ground of a four-bar, or a power of two
+    near the largest output of a slider, by which numbers are divided without rounding.
+    """
+    return float(2.0 ** np.frexp(np.abs(v).max())[1]) if slides else task.given.ground
+
+
+def _solved(
+    task: Task, wishes: Wishes, u: Array, v: Array, progress: Callable[[float], None] | None
+) -> Found:
+    """Designs whose fixed pivot A0 is at 0, for inputs and outputs (1, K)."""
+    goal = task.function
+    assert goal is not None, "a task of functions has one"
+    slides = task.mechanisms[0] == "slider-crank"
     if goal.fit:
         return _fitted(task, wishes, u[0], v[0], slides, progress)
     if goal.starts_fixed:
@@ -98,7 +118,7 @@ def freudenstein(u: Array, v: Array) -> tuple[Array, Array]:
     # eq. (149)
     matrix = np.stack([np.cos(v), -np.cos(u), np.ones_like(u)], axis=-1)
     doubt = _LOSS * (1.0 + np.abs(u).max(axis=1) + np.abs(v).max(axis=1))
-    return solve_with_bound(matrix, np.cos(u - v), doubt)
+    return solve_with_bound(matrix, np.cos(u - v), doubt, doubt)
 
 
 def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], BoolArray]:
@@ -108,8 +128,8 @@ def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], 
     if slides:
         # eq. (150)
         matrix = np.stack([2.0 * v * np.cos(u), 2.0 * np.sin(u), np.ones_like(u)], axis=-1)
-        far = 1.0 + np.abs(v).max(axis=1) ** 2
-        k, error = solve_with_bound(matrix, v**2, _LOSS * far * (1.0 + np.abs(u).max(axis=1)))
+        far = _LOSS * (1.0 + np.abs(v).max(axis=1) ** 2) * (1.0 + np.abs(u).max(axis=1))
+        k, error = solve_with_bound(matrix, v**2, far, far)
         with np.errstate(all="ignore"):
             a, e = k[:, 0], k[:, 1] / k[:, 0]
             square = k[:, 2] + a**2 + e**2
@@ -232,11 +252,9 @@ def _fitted(
     ]
     starts.append((np.zeros((0, 5)), np.zeros(0)))
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
-    size, pivots = float(np.ptp(v)), task.given.fixed_pivots
+    size = float(np.ptp(v)) if slides else 1.0
     if usual := has_usual_ratio(task):
         wishes = replace(wishes, ratio=USUAL_RATIO)
-    if not slides:
-        size = math.dist(*pivots) if len(pivots) > 1 else 1.0
     fits = fit_functions(
         u,
         v,
@@ -336,10 +354,9 @@ def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -
 def _found(
     task: Task, made: list[Candidates], complete: int, zeros: tuple[tuple[float, float], ...] = ()
 ) -> Found:
-    """Scaled to the ground that the task gives; ``complete``: how many solutions are all of them,
-    negative if this is not proved, 0 for a sample.
+    """``complete``: how many solutions are all of them, negative if this is not proved, 0 for a
+    sample.
     """
-    made = [_grounded(part, task) for part in made]
     real = sum(map(len, made))
     proved = sum(int(np.isfinite(part.error).sum()) for part in made)
     slides = task.mechanisms[0] == "slider-crank"
@@ -363,12 +380,15 @@ def _found(
     )
 
 
-def _grounded(made: Candidates, task: Task) -> Candidates:
-    """With the fixed pivots where the task gives them."""
-    pivots = [complex(*pivot) for pivot in task.given.fixed_pivots]
-    if not pivots:
-        return made
-    factor = pivots[1] - pivots[0] if len(pivots) > 1 else 1.0
-    if made.kind is LoopKind.SLIDER_CRANK:
-        factor = 1.0
-    return made.moved(pivots[0], factor)
+def _placed(found: Found, task: Task, unit: float, slides: bool) -> Found:
+    """In the task's unit of length, with the fixed pivots where the task gives them."""
+    of_outputs = unit if slides else 1.0
+    first = complex(*(task.given.fixed_pivots or [(0.0, 0.0)])[0])
+    return replace(
+        found,
+        candidates=tuple(
+            replace(part.moved(first, unit), miss=of_outputs * part.miss)
+            for part in found.candidates
+        ),
+        zeros=tuple((begin, of_outputs * output) for begin, output in found.zeros),
+    )

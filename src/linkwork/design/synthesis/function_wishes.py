@@ -19,12 +19,11 @@ _MARGIN = 1e-4  # of the transmission angle [rad] and, relatively, lengths: what
 class FunctionWishes:
     """The constraints of D lanes, which have crank, rocker or offset, coupler, and both starts.
 
-    ``u`` (N,): inputs [rad]; ``size``: of lengths, the ground of a four-bar; ``weights``: those of
-    rounds, none without wishes.
+    ``u`` (N,): inputs [rad]; ``size``: of lengths, 1 with a four-bar's ground; ``weights``: those
+    of rounds, none without wishes.
     """
 
     def __init__(self, wishes: Wishes, u: Array, size: float, slides: bool, lanes: int) -> None:
-        unit = 1.0 if slides else size
         asked = wishes.range
         #: The driven range, unless it is that of the inputs, and moves with their start.
         self.range = None if asked is None or asked.turn else (asked.start, asked.stop)
@@ -32,12 +31,12 @@ class FunctionWishes:
         self.kind = SliderCrankCurves if slides else FourBarCurves
         self.columns = [2, 4, 3] if slides else [4, 6, 5]
         goal = CurveGoal(
-            points=np.array([0.0, 2.0 * size / unit], dtype=complex),
+            points=np.array([0.0, 2.0 * size], dtype=complex),
             closed=False,
             turns_fully=asked is not None and asked.turn,
             transmission=wishes.transmission and wishes.transmission + _MARGIN,
-            shortest=wishes.shortest / unit * (1.0 + _MARGIN),
-            longest=wishes.longest / unit * (1.0 - _MARGIN),
+            shortest=wishes.shortest * (1.0 + _MARGIN),
+            longest=wishes.longest * (1.0 - _MARGIN),
             ratio=wishes.ratio * (1.0 - _MARGIN),
         )
         self.constraints = CurveConstraints(self.kind, goal, lanes)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, islice
 from typing import Any
 
 import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.synthesis.contradictions import outside_range
 from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
 from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.task import Task
@@ -21,7 +23,6 @@ from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND
-from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.results.motion import Motion
@@ -252,16 +253,11 @@ class ImprovedMechanism(SweptDesign):
         return f"{lead} = {value:.6g}{angle.sign if unit == angle.value else f' {unit}'}"
 
     def _out_of_range(self, motion: Motion) -> Iterator[tuple[DefectKind, str]]:
-        """The first position outside the driven range, to the accuracy of rows."""
+        """The first position outside the driven range."""
         table = np.asarray(motion.inputs[self.driven])[motion.asked]
-        low, high = float(table.min()), float(table.max())
-        slack, at = EQUAL_ROWS * (high - low), np.array(self.improved.inputs)
-        if motion.derivative_unit == "rad":
-            turn = self.task.angle.turn
-            at = at + np.round((0.5 * (low + high) - at) / turn) * turn
-        for k in np.flatnonzero((at < low - slack) | (at > high + slack))[:1]:
-            told = f"is passed at {at[k]:.6g}, outside the driven range from {low:g} to {high:g}"
-            yield DefectKind.RANGE, f"position {k + 1} {told}"
+        turn = self.task.angle.turn if motion.derivative_unit == "rad" else math.inf
+        for k, at, told in islice(outside_range(self.improved.inputs, table, turn), 1):
+            yield DefectKind.RANGE, f"position {k + 1} is passed at {at:.6g}, {told}"
 
     def _geometric_defects(self) -> Iterator[tuple[DefectKind, str]]:
         if self.task.kind != "improve":  # improvements vary what their tasks name

@@ -22,6 +22,7 @@ from linkwork.design.improvement.improving import (
 )
 from linkwork.design.improvement.reach import Reach
 from linkwork.design.improvement.settings import Goal, Improvement, Points, Problems
+from linkwork.design.synthesis.contradictions import outside_range
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
@@ -55,7 +56,9 @@ def improve_mechanism(
     MechanismError
         For a mechanism that is not there, names that it does not have, or contradicting goals.
     """
-    return improve_description(mechanism_of(task), task, wishes, progress)
+    description = mechanism_of(task)
+    task.refuse(_ill_timed(model_of(description), task))
+    return improve_description(description, task, wishes, progress)
 
 
 def mechanism_of(task: Task) -> Description:
@@ -222,6 +225,21 @@ def _points(task: Task, settings: Improvement) -> Points:
         inputs=inputs if timed else None,
         order="as given" if task.wanted.ordered or timed else "any",
     )
+
+
+def _ill_timed(model: Model, task: Task) -> Problems:
+    """Inputs of positions and goals outside the driven range."""
+    inputs = [position.input for position in task.positions if position.input is not None]
+    if not model.equations.inputs:
+        return
+    turns = model.equations.inputs[0].kind == Kind.ANGLE.value
+    turn = model.description.angle.turn if turns else math.inf
+    table = model.rows_in_file_units[:, 0]
+    for k, _, told in outside_range(inputs, table, turn):
+        yield ("positions", k, "input"), f"is {told}: move it, or widen [wanted] input"
+    for k, goal in enumerate((task.improvement or Improvement()).goals):
+        for j, _, told in outside_range(goal.at, table, turn):
+            yield ("improve", "goals", k, "at", j), f"is {told}: move it, or widen [wanted] input"
 
 
 def _unreached(reach: Reach, name: str, points: Points) -> Problems:

@@ -111,8 +111,8 @@ def timed_dyads(
     # as real equations: complex numbers as matrices
     real = np.block([[columns.real, -columns.imag], [columns.imag, columns.real]])
     vector = np.concatenate([right.real, right.imag], axis=1)
-    doubt = _LOSS * (1.0 + np.abs(vector).max(axis=1))
-    x, error = solve_with_bound(np.tile(real, (many, 1, 1)), vector, doubt)
+    doubt, own = np.full(many, _LOSS), _LOSS * np.abs(vector).max(axis=1)
+    x, error = solve_with_bound(np.tile(real, (many, 1, 1)), vector, doubt, own)
     n = columns.shape[1]
     solution = x[:, :n] + 1j * x[:, n:]
     fixed = pivots if n == 2 else solution[:, 2]
@@ -125,8 +125,8 @@ def on_lines(normals: ComplexArray, points: ComplexArray, turns: ComplexArray) -
     lever = normals.conj()[:, None] * turns
     matrix = np.stack([lever.real, -lever.imag, -np.ones(lever.shape)], axis=-1)
     right = -(normals.conj()[:, None] * points).real
-    doubt = _LOSS * (1.0 + np.abs(right).max(axis=1))
-    x, error = solve_with_bound(matrix, right, doubt)
+    doubt = np.full(len(right), _LOSS)
+    x, error = solve_with_bound(matrix, right, doubt, doubt * np.abs(points).max())
     moving, fixed = x[:, 0] + 1j * x[:, 1], x[:, 2] * normals
     return DyadSet.made(1, moving, fixed, 1.5 * error[:, 0], normals)
 

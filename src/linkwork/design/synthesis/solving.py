@@ -318,20 +318,27 @@ def _scores_of(task: Task, part: JudgedDesigns) -> Array:
 
 def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array:
     """Weighted means of transmission, smallness and exactness, (D,), each from 0 to 1."""
-    rank, size = task.rank, _task_size(task)
+    rank, (size, usual_miss) = task.rank, _task_sizes(task)
     with np.errstate(invalid="ignore"):
         parts = [
             (rank.transmission, transmission / _RIGHT),
             (rank.size, size / (size + sizes)),
-            (rank.error, 1.0 / (1.0 + miss / size)),
+            (rank.error, 1.0 / (1.0 + miss / usual_miss)),
         ]
     total = sum(weight for weight, _ in parts) or 1.0
     return np.asarray(sum(weight * np.nan_to_num(score) for weight, score in parts) / total)
 
 
-def _task_size(task: Task) -> float:
+def _task_sizes(task: Task) -> tuple[float, float]:
+    """A length of the task's size, and what its misses are compared with, of their own unit."""
+    if task.function is not None:
+        if "slider-crank" in task.mechanisms:
+            span = float(np.ptp(task.function.points()[1])) or 1.0
+            return span, span
+        return task.given.ground, 1.0
     points = np.array([complex(*position.point) for position in task.positions] or [0.0])
-    return float(np.abs(points - points.mean()).max()) or 1.0
+    span = float(np.abs(points - points.mean()).max()) or 1.0
+    return span, span
 
 
 def _dyads(found: Found) -> Iterator[Dyad]:

@@ -53,6 +53,12 @@ class Given:
     lengths: Mapping[str, float] = field(default_factory=dict)
 
     @property
+    def ground(self) -> float:
+        """The distance of the first two fixed pivots; without them 1."""
+        first, second, *_ = *self.fixed_pivots, (1.0, 0.0), (0.0, 0.0)
+        return math.dist(first, second)
+
+    @property
     def coupler_trouble(self) -> str:
         """Why the given sides of the coupler, if all three are, make no triangle; or ""."""
         one, other, longest = sorted(self.lengths.get(name, 0.0) for name in _COUPLER)
