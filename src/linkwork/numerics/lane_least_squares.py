@@ -386,6 +386,7 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
         matrix = matrix * (free[:, :, None] & free[:, None, :])
         matrix += np.where(held, largest, 0.0)[:, :, None] * np.eye(parameters)
         gradient = np.where(held, 0.0, gradient)
-    wrong = ~(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
+    there = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
+    wrong = ~np.asarray(there)
     matrix[wrong], right = np.eye(parameters), np.where(wrong[:, None], 0.0, -gradient)
     return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])

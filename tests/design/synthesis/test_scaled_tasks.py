@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ _CURVE = np.column_stack(
 )
 
 
-def _slider(pairs: list[tuple[float, float]], size: float, **tables: Any) -> lw.Task:
+def _slider(pairs: Sequence[tuple[float, float]], size: float, **tables: Any) -> lw.Task:
     scaled = [(x, size * y) for x, y in pairs]
     return lw.Task.function(scaled, mechanism="slider-crank", **tables)
 
@@ -55,10 +55,10 @@ _TASKS: dict[str, Callable[[float], lw.Task]] = {
     "five poses": lambda s: _poses(s, 5, wanted={"clear_of": [[140 * s, 40 * s, 30 * s]]}),
     "three poses": lambda s: _poses(s, 3, given={"fixed_pivots": [[0, -200 * s]]}),
     "points": lambda s: lw.Task.path(
-        s * np.array([(250, 0), (300, 60), (380, 100)]),
+        (s * np.array([(250, 0), (300, 60), (380, 100)])).tolist(),
         given={"fixed_pivots": (s * np.array(_PIVOTS)).tolist()},
     ),
-    "a curve": lambda s: lw.Task.path(s * _CURVE, improve={"starts": 40}),
+    "a curve": lambda s: lw.Task.path((s * _CURVE).tolist(), improve={"starts": 40}),
 }
 
 
