@@ -134,6 +134,15 @@ def test_points_without_inputs_are_met_on_one_branch(order: str) -> None:
         assert (steps > 0).all() or (steps < 0).all()
 
 
+@pytest.mark.parametrize(
+    ("of", "count"), [("max(s.mechanical_advantage)", 0), ("max(disc_dx.d2)/min(disc_dx.d2)", 1)]
+)
+def test_goals_of_a_cam_without_a_value_or_without_effect_end_quietly(of: str, count: int) -> None:
+    """The force ratio is infinite at both ends of the stroke; the quotient is -1 of any disc."""
+    task = {"goals": [{"of": of, "target": 3.0}], "wanted": {"input": "turns fully"}}
+    assert len(lw.Task.improve("eccentric-cam", starts=1, **task).solve().designs) == count
+
+
 def test_what_cannot_be_a_goal_says_why() -> None:
     bar = lw.example("four-bar")
     for of, message in (

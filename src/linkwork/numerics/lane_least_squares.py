@@ -376,15 +376,14 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
     """The damped step of x, which leaves parameters at their bounds that would pass them."""
     held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
     held |= box.least == box.most
-    largest = scale.max(axis=1, keepdims=True)
-    own = np.where(scale > 0.0, scale, largest)  # parameters have units of their own
-    diagonal = work.damping[:, None] * scale + _SINGULAR * own + 1e-300
+    # parameters have units of their own; those without effect stay
+    diagonal = work.damping[:, None] * scale + _SINGULAR * np.where(scale > 0.0, scale, 1.0)
     parameters = normal.shape[1]
     matrix = normal + diagonal[:, :, None] * np.eye(parameters)
     if held.any():
         free = ~held
         matrix = matrix * (free[:, :, None] & free[:, None, :])
-        matrix += np.where(held, largest, 0.0)[:, :, None] * np.eye(parameters)
+        matrix += held[:, :, None] * np.eye(parameters)
         gradient = np.where(held, 0.0, gradient)
     there = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
     wrong = ~np.asarray(there)

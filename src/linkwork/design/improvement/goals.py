@@ -119,6 +119,7 @@ class Misses(ABC):
         """Whether only values beyond bounds are misses."""
         return self.goal.is_bound
 
+    @np.errstate(all="ignore")  # where there is no position there is no number
     def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
         """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""
         value, by_x = self.values(found)
@@ -205,8 +206,7 @@ class _RowMisses(Misses):
             total = known[self.goal.of]
         else:
             jets = {name: Jet(value, _ZERO, _ZERO) for name, value in known.items()}
-            with np.errstate(all="ignore"):
-                total = evaluate(self.node, jets, self.angle).v
+            total = evaluate(self.node, jets, self.angle).v
         value, by_x = found.totals(rows, total)
         return value, by_x
 
@@ -265,16 +265,15 @@ class _NumberMisses(Misses):
         count = found.shape[0]
         by_x = np.zeros((count, found.slopes.shape[2] - 1))
         total = np.zeros(count)
-        with np.errstate(all="ignore"):
-            for name in known:
-                # the formula's derivative by this number
-                jets = {
-                    other: Jet(value, np.full(count, float(other == name)), np.zeros(count))
-                    for other, (value, _) in known.items()
-                }
-                jet = evaluate(self.node, jets, self.angle)
-                total = np.broadcast_to(jet.v, count)
-                by_x = by_x + np.broadcast_to(jet.d1, count)[:, None] * known[name][1]
+        for name in known:
+            # the formula's derivative by this number
+            jets = {
+                other: Jet(value, np.full(count, float(other == name)), np.zeros(count))
+                for other, (value, _) in known.items()
+            }
+            jet = evaluate(self.node, jets, self.angle)
+            total = np.broadcast_to(jet.v, count)
+            by_x = by_x + np.broadcast_to(jet.d1, count)[:, None] * known[name][1]
         return total[:, None], by_x[:, None, :]
 
     def _number(self, asked: AskedOfMotion, found: LanePositions, rows: Any) -> tuple[Array, Array]:
