@@ -257,11 +257,24 @@ def test_a_number_that_cannot_vary_alone_is_refused_with_its_reason() -> None:
     bar = read_example("four-bar")
     found = bar.sensitivity("rocker", at=60)
     assert "ground coordinates are exact" in found.refused["O2 O4"]
-    with pytest.raises(InputError, match='"O2 O4" cannot vary alone: ground coordinates'):
+    with pytest.raises(InputError, match='"O2 O4" cannot vary: ground coordinates'):
         bar.sensitivity("rocker", at=60, by=["O2 O4"])
     stressed = read_example("parallel-cranks")
     refused = stressed.sensitivity(stressed.loop_equations.inputs[0].name).refused
     assert "a redundant link does not fit any more" in refused.values()
+
+
+@pytest.mark.parametrize(
+    "formula", ["max(a, 40)", "40 + abs(a - 40)", "40 + hypot(a - 40, 0)", "acos(a/40) + 40"]
+)
+def test_a_number_at_a_corner_of_its_formula_has_no_derivative_and_says_so(formula: str) -> None:
+    """One side of |x| counts where equations are written with it, but not in formulas."""
+    text = lw.example_text("four-bar").replace('"O2 A"  = 40', f'"O2 A" = "{formula}"')
+    bar = lw.loads(text.replace("[points]\n", "[dimensions]\na = 40\n\n[points]\n"))
+    told = r'^"a" cannot vary: at 40 a formula of it has a corner .*: change the number a little$'
+    with pytest.raises(InputError, match=told):
+        bar.gradient("rocker", by=["a"], at=60)
+    assert "a corner" in bar.sensitivity("rocker", at=60).refused["a"]
 
 
 @pytest.mark.parametrize(

@@ -310,6 +310,7 @@ _FUNCTIONS: dict[Callable[..., Any], Callable[..., Parts]] = {
     np.rint: lambda rec, x: (_rounded(rec, _real(x)), 0.0),
     remainders: _remainder,
     np.abs: lambda rec, x: (_size(rec, x.re, x.im), 0.0),
+    np.fabs: lambda rec, x: (_size(rec, _real(x), 0.0), 0.0),
     np.hypot: lambda rec, x, y: (_size(rec, _real(x), _real(y)), 0.0),
     np.round: lambda rec, x: (_rounded(rec, _real(x)), 0.0),
     np.sign: _sign,

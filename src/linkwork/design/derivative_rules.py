@@ -98,6 +98,7 @@ RULES: dict[Callable[..., Any], Rule] = {
     np.square: lambda z, x: ((2.0 * x, None),),
     np.reciprocal: lambda z, x: ((-z * z, None),),
     np.abs: _modulus,
+    np.fabs: _modulus,
     np.angle: _direction,
     np.real: lambda z, x: ((0.5, 0.5),),
     np.imag: lambda z, x: ((-0.5j, 0.5j),),

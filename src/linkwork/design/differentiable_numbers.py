@@ -48,7 +48,7 @@ def chosen_numbers(
             if number in numbers[:k]:
                 raise InputError(f'"{name}" is named twice: give each number once')
             if reasons[number]:
-                raise InputError(f'"{name}" cannot vary alone: {reasons[number]}')
+                raise InputError(f'"{name}" cannot vary: {reasons[number]}')
         return numbers, {}
     # what a formula gives follows from the numbers in it; a guess changes no position
     plain = [
@@ -84,6 +84,12 @@ def _refusal(description: Description, numbers: Sequence[VariedNumber]) -> str:
     except NotElementwise:
         return "it changes the form of the equations, such as a ratio of wheels or the law of a cam"
     except LinkworkError as error:
+        if tape.lacks_derivatives:
+            at = " and ".join(f"{number.of(description):g}" for number in numbers)
+            return (
+                f"at {at} a formula of it has a corner (abs, max, min, hypot) or an end (asin, "
+                "acos, sqrt), where it has no derivative: change the number a little"
+            )
         problems = getattr(error, "problems", ())
         return problems[0].message if problems else str(error)
     return ""

@@ -168,7 +168,7 @@ def _fitting_numbers(
         refused |= {q.name: why for q, own in zip(group, fits, strict=True) if not own}
     wrong = [q.name for q in numbers if q.name in refused]
     if by is not None and wrong:
-        raise InputError(f'"{wrong[0]}" cannot vary alone: {refused[wrong[0]]}')
+        raise InputError(f'"{wrong[0]}" cannot vary: {refused[wrong[0]]}')
     return tuple(q for q in numbers if q.name not in refused), refused
 
 

@@ -268,6 +268,12 @@ class Tape(Consensus):
                 rates[node] = np.asarray(np.real(total) if self._real[node] else total)
         return [rates[x.node] if isinstance(x, TapedNumber) else nothing for x in results]
 
+    @property
+    def lacks_derivatives(self) -> bool:
+        """Whether a number that inputs change has no derivative by them."""
+        every = [TapedNumber(np.zeros(1), self, node) for node in range(len(self._parents))]
+        return not all(np.isfinite(rates).all() for rates in self.forward(every))
+
     @np.errstate(all="ignore")
     def backward(self, result: object) -> Array:
         """The derivatives of one real result by all inputs, (P, …): the adjoint."""

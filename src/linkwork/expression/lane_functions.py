@@ -25,7 +25,7 @@ def most(*numbers: Any) -> Any:
 
 #: Functions of arrays by their name in formulas; angles in radians.
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sqrt": np.sqrt, "exp": np.exp, "ln": np.log, "log10": np.log10, "abs": np.abs,
+    "sqrt": np.sqrt, "exp": np.exp, "ln": np.log, "log10": np.log10, "abs": np.fabs,
     "hypot": np.hypot, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
     "min": least, "max": most,
