@@ -936,6 +936,7 @@ export interface PositionShown {
   angle: number | null;
   input: number | null;
   tolerance: number;
+  angle_tolerance: number;
 }
 
 export interface DesignShown {

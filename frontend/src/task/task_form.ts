@@ -93,7 +93,7 @@ export class TaskForm {
     this.functions.hidden = this.fit.parentElement!.hidden = !functions;
     this.fit.value = String(entries["function.fit"] ?? "");
     this.order.parentElement!.hidden = functions;
-    this.positions.hidden = functions && !pairsOf(task);
+    this.positions.hidden = functions && "function.of" in entries;
     this.mechanism.parentElement!.hidden = ["path", "mixed", "improve"].includes(task.task);
     this.improved.hidden = task.task !== "improve";
     this.goals.replaceChildren(...goalsOf(task).map((goal) => html("li", {}, undefined, goal)));
@@ -139,7 +139,7 @@ export class TaskForm {
   private table(task: TaskState): void {
     const functions = task.task === "function";
     const posed = task.task === "motion" || task.positions.some(({ angle }) => angle !== null);
-    const names: readonly Column[] = functions ? ["input", "output"] : posed ? ["x", "y", "angle", "tolerance"] : ["x", "y", "tolerance"];
+    const names: readonly Column[] = functions ? ["input", "output"] : posed ? ["x", "y", "tolerance", "angle", "angle_tolerance"] : ["x", "y", "tolerance"];
     // a row of pairs more, for another one
     const count = functions ? pairsOf(task) + 1 : task.positions.length;
     const made = `${count} ${names.join(" ")} ${task.length_unit} ${task.angle_unit} ${task.entries.mechanism} ${task.positions_from_file}`;
@@ -149,7 +149,7 @@ export class TaskForm {
       for (const name of names) {
         const value = functions ? task.entries[keyOf(name, k)] : (task.positions[k]![name as keyof PositionShown] ?? "");
         const input = this.positions.querySelector<HTMLInputElement>(`tr[data-index="${k}"] input[data-name=${name}]`);
-        if (input) fill(input, typeof value === "number" && !(name === "tolerance" && value === 0) ? plain(value) : "");
+        if (input) fill(input, typeof value === "number" && !(name.endsWith("tolerance") && value === 0) ? plain(value) : "");
       }
   }
 
@@ -157,7 +157,7 @@ export class TaskForm {
     this.positions.replaceChildren();
     const head = html("tr", {}, html("thead", {}, this.positions));
     html("td", {}, head);
-    for (const name of names) html("th", { scope: "col" }, head, `${name === "tolerance" ? "±" : name}${unitOf(name, task)}`);
+    for (const name of names) html("th", { scope: "col" }, head, `${name.endsWith("tolerance") ? "±" : name}${unitOf(name, task)}`);
     html("td", {}, head);
     const body = html("tbody", {}, this.positions);
     for (let k = 0; k < count; k++) this.row(body, k, names, task, k === count - 1);
@@ -170,7 +170,7 @@ export class TaskForm {
     const row = html("tr", { "data-index": index }, body);
     html("th", { scope: "row" }, row, functions && last ? "+" : String(index + 1));
     for (const name of names) {
-      const input = html("input", { type: "text", class: "lw-field", inputmode: "decimal", "data-name": name, "aria-label": `${name} of ${what}` }, html("td", {}, row));
+      const input = html("input", { type: "text", class: "lw-field", inputmode: "decimal", "data-name": name, "aria-label": `${name.replace("_", " ")} of ${what}` }, html("td", {}, row));
       input.disabled = fixed;
       if (!functions) input.addEventListener("focus", () => this.pick({ of: "position", index, knob: false }));
       input.addEventListener("change", () => this.set(keyOf(name, index), number(input.value)));
@@ -182,7 +182,7 @@ export class TaskForm {
   }
 }
 
-type Column = "x" | "y" | "angle" | "tolerance" | "input" | "output";
+type Column = "x" | "y" | "tolerance" | "angle" | "angle_tolerance" | "input" | "output";
 const PLACES: Readonly<Partial<Record<Column, number>>> = { x: 0, y: 1, input: 0, output: 1 };
 
 /** The key of a number in a row of the table. */
@@ -199,7 +199,7 @@ function pairsOf({ entries }: Pick<TaskState, "entries">): number {
 }
 
 function unitOf(name: Column, task: TaskState): string {
-  const angles = name === "angle" || name === "input" || (name === "output" && task.entries.mechanism !== "slider-crank");
+  const angles = name.startsWith("angle") || name === "input" || (name === "output" && task.entries.mechanism !== "slider-crank");
   return ` [${angles ? (task.angle_unit === "deg" ? "°" : "rad") : task.length_unit}]`;
 }
 

@@ -153,6 +153,8 @@ fit = "minimax"
 """
 _TEXT = "(told) => document.querySelector('textarea').value.includes(told)"
 
+_ROWS = "(rows) => document.querySelectorAll('.lw-t-positions tbody tr').length === rows"
+
 
 def _typed(page: Any, name: str, value: str, told: str) -> None:
     page.get_by_label(name, exact=True).fill(value)
@@ -174,13 +176,25 @@ def test_pairs_and_tolerances_are_fields_and_a_phone_has_the_file_in_one_row(
     page.get_by_label("Remove pair 1", exact=True).click()
     page.wait_for_function(_TEXT, arg="pairs = [[20, 9.5], ")
     assert page.locator(".lw-t-positions tbody tr").count() == 4
+    # without pairs the first one is typed again
+    for left in (2, 1, 0):
+        page.get_by_label("Remove pair 1", exact=True).click()
+        page.wait_for_function(_ROWS, arg=left + 1)
+    _typed(page, "input of pair 1", "5", "pairs = [[5.0, 5.0]]")
+    _typed(page, "output of pair 1", "7", "pairs = [[5.0, 7.0]]")
+    page.get_by_label("Function of x").wait_for(state="hidden")
     buttons = page.locator(".lw-task .lw-bar button:not([hidden])")
     assert buttons.count() == 6
     tops = buttons.evaluate_all("(all) => all.map((b) => b.getBoundingClientRect().top)")
     assert len(set(tops)) == 1
     poses = opened(serve(task(tmp_path, "five-poses")), watched)
     poses.get_by_role("tab", name="Task").click()
-    _typed(poses, "tolerance of position 2", "0.5", "tolerance = 0.5")
+    _typed(poses, "tolerance of position 2", "0.5", "\ntolerance = 0.5")
+    _typed(poses, "angle tolerance of position 3", "1.5", "\nangle_tolerance = 1.5")
+    assert poses.get_by_label("angle tolerance of position 2", exact=True).input_value() == ""
+    poses.reload()
+    poses.get_by_role("tab", name="Task").click()
+    assert poses.get_by_label("angle tolerance of position 3", exact=True).input_value() == "1.5"
 
 
 @pytest.mark.extended

@@ -31,6 +31,7 @@ class PositionShown:
     angle: float | None
     input: float | None
     tolerance: float
+    angle_tolerance: float
 
 
 @dataclass(frozen=True, kw_only=True)

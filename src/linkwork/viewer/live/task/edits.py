@@ -91,8 +91,9 @@ def _(edit: do.SetTaskEntry, text: TextEdits, snap: Snap) -> None:
             key = key[:-1]
         elif not text.has(key[:-1]):  # the other end of a new range is typed next
             key, value = key[:-1], [value, value]
-            if isinstance(key[-1], int):  # a further pair of a list
-                key, value = key[:-1], [*text.get(key[:-1]), value]
+            if isinstance(key[-1], int):  # a further pair of a list, or the first one
+                key = key[:-1]
+                value = [*(text.get(key) if text.has(key) else ()), value]
     if value is not None:
         _put(text, key, value)
     elif text.has(key):

@@ -40,10 +40,7 @@ class TaskSketch:
         from_file = self.task is not None and self.task.curve is not None
         positions = tuple(self._positions())
         if from_file and self.task is not None:
-            positions = tuple(
-                PositionShown(x=p.point[0], y=p.point[1], angle=None, input=None, tolerance=0.0)
-                for p in self.task.positions
-            )
+            positions = tuple(_shown({"point": [*p.point]}) for p in self.task.positions)
         return TaskState(
             file=file,
             title=str(self.tables.get("name", "Task")),
@@ -67,17 +64,7 @@ class TaskSketch:
     def _positions(self) -> Iterator[PositionShown]:
         listed = self.tables.get("positions")
         for table in listed if isinstance(listed, list) else []:
-            point = _numbers_of(table.get("point"), 2) if isinstance(table, Mapping) else None
-            # a place without a point is kept, so that places in the list agree with the file
-            x, y = (0.0, 0.0) if point is None else point
-            own = table if isinstance(table, Mapping) else {}
-            yield PositionShown(
-                x=x,
-                y=y,
-                angle=_number(own.get("angle")),
-                input=_number(own.get("input")),
-                tolerance=_number(own.get("tolerance")) or 0.0,
-            )
+            yield _shown(table if isinstance(table, Mapping) else {})
 
     def _points(self, name: str) -> tuple[Point, ...]:
         return tuple((x, y) for x, y in self._numbers(name, 2))
@@ -86,6 +73,19 @@ class TaskSketch:
         listed = entry_of(self.tables, LISTS[name])
         for entry in listed if isinstance(listed, list) else []:
             yield _numbers_of(entry, count) or (0.0,) * count
+
+
+def _shown(position: Tables) -> PositionShown:
+    # a place without a point is kept, so that places in the list agree with the file
+    x, y = _numbers_of(position.get("point"), 2) or (0.0, 0.0)
+    return PositionShown(
+        x=x,
+        y=y,
+        angle=_number(position.get("angle")),
+        input=_number(position.get("input")),
+        tolerance=_number(position.get("tolerance")) or 0.0,
+        angle_tolerance=_number(position.get("angle_tolerance")) or 0.0,
+    )
 
 
 def entry_of(tables: Tables, key: tuple[str, ...]) -> Any:
