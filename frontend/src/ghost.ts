@@ -1,6 +1,5 @@
 // The design before, drawn pale behind the mechanism: its paths, and its links at the same input.
 
-import type { Drawing } from "./drawing";
 import type { MotionView } from "./motion";
 import type { PageData, Part } from "./page_data";
 import { pathOf, put, svg } from "./svg";
@@ -13,10 +12,10 @@ export class Ghost {
 
   constructor(
     private readonly data: PageData,
-    drawing: Drawing,
+    over: SVGSVGElement,
   ) {
     this.group = svg("g", { class: "lw-ghost", "aria-hidden": "true" });
-    drawing.element.prepend(this.group);
+    over.prepend(this.group);
   }
 
   /** Show a design, or none. */

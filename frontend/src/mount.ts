@@ -165,7 +165,7 @@ class Page implements Mounted {
     const stage = html("section", { class: "lw-stage", "aria-label": "Drawing" }, this.root);
     const canvas = html("div", { class: "lw-canvas" }, stage);
     this.drawing = new Drawing(data, canvas);
-    this.ghost = new Ghost(data, this.drawing);
+    this.ghost = new Ghost(data, this.drawing.element);
     this.arrows = new ArrowSets(data, this.drawing, canvas);
     this.player = new Player(1, true);
     this.transport = new Transport(stage, {

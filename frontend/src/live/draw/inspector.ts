@@ -8,13 +8,9 @@ import { fill } from "../fields";
 import { rebuilt, type ForceForms } from "../force_forms";
 import { typed } from "../ranges";
 import { PartPanel } from "./part_panel";
+import type { Chosen } from "./selected";
 import { partsOf } from "./symbols";
 import { driving } from "./tool_edits";
-
-export interface Chosen {
-  readonly kind: "point" | "link" | "part";
-  readonly name: string;
-}
 
 interface Action {
   readonly label: string;

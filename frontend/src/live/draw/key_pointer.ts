@@ -4,7 +4,7 @@ import { declareKeys, press, type Command } from "../../keys";
 import type { Mounted } from "../../mount";
 import { put, svg } from "../../svg";
 import type { Place, Sketch } from "./geometry";
-import type { Chosen } from "./inspector";
+import type { Chosen } from "./selected";
 
 /** No pointer of a screen has this number. */
 const ID = -7;

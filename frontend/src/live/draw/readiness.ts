@@ -3,7 +3,7 @@
 import type { FileState, Lack } from "../../messages";
 import { html } from "../../svg";
 import type { Desk } from "../asking";
-import type { Chosen } from "./inspector";
+import type { Chosen } from "./selected";
 
 export class Readiness {
   readonly element = html("section", { class: "lw-readiness", "aria-label": "What the mechanism lacks", role: "status" });

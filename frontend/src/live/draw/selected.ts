@@ -5,7 +5,11 @@ import { html } from "../../svg";
 import type { Desk } from "../asking";
 import { centreOf, duplicate, mirror, mirrored, selectionOf, type Line, type Selection } from "./copies";
 import type { Place, Places } from "./geometry";
-import type { Chosen } from "./inspector";
+
+export interface Chosen {
+  readonly kind: "point" | "link" | "part";
+  readonly name: string;
+}
 
 /** The state of the editor that these need. */
 export interface Held {

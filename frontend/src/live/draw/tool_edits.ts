@@ -4,7 +4,7 @@ import type { FileState, LiveEdit } from "../../messages";
 import { clean } from "../ranges";
 import { linkBetween, pointOn, sliderAt } from "./drawn_edits";
 import type { Anchor, Place, Places } from "./geometry";
-import type { Chosen } from "./inspector";
+import type { Chosen } from "./selected";
 
 /** A click, or a drag if it `moved`, on the drawing. */
 export interface Drawn {
