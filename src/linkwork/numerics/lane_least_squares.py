@@ -385,7 +385,6 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
         matrix = matrix * (free[:, :, None] & free[:, None, :])
         matrix += held[:, :, None] * np.eye(parameters)
         gradient = np.where(held, 0.0, gradient)
-    there = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
-    wrong = ~np.asarray(there)
+    wrong = ~np.asarray(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1))
     matrix[wrong], right = np.eye(parameters), np.where(wrong[:, None], 0.0, -gradient)
     return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0])

@@ -53,26 +53,28 @@ def solve_function(
     v = np.array([outputs * (1.0 if slides else task.angle.radians)])
     if not goal.starts_fixed:
         u, v = u - u[:, :1], v - v[:, :1]
-    unit = _unit(task, v, slides)
+    # the ground of a four-bar, or a power of two near the outputs, which divides without rounding
+    unit = float(2.0 ** np.frexp(np.abs(v).max())[1]) if slides else task.given.ground
+    of_outputs = unit if slides else 1.0
     wishes = replace(wishes, shortest=wishes.shortest / unit, longest=wishes.longest / unit)
-    found = _solved(task, wishes, u, v / unit if slides else v, progress)
-    return _placed(found, task, unit, slides)
-
-
-def _unit(task: Task, v: Array, slides: bool) -> float:
-    """The length that is 1 where a function is solved: the ground of a four-bar, or a power of two
-    near the largest output of a slider, by which numbers are divided without rounding.
-    """
-    return float(2.0 ** np.frexp(np.abs(v).max())[1]) if slides else task.given.ground
+    found = _solved(task, wishes, u, v / of_outputs, progress)
+    first = complex(*(task.given.fixed_pivots or [(0.0, 0.0)])[0])
+    return replace(
+        found,
+        candidates=tuple(
+            replace(part.moved(first, unit), miss=of_outputs * part.miss)
+            for part in found.candidates
+        ),
+        zeros=tuple((begin, of_outputs * output) for begin, output in found.zeros),
+    )
 
 
 def _solved(
     task: Task, wishes: Wishes, u: Array, v: Array, progress: Callable[[float], None] | None
 ) -> Found:
     """Designs whose fixed pivot A0 is at 0, for inputs and outputs (1, K)."""
-    goal = task.function
+    goal, slides = task.function, task.mechanisms[0] == "slider-crank"
     assert goal is not None, "a task of functions has one"
-    slides = task.mechanisms[0] == "slider-crank"
     if goal.fit:
         return _fitted(task, wishes, u[0], v[0], slides, progress)
     if goal.starts_fixed:
@@ -136,7 +138,7 @@ def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], 
             doubt = 1.1 * error[:, 0] * (1.0 + np.abs(e)) / np.abs(a)
         determined = error[:, 0] < _SMALL * np.abs(k[:, 0])
         good = (square > 0) & determined
-        return _sliders(u[good], v[good], a[good], e[good], doubt[good]), determined
+        return _loops(u[good], v[good], a[good], e[good], doubt[good], slides), determined
     k, error = freudenstein(u, v)
     with np.errstate(all="ignore"):
         a, b = 1.0 / k[:, 0], 1.0 / k[:, 1]
@@ -144,40 +146,27 @@ def _through_three(u: Array, v: Array, slides: bool) -> tuple[list[Candidates], 
         doubt = 1.1 * error[:, 0] * np.maximum(a**2, b**2)
     determined = np.asarray((error[:, :2] < _SMALL * np.abs(k[:, :2])).all(axis=1))
     good = (square > 0) & determined
-    return _rockers(u[good], v[good], a[good], b[good], doubt[good]), determined
+    return _loops(u[good], v[good], a[good], b[good], doubt[good], slides), determined
 
 
-def _rockers(u: Array, v: Array, a: Array, b: Array, error: Array) -> list[Candidates]:
+def _loops(
+    u: Array, v: Array, a: Array, second: Array, error: Array, slides: bool
+) -> list[Candidates]:
+    """Loops with A0 at 0, for cranks (D,) with rockers or offsets, inputs and outputs (D, K)."""
     if not len(u):
         return []
+    zero = np.zeros(len(u), dtype=complex)
     moving = a[:, None] * np.exp(1j * u)
+    fixed_b = np.asarray(1j * second if slides else zero + 1.0, dtype=np.complex128)
+    output = v if slides else second[:, None] * np.exp(1j * v)
     return [
         Candidates(
-            kind=LoopKind.FOUR_BAR,
-            fixed_a=np.zeros(len(u), dtype=complex),
-            fixed_b=np.ones(len(u), dtype=complex),
-            direction=np.zeros(len(u), dtype=complex),
+            kind=LoopKind.SLIDER_CRANK if slides else LoopKind.FOUR_BAR,
+            fixed_a=zero,
+            fixed_b=fixed_b,
+            direction=np.full(len(u), slides, dtype=complex),
             moving_a=moving,
-            moving_b=1.0 + b[:, None] * np.exp(1j * v),
-            guided=moving,
-            error=error,
-            miss=np.zeros(len(u)),
-        )
-    ]
-
-
-def _sliders(u: Array, v: Array, a: Array, e: Array, error: Array) -> list[Candidates]:
-    if not len(u):
-        return []
-    moving = a[:, None] * np.exp(1j * u)
-    return [
-        Candidates(
-            kind=LoopKind.SLIDER_CRANK,
-            fixed_a=np.zeros(len(u), dtype=complex),
-            fixed_b=np.asarray(1j * e, dtype=np.complex128),
-            direction=np.ones(len(u), dtype=complex),
-            moving_a=moving,
-            moving_b=v + 1j * e[:, None],
+            moving_b=fixed_b[:, None] + output,
             guided=moving,
             error=error,
             miss=np.zeros(len(u)),
@@ -202,20 +191,10 @@ def _coupled(dyads: DyadSet, u: Array, v: Array, slides: bool) -> list[Candidate
     real = (dyads.kind == 0) & (np.abs(dyads.fixed) > _TRIVIAL * size)
     real &= slides | (np.abs(dyads.moving) > _TRIVIAL * size)
     some = dyads.take(real)
-    phi, out = u[some.task], v[some.task]
-    if slides:
-        a, e = np.abs(some.fixed), some.moving.imag
-        made = _sliders(phi + np.angle(some.fixed)[:, None], out + some.moving.real[:, None], a, e,
-                        some.error)  # fmt: skip
-    else:
-        made = _rockers(
-            phi + np.angle(some.fixed)[:, None],
-            out + np.angle(some.moving)[:, None],
-            np.abs(some.fixed),
-            np.abs(some.moving),
-            some.error,
-        )
-    return made
+    own = some.moving
+    begin, second = (own.real, own.imag) if slides else (np.angle(own), np.abs(own))
+    phi, out = u[some.task] + np.angle(some.fixed)[:, None], v[some.task] + begin[:, None]
+    return _loops(phi, out, np.abs(some.fixed), second, some.error, slides)
 
 
 def _through_five(task: Task, u: Array, v: Array, slides: bool) -> Found:
@@ -344,8 +323,7 @@ def _fit_design(u: Array, v: Array, lengths: Array, slides: bool, miss: float) -
     a, second, _ = (np.array([x]) for x in lengths)
     # the loop closes to rounding at every point, whatever its structural error
     error = np.array([_LOSS * (1.0 + np.abs(lengths).max()) * (1.0 + np.abs(u).max())])
-    make = _sliders if slides else _rockers
-    made = make(u[None], v[None], a, second, error)
+    made = _loops(u[None], v[None], a, second, error, slides)
     for design in made:
         design.miss[:] = miss
     return made
@@ -359,7 +337,6 @@ def _found(
     """
     real = sum(map(len, made))
     proved = sum(int(np.isfinite(part.error).sum()) for part in made)
-    slides = task.mechanisms[0] == "slider-crank"
     grade, message = Completeness.SAMPLED, "a sample: these conditions leave a family of mechanisms"
     if complete > 0:
         grade = Completeness.PROVED
@@ -376,19 +353,5 @@ def _found(
         message=message,
         drives=(Drive.A0,),
         zeros=zeros,
-        output="slide" if slides else "rocker",
-    )
-
-
-def _placed(found: Found, task: Task, unit: float, slides: bool) -> Found:
-    """In the task's unit of length, with the fixed pivots where the task gives them."""
-    of_outputs = unit if slides else 1.0
-    first = complex(*(task.given.fixed_pivots or [(0.0, 0.0)])[0])
-    return replace(
-        found,
-        candidates=tuple(
-            replace(part.moved(first, unit), miss=of_outputs * part.miss)
-            for part in found.candidates
-        ),
-        zeros=tuple((begin, of_outputs * output) for begin, output in found.zeros),
+        output="slide" if task.mechanisms[0] == "slider-crank" else "rocker",
     )

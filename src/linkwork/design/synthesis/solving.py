@@ -331,12 +331,11 @@ def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array
 
 def _task_sizes(task: Task) -> tuple[float, float]:
     """A length of the task's size, and what its misses are compared with, of their own unit."""
-    if task.function is not None:
-        if "slider-crank" in task.mechanisms:
-            span = float(np.ptp(task.function.points()[1])) or 1.0
-            return span, span
+    goal = task.function
+    if goal is not None and "slider-crank" not in task.mechanisms:
         return task.given.ground, 1.0
     points = np.array([complex(*position.point) for position in task.positions] or [0.0])
+    points = points if goal is None else goal.points()[1]
     span = float(np.abs(points - points.mean()).max()) or 1.0
     return span, span
 

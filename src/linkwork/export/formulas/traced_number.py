@@ -235,8 +235,5 @@ _FORMULAS: dict[Callable[..., Any], Formula] = {
     np.conjugate: _conjugate, np.real: _real, np.imag: _imaginary,
     np.hypot: _called("hypot"), np.exp: _called("exp"), np.fmax: _called("max"),
     np.fmin: _called("min"), most: _called("max"), least: _called("min"),
-    **{
-        FUNCTIONS[name]: _called(name)
-        for name in ("abs", "ln", "log10", "asin", "acos", "atan", "atan2")
-    },
+    **{FUNCTIONS[x]: _called(x) for x in ("abs", "ln", "log10", "asin", "acos", "atan", "atan2")},
 }  # fmt: skip

@@ -38,9 +38,9 @@ class TaskSketch:
     def state(self, file: str, text: str, history: History, *, unsaved: bool) -> TaskState:
         """The state of the file for the page."""
         from_file = self.task is not None and self.task.curve is not None
-        positions = tuple(self._positions())
+        listed: Any = self.tables.get("positions")
         if from_file and self.task is not None:
-            positions = tuple(_shown({"point": [*p.point]}) for p in self.task.positions)
+            listed = [{"point": [*position.point]} for position in self.task.positions]
         return TaskState(
             file=file,
             title=str(self.tables.get("name", "Task")),
@@ -51,7 +51,7 @@ class TaskSketch:
             task=self.kind,
             length_unit=str(self.tables.get("length", Task.length)),
             angle_unit=str(self.tables.get("angle", "deg")),
-            positions=positions,
+            positions=tuple(map(_shown, listed if isinstance(listed, list) else ())),
             positions_from_file=from_file,
             fixed_pivots=self._points("fixed pivot"),
             moving_pivots=self._points("moving pivot"),
@@ -60,11 +60,6 @@ class TaskSketch:
             entries=dict(_entries(self.tables, "")),
             problems=self.problems,
         )
-
-    def _positions(self) -> Iterator[PositionShown]:
-        listed = self.tables.get("positions")
-        for table in listed if isinstance(listed, list) else []:
-            yield _shown(table if isinstance(table, Mapping) else {})
 
     def _points(self, name: str) -> tuple[Point, ...]:
         return tuple((x, y) for x, y in self._numbers(name, 2))
@@ -75,7 +70,8 @@ class TaskSketch:
             yield _numbers_of(entry, count) or (0.0,) * count
 
 
-def _shown(position: Tables) -> PositionShown:
+def _shown(table: Any) -> PositionShown:
+    position: Tables = table if isinstance(table, Mapping) else {}
     # a place without a point is kept, so that places in the list agree with the file
     x, y = _numbers_of(position.get("point"), 2) or (0.0, 0.0)
     return PositionShown(
