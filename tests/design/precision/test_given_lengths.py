@@ -208,3 +208,14 @@ def test_a_spent_budget_is_kept_until_more_may_be_spent(
     monkeypatch.setenv("LINKWORK_CACHE", str(tmp_path))
     monkeypatch.setattr(own_start_sets, "_KNOWN", {})
     assert own_member(problem).member is not None
+
+
+@pytest.mark.parametrize(("along", "count"), [(260, 76), (200, 0)])
+def test_four_bars_moved_to_their_lengths_stay_real(along: float, count: int) -> None:
+    """Some became complex, and their real parts pass no position; P cannot reach 344 from A0 with
+    a crank of 120 and 200 along the coupler.
+    """
+    given = {"fixed_pivots": [[100, -100]], "lengths": {"A0 A": 120, "A P": along}}
+    found = lw.Task.path([(250, 0), (300, 60), (380, 100)], given=given).solve()
+    assert found.real == found.proved
+    assert found.real == pytest.approx(count, abs=3)  # rounding decides which settle

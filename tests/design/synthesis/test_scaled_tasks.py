@@ -58,6 +58,10 @@ _TASKS: dict[str, Callable[[float], lw.Task]] = {
         (s * np.array([(250, 0), (300, 60), (380, 100)])).tolist(),
         given={"fixed_pivots": (s * np.array(_PIVOTS)).tolist()},
     ),
+    "points with a length": lambda s: lw.Task.path(
+        (s * np.array([(250, 0), (300, 60), (380, 100)])).tolist(),
+        given={"fixed_pivots": (s * np.array(_PIVOTS)).tolist(), "lengths": {"A0 A": 80 * s}},
+    ),
     "a curve": lambda s: lw.Task.path((s * _CURVE).tolist(), improve={"starts": 40}),
 }
 

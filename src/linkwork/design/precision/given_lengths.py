@@ -97,10 +97,10 @@ def _moved(given: PrecisionPositions, linkage: ComplexArray) -> ComplexArray:
             change = (across @ solutions(jacobian @ across, f[:, :, None]))[:, :, 0]
             linkage = linkage.copy()
             linkage[:, free] -= change
+            # rounding grows where real linkages meet, and would lead to complex ones
+            linkage = 0.5 * (linkage + linkage[:, np.arange(CONDITIONS) ^ 1].conj())
     settled = relative_size(change, linkage[:, free], _LEAST_SIZE) < _SETTLED
     kept = linkage[settled]
-    # to rounding they are conjugates
-    kept = 0.5 * (kept + kept[:, np.arange(CONDITIONS) ^ 1].conj())
     good = given.problem.proper(kept[:, free], given.parameters(given.size))
     return distinct_solutions(kept[good], _DISTINCT)[:_PROVED]
 
