@@ -132,8 +132,9 @@ _HALTING = [(0, 0), (40, 20), (80, 30), (120, 35), (160, 80), (200, 90)]
             "NOT_PROVED", "With free start angles (leave out input and output) there are ",
         ),
         (
+            # behind it the loop is open, which rounding there may leave undecided
             _HALTING, {"fit": "least squares"},
-            "NOT_PROVED", 'With fit = "minimax" there is 1 design without defects.',
+            "CIRCUIT NOT_PROVED", 'With fit = "minimax" there is 1 design without defects.',
         ),
     ],
 )  # fmt: skip
@@ -141,7 +142,8 @@ def test_what_helps_a_function_is_tried(
     function: Any, tables: dict[str, Any], kind: str, told: str
 ) -> None:
     found = lw.Task.function(function, mechanism="four-bar", **tables).solve()
-    assert [defect.name for defect in found.defects] == [kind]
+    (defect,) = found.defects
+    assert defect.name in kind.split()
     assert (found.costliest is not None) == (kind == "TRANSMISSION")
     assert advice_of(found).startswith(told)
 
