@@ -12,7 +12,7 @@ import pytest
 import linkwork as lw
 from linkwork import Completeness
 from linkwork.marching.solution_path import PathOptions
-from linkwork.motion.assembly import assembling
+from linkwork.motion.assembly import assembling, block_roots
 from linkwork.motion.assembly.assembling import positions_at
 from linkwork.numerics.homotopy import bilinear_family, isolated_roots
 from tests.campaigns.configurations import judge_truss
@@ -507,7 +507,7 @@ def test_two_solutions_that_settle_on_one_position_make_no_claim(
 
 def test_lost_paths_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = truss("Ds[", np.random.default_rng(5))
-    monkeypatch.setattr(assembling, "roots_of_two_loops", lambda _: None)
+    monkeypatch.setattr(block_roots, "roots_of_two_loops", lambda _: None)
     mechanism.configurations()
     for care in ("BOLD", "CAREFUL"):
         monkeypatch.setattr(isolated_roots, care, PathOptions(attempts=3))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from linkwork.foundation.completeness import Completeness
@@ -61,14 +61,14 @@ class PathCount:
     bound: int = 0
     theorem: str = ""
 
-    @classmethod
-    def total(cls, counts: Sequence[PathCount]) -> PathCount:
-        """The sum of the counts of one block, one at least."""
+    def plus(self, *others: PathCount) -> PathCount:
+        """The sum of this count and others of the same block."""
+        counts = (self, *others)
         kept = ("unknowns", "theorem")
-        numbers = [f.name for f in fields(cls) if f.name not in kept]
+        numbers = [f.name for f in fields(self) if f.name not in kept]
         sums = {name: sum(getattr(count, name) for count in counts) for name in numbers}
         theorems = dict.fromkeys(count.theorem for count in counts)
-        return cls(unknowns=counts[0].unknowns, theorem=" and ".join(theorems), **sums)
+        return replace(self, theorem=" and ".join(theorems), **sums)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

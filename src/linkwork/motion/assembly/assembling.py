@@ -246,6 +246,7 @@ def _block_configurations(
     end, good, iterations = _polish_roots(model, block, start, multiple)
     good[good] = _find_distinct(model, end[good], rows[good])
     grade = reduce(Completeness.and_then, (part.grade for part in solved))
+    counts, *others = (part.paths for part in solved)
     if (~good & ~multiple).any():  # proved as directions, but not as angles and lengths
         grade = grade.and_then(Completeness.NOT_PROVED)
     return _BlockFound(
@@ -254,7 +255,7 @@ def _block_configurations(
         multiple=multiple[good],
         iterations=iterations[good],
         completeness=grade,
-        paths=replace(PathCount.total([part.paths for part in solved]), real=int(good.sum())),
+        paths=replace(counts.plus(*others), real=int(good.sum())),
     )
 
 
