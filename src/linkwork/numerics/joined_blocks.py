@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,12 +44,12 @@ class JoinedBlocks:
     solver: BlockSolver
     members: Sequence[int]
 
-    @property
+    @cached_property
     def blocks(self) -> list[Block]:
         """The member blocks."""
         return [self.solver.blocks[k] for k in self.members]
 
-    @property
+    @cached_property
     def order(self) -> IndexArray:
         """The variables of the whole in this system's order."""
         own = [block.unknowns for block in self.blocks]
