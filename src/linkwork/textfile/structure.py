@@ -112,9 +112,9 @@ class Structure:
             case PlainNumber():
                 self._check_number(entry, "a number", path, text=False)
             case Whole(least, most) if type(entry) is not int or not least <= entry <= most:
-                self._wrong(
-                    path, f"must be a whole number of at least {least}, got {_shown(entry)}"
-                )
+                above = type(entry) is int and entry > most
+                bound = f"at most {most}" if above else f"at least {least}"
+                self._wrong(path, f"must be a whole number of {bound}, got {_shown(entry)}")
             case Speed():
                 self._check_number(entry, 'a number or text such as "300 rpm"', path)
             case Measured(example):

@@ -57,6 +57,8 @@ def test_the_examples_have_sound_designs_and_fit_the_schema(path: Path) -> None:
          "least = 50 and most = 20 contradict each other"),
         (_MOTION + "[wanted]\nlengths = { most = 20 }\n", 10, "positions[3].point",
          "is 128.062 from position 1, out of reach of links of at most 20"),
+        (_MOTION + "[rank]\ndeliver = 2000000\n", 19, "rank.deliver",
+         "must be a whole number of at most 1000000, got 2000000"),
         (_MOTION + "[wanted]\nlengths = { least = -5 }\n", 19, "wanted.lengths.least",
          "must not be negative, got -5"),
         (_MOTION + "[wanted]\nlengths = { most = 100 }\n"
