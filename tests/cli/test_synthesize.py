@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.cli import interrupts
 from linkwork.cli.main import linkwork
 
 _TASK = Path(__file__).parents[2] / "examples" / "tasks" / "tilt-a-box.toml"
@@ -77,6 +80,25 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     assert done.exit_code == 2
     _run(str(_TASK), "-o", str(folder), "--fresh")
     assert len(list(folder.glob("tilt-a-box-*.toml"))) == 5
+
+
+def test_designs_of_an_interrupted_search_are_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = replace(lw.Task.load(_TASK).solve(), interrupted=True)
+
+    def interrupted(*_: Any, **__: Any) -> lw.Synthesis:
+        interrupts._came.set()  # as Ctrl-C does
+        return found
+
+    monkeypatch.setattr(lw.Task, "solve", interrupted)
+    try:
+        shown = _run(str(_TASK), "-o", str(tmp_path / "designs"))
+        assert not interrupts.was_interrupted()
+    finally:
+        interrupts.answer_interrupt()
+    assert "the designs are the best found until then" in " ".join(shown.split())
+    assert len(list((tmp_path / "designs").glob("tilt-a-box-*.toml"))) == 5
 
 
 def test_an_interruption_leaves_the_folder_as_it_was(

@@ -19,6 +19,7 @@ from typing import NoReturn
 
 __all__ = [
     "INTERRUPTED",
+    "answer_interrupt",
     "check_interrupt",
     "ignore_interrupts",
     "leave",
@@ -49,6 +50,11 @@ def check_interrupt() -> None:
     """Raise an interrupt once more that a library has dropped; long work calls this regularly."""
     if _came.is_set():
         raise KeyboardInterrupt
+
+
+def answer_interrupt() -> None:
+    """Forget an interrupt that has ended a search whose best results are kept."""
+    _came.clear()
 
 
 def ignore_interrupts() -> None:

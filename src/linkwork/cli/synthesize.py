@@ -6,6 +6,7 @@ import click
 
 from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
 from linkwork.api.synthesis import Task
+from linkwork.cli.interrupts import answer_interrupt
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
@@ -57,6 +58,8 @@ def synthesize(
         check_folder(as_path(output), options, asked.described)
     with progress("solving the task") as tell:
         found = asked.solve(progress=tell)
+    if found.interrupted:
+        answer_interrupt()
     if not found.sound:
         with progress("trying changes of the task"):
             advice_of(found)  # which is kept
