@@ -17,6 +17,7 @@ from linkwork.design.synthesis.defect_messages import Defect
 from linkwork.design.synthesis.designs_table import designs_table
 from linkwork.design.synthesis.solving import solve_task
 from linkwork.foundation.errors import InputError, MechanismError
+from linkwork.foundation.plain_numbers import finite_number
 from linkwork.results.table import Table
 
 __all__ = ["Synthesis", "Task"]
@@ -164,8 +165,12 @@ class Task:
             raise InputError(f'"{mechanism.name}" traces no point: name one, point="P"')
         if len(inputs) != len(positions):
             raise InputError(f"{len(positions)} positions need as many inputs, got {len(inputs)}")
+        values = [
+            finite_number(f"the input of position {k}", value)
+            for k, value in enumerate(inputs, start=1)
+        ]
         places = [{name: complex(*position.point)} for position in positions]
-        return defects_by_circuits(mechanism.model, inputs, places)
+        return defects_by_circuits(mechanism.model, values, places)
 
     def __repr__(self) -> str:
         return f'<Task "{self.name}": {self.described.kind}>'

@@ -202,6 +202,12 @@ def test_nothing_is_said_of_a_way_to_a_change_point() -> None:
     assert straight_way(drive, start, [np.pi / 3.0, 3.2]) is None
 
 
+def test_inputs_are_finite_numbers() -> None:
+    task = lw.Task.path([(0.0, 0.0), (1.0, 0.0)])
+    with pytest.raises(lw.InputError, match=r"^the input of position 2 must be a finite number"):
+        task.defects_of(lw.example("jansen-leg"), (0, float("nan")))
+
+
 def test_branches_behind_change_points_are_followed_when_they_are_asked_for() -> None:
     model = lw.example("galloway").model
     explorer = explorer_of(Drive.of_circuits(model))

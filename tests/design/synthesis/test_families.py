@@ -7,7 +7,10 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.synthesis.burmester import centre_points, sampled_dyads, sliding_dyad
+from linkwork.design.synthesis.guiding_linkage import linkage_of
+from linkwork.design.synthesis.result import SynthesizedDesign
 from linkwork.foundation.arrays import Array, ComplexArray
+from linkwork.textfile.writer import write_text
 
 _POSES = [(0, 0, 0), (200, 100, 15), (320, 260, 40), (300, 420, 75)]
 
@@ -263,3 +266,16 @@ def test_tolerances_give_designs_within_them_and_more_than_five_poses() -> None:
         for value, wanted in zip(design.inputs, points, strict=True):
             x, y = mechanism.solve(at=value).points["P"]
             assert abs(x + 1j * y - wanted) <= design.error + 1e-6
+
+
+def test_a_pivot_on_the_line_of_a_slider_is_one_point_of_its_file() -> None:
+    found = lw.Task.motion([(0, 0, 0), (40, 20, 30)], mechanism="slider-crank").solve()
+    own = [one.design for one in found.designs if isinstance(one, SynthesizedDesign)]
+    shared = [one for one in own if one.points["A0"] == one.points["S"]]
+    assert shared
+    for design in shared[:3]:
+        linkage = linkage_of(design, found.task, "in line")
+        assert linkage.links["ground"] == ("A0", "T")
+        assert linkage.sliders[0].line == ("A0", "T")
+        position = lw.loads(write_text(linkage)).solve(at=float(np.degrees(design.inputs[0])))
+        assert np.allclose(position.points["P"], (0.0, 0.0), atol=1e-9)

@@ -36,6 +36,7 @@ _MISSED = 1e-6
 _ELSEWHERE = 1e-3
 # of the mechanism's size: nearer to a place than this, configurations are equally near
 _EQUALLY_NEAR = 1e-9
+_LIMIT = "dead point or change point"
 
 #: Places of some points [length].
 Places = Mapping[str, complex]
@@ -48,7 +49,8 @@ def defects_by_circuits(
 
     Most mechanisms pass their positions on the branch of the guess, straight from the least to
     the greatest input. Else a position is the configuration at its input that comes nearest to its
-    places, and the circuit of the first one is followed until all are met, or all of it.
+    places, and the circuits of first positions are followed until all are met, or all of them. An
+    input that does not turn needs circuits only for branches that pass the most positions.
 
     Parameters
     ----------
@@ -253,16 +255,15 @@ class _Search:
                 return _changes(DefectKind.BRANCH, k)
             return _unlisted(k)
         near = self._nearest(k)
-        limit = "" if near else self._limit_at(circuit, k)
-        if not near and not limit:
-            return _unreached(listed, k)
-        near = [v for v in near if is_regular(self.leads, v)]
-        joined = self._are_joined(circuit, near) if near else None
+        regular = [v for v in near if is_regular(self.leads, v)]
+        joined = self._are_joined(circuit, regular) if regular else None
         if joined:
             return _changes(DefectKind.BRANCH, k)
-        limit = limit or self._limit_at(circuit, k)
-        if not near or limit:
-            return _at_limit(limit or "dead point or change point", k)
+        limit = self._limit_at(circuit, k)
+        if not near and not limit:
+            return _unreached(listed, k)
+        if not regular or limit:
+            return _at_limit(limit or _LIMIT, k)
         if joined is None:
             return _not_proved(f"the circuit of position {k} was not followed to its end")
         return _changes(DefectKind.CIRCUIT, k)
@@ -322,7 +323,7 @@ class _Search:
         if self._regular_starts():
             return _not_proved("the circuit of position 1 cannot be followed")
         if len(listed.v):
-            return _at_limit("dead point or change point", 0)
+            return _at_limit(_LIMIT, 0)
         return _unreached(listed, 0)
 
     def _list(self, k: int) -> Assemblies:

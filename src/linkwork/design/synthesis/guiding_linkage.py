@@ -27,6 +27,7 @@ _STEPS = 100  # of a displacement
 _ON_LINE = 1e-9  # of a coupler's length: a pivot on its line
 _SAME_TURN = 1e-12  # relative: the rounding of a few angles
 _GUIDE = "slide"
+_GROUND_POINTS = ("A0", "B0", "U", "V", "S", "T")
 _MOST_LISTED = 9  # positions whose inputs are listed
 _DIGITS = 6
 
@@ -141,7 +142,7 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
     """
     if not design.kind.has_crank:
         return _guided(design, task, name)
-    z = design.points
+    z, own = design.points, _ground_names(design)
     crank, rocker = _bar(design, Drive.A0), _bar(design, Drive.B0)
     if design.drive is Drive.B0:
         crank, rocker = rocker, crank
@@ -171,15 +172,16 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         sliders = (Slider(name=_GUIDE, link="block", points=("B0",), on="coupler", line=line),)
     else:
         del links["rocker"]
-        links |= {GROUND: ("A0", "S", "T"), "block": ("B",)}
-        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=("S", "T")),)
+        start, end = (own[key] for key in "ST")
+        links |= {GROUND: _distinct("A0", start, end), "block": ("B",)}
+        sliders = (Slider(name=_GUIDE, link="block", points=("B",), on=GROUND, line=(start, end)),)
     formula = _error_formula(design, task, output)
     return Linkage(
         name=name,
         purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
-        points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
+        points=_places(design, guided),
         links=links,
         lengths={f"{one} {other}": abs(z[other] - z[one]) for one, other in bars},
         sliders=sliders,
@@ -187,6 +189,28 @@ def linkage_of(design: Design, task: Task, name: str, output: str = "") -> Linka
         trace=(guided,),
         outputs={"structural_error": formula} if formula else {},
     )
+
+
+def _ground_names(design: Design) -> dict[str, str]:
+    """The name of every ground point: of points at one place, such as a pivot on the line of a
+    slider, that of the first.
+    """
+    z, first = design.points, dict[complex, str]()
+    return {key: first.setdefault(z[key], key) for key in _GROUND_POINTS if key in z}
+
+
+def _distinct(*names: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(names))
+
+
+def _places(design: Design, guided: str) -> dict[str, tuple[float, float]]:
+    """The points of the file: without P where that is a pivot."""
+    names = _ground_names(design)
+    return {
+        key: (place.real, place.imag)
+        for key, place in design.points.items()
+        if names.get(key, key) == key and (key != "P" or guided == "P")
+    }
 
 
 def _error_formula(design: Design, task: Task, output: str) -> str:
@@ -216,7 +240,8 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
     guided = next((key for key in ("A", "B") if z[key] == z["P"]), "P")
     corners = ("A", "B") if guided != "P" else ("A", "B", "P")
     foot = tuple(key for key in ("C", "K") if key in z)
-    ground = [*kind.pivots, *(key for key in "UVST" if key in z)]
+    names = _ground_names(design)
+    ground = [names[key] for key in (*kind.pivots, *"UVST") if key in z]
     ends = {"A": "K", "B": foot[0] if foot else "A"}  # of the body's lines through A and B
     sliders = []
     for moving, pivot, line, own in (("A", "A0", "UV", "slide_a"), ("B", "B0", "ST", _GUIDE)):
@@ -224,7 +249,7 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
         if pivot in kind.pivots:
             way, carried, on = (ends[moving], moving), pivot, "coupler"
         else:
-            way, carried, on = (line[0], line[1]), moving, GROUND
+            way, carried, on = (names[line[0]], names[line[1]]), moving, GROUND
         sliders.append(Slider(name=own, link=block, points=(carried,), on=on, line=way))
     bars = [*combinations(corners, 2), *((end, key) for key in foot for end in "AB")]
     return Linkage(
@@ -232,9 +257,9 @@ def _guided(design: Design, task: Task, name: str) -> Linkage:
         purpose=_purpose(design, task),
         length=task.length,
         angle=task.angle,
-        points={key: (p.real, p.imag) for key, p in z.items() if key != "P" or guided == "P"},
+        points=_places(design, guided),
         links={
-            GROUND: tuple(ground),
+            GROUND: _distinct(*ground),
             "coupler": (*corners, *foot),
             **{slider.link: slider.points for slider in sliders},
         },
