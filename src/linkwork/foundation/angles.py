@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray
 
-__all__ = ["FULL_TURN", "AngleUnit", "least_arc", "within_half_a_turn"]
+__all__ = ["FULL_TURN", "AngleUnit", "arc_in_order", "least_arc", "within_half_a_turn"]
 
 FULL_TURN = 2.0 * math.pi
 # 2π in three parts; products of the first two with 26-bit numbers are exact
@@ -37,6 +37,18 @@ def least_arc(angles: Array, turn: float = FULL_TURN) -> tuple[float, float]:
     last = int(gaps.argmax())
     begin = every[(last + 1) % len(every)] + angles[0]
     return float(begin), float(turn - gaps[last])
+
+
+def arc_in_order(angles: Array, turn: float = FULL_TURN) -> tuple[float, float]:
+    """The begin and the extent of the arc through angles (N,) in their order, in the sense in which
+    it is less than a turn; the least arc if there is none.
+    """
+    steps = np.diff(angles)
+    forward, backward = float(np.mod(steps, turn).sum()), float(np.mod(-steps, turn).sum())
+    if min(forward, backward) >= turn:
+        return least_arc(angles, turn)
+    begin = float(angles[0])
+    return (begin, forward) if forward <= backward else (begin - backward, backward)
 
 
 class AngleUnit(Enum):

@@ -297,3 +297,12 @@ def test_inputs_outside_the_driven_range_are_refused_before_solving(
     assert re.fullmatch(
         rf"1 problem in .*\n  line \d+  {re.escape(key)}  {re.escape(told)}", str(caught.value)
     )
+
+
+@pytest.mark.parametrize(("target", "least"), [(170, 50), (170, 60), (300, 60)])
+def test_a_transmission_angle_that_binds_is_held(target: float, least: float) -> None:
+    text = "format = 1\ntask = 'improve'\nmechanism = 'slider-crank'\n"
+    text += f"[wanted]\ntransmission = {{ least = {least} }}\n[improve]\nvary = ['O2 A']\n"
+    text += f"starts = 2\n[[improve.goals]]\nof = 'stroke(d)'\ntarget = {target}\n"
+    (best, *_) = lw.Task.loads(text).solve().delivered
+    assert least <= best.transmission < least + 0.02

@@ -18,7 +18,11 @@ from linkwork.design.improvement.curve_goal import CurveGoal
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
-__all__ = ["CurveConstraints"]
+__all__ = ["ANGLE_MARGIN", "CurveConstraints"]
+
+#: By how much fits exceed a wanted transmission angle [rad], so that they hold it over the whole
+#: motion: angles at rows and steps of fits end a hundred times nearer to their bounds.
+ANGLE_MARGIN = 1e-4
 
 _MARGIN = 1e-6  # sizes of the goal: by which constraints hold in the end
 _DEAD = np.radians(0.25)  # the least transmission angle of all: dead points are kept off
@@ -106,8 +110,12 @@ class CurveConstraints:
 
     @property
     def _most(self) -> float:
-        least = max(self.goal.transmission, _DEAD) + _MARGIN
-        return float(np.cos(least)) * self.goal.size
+        return float(np.cos(self._least_angle + _MARGIN)) * self.goal.size
+
+    @property
+    def _least_angle(self) -> float:
+        """The least transmission angle that fits may have [rad]."""
+        return float(max(self.goal.transmission + ANGLE_MARGIN, _DEAD))
 
     def _constraints(self, x: Array) -> tuple[Array, Array]:
         """h (D, K) and its derivatives, in lengths."""
@@ -177,14 +185,14 @@ class CurveConstraints:
         extreme = self._curves.extreme(x)[:, None] + np.array([0.0, 0.5 * FULL_TURN]) - middle
         away = np.mod(extreme + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
         cosine, by_x, _ = self._curves.cosines(x, middle + np.clip(away, -half, half))
-        most, size = np.cos(max(self.goal.transmission, _DEAD)), self.goal.size
+        most, size = np.cos(self._least_angle), self.goal.size
         return (np.abs(cosine) - most) * size, by_x * (np.sign(cosine) * size)[:, :, None]
 
     def _transmission(self, x: Array) -> tuple[Array, Array]:
         """|b² + c² - (g ± a)²| - 2 b c cos μ, divided by b + c, or a ± h - c cos μ, for a whole
         turn of the crank.
         """
-        cosine = np.cos(max(self.goal.transmission, _DEAD))
+        cosine = np.cos(self._least_angle)
         if self.kind is not FourBarCurves:
             found, by_x = self._curves.limits(x)
             by_x[:, :, 3] *= cosine

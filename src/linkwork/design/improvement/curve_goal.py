@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.design.improvement.coupler_curves import CouplerCurves
-from linkwork.foundation.angles import FULL_TURN, least_arc
+from linkwork.foundation.angles import FULL_TURN, arc_in_order
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.numerics.lane_least_squares import Box
@@ -93,7 +93,7 @@ class CurveGoal:
         low, high = self.bounds.get(INPUT, (-np.inf, np.inf))
         if self.range is None or self.inputs is None:
             return low, high
-        begin, extent = least_arc(self.inputs)
+        begin, extent = arc_in_order(self.inputs)
         first, last = self.range[0] - begin, self.range[1] - begin - extent
         middle = 0.5 * (low + high) if np.isfinite(low + high) else 0.0
         turns = np.round((middle - 0.5 * (first + last)) / FULL_TURN) * FULL_TURN

@@ -18,7 +18,7 @@ from linkwork.design.improvement.coupler_curves import (
     FourBarCurves,
 )
 from linkwork.design.improvement.curve_goal import INPUT, CurveGoal
-from linkwork.foundation.angles import FULL_TURN, least_arc
+from linkwork.foundation.angles import FULL_TURN, arc_in_order
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["CurveStarts", "best_starts", "random_loops"]
@@ -138,8 +138,8 @@ def _compared(
             place = turns[:, inside] + way * FULL_TURN * wraps + np.angle(fitted[1])[:, :, None]
             ends = place.min(axis=2), place.max(axis=2)
             if goal.inputs is not None:
-                # a common angle of the inputs, and their least arc
-                begin, extent = least_arc(goal.inputs)
+                # a common angle of the inputs, and their arc
+                begin, extent = arc_in_order(goal.inputs)
                 first = place[:, :, 0] + begin - goal.inputs[0]
                 ends = first, first + extent
             _, outside = goal.turned_inside(*ends)

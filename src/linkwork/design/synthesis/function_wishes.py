@@ -13,7 +13,7 @@ from linkwork.foundation.arrays import Array, IndexArray
 
 __all__ = ["FunctionWishes"]
 
-_MARGIN = 1e-4  # of the transmission angle [rad] and, relatively, lengths: what multipliers leave
+_MARGIN = 1e-4  # of lengths, relatively: what multipliers leave
 
 
 class FunctionWishes:
@@ -34,7 +34,7 @@ class FunctionWishes:
             points=np.array([0.0, 2.0 * size], dtype=complex),
             closed=False,
             turns_fully=asked is not None and asked.turn,
-            transmission=wishes.transmission and wishes.transmission + _MARGIN,
+            transmission=wishes.transmission,
             shortest=wishes.shortest * (1.0 + _MARGIN),
             longest=wishes.longest * (1.0 - _MARGIN),
             ratio=wishes.ratio * (1.0 - _MARGIN),

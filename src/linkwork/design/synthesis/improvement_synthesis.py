@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.improvement.curve_constraints import ANGLE_MARGIN
 from linkwork.design.improvement.goals import goal_of
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.improving import (
@@ -211,7 +212,8 @@ def _wanted_bounds(
 def _transmission_goals(model: Model, task: Task) -> Iterator[Goal]:
     """The least transmission angle of all dyads, as bounds in all rows."""
     least = task.wanted.transmission
-    for name, asked in model.quantities.derived.items() if least else ():
+    least += min(task.angle.from_radians(ANGLE_MARGIN), task.angle.turn / 4.0 - least)
+    for name, asked in model.quantities.derived.items() if task.wanted.transmission else ():
         if asked.row is TRANSMISSION_ANGLE:
             yield Goal(of=name, least=least, most=task.angle.turn / 2.0 - least)
 

@@ -34,7 +34,7 @@ from linkwork.design.synthesis.wanted_mechanisms import (
     mechanism_problems,
     watt_pivot_problems,
 )
-from linkwork.foundation.angles import AngleUnit, least_arc
+from linkwork.foundation.angles import AngleUnit, arc_in_order
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EQUAL_ROWS
@@ -269,7 +269,7 @@ class Task:
                 timed = [*given]
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
-            _, span = least_arc(np.array(timed, dtype=float), self.angle.turn)
+            _, span = arc_in_order(np.array(timed, dtype=float), self.angle.turn)
             asked = abs(wanted.range[1] - wanted.range[0])
             if span > asked * (1.0 + EQUAL_ROWS):
                 told = f"spans {asked:g}, but the given inputs span {span:g}: widen it"
