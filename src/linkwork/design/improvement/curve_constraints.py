@@ -20,8 +20,8 @@ from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["ANGLE_MARGIN", "CurveConstraints"]
 
-#: By how much fits exceed a wanted transmission angle [rad]: between rows, and where their last steps
-#: end, designs fell short of it by up to 2e-5.
+#: By how much fits exceed a wanted transmission angle [rad]: between rows, and where their last
+#: steps end, designs fell short of it by up to 2e-5.
 ANGLE_MARGIN = 1e-4
 
 _MARGIN = 1e-6  # sizes of the goal: by which constraints hold in the end
