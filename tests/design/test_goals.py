@@ -155,3 +155,10 @@ def test_what_cannot_be_a_goal_says_why() -> None:
     ):
         with pytest.raises(InputError, match=message):
             bar.improve({"of": of, "target": 1.0}, starts=1)
+
+
+def test_numbers_on_which_a_goal_hardly_depends_do_not_hold_the_others_back() -> None:
+    """A stroke of 70 needs a shorter crank; rod and offset change it little, or not at all."""
+    goal = {"of": "stroke(d)", "target": 70.0}
+    found = lw.example("slider-crank").improve(goal, starts=6)
+    assert [design.total for design in found] == pytest.approx([0.0] * 6, abs=1e-12)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.varied_number import number_named
+from linkwork.results.branch_end import branch_end
 
 
 def test_gradients_of_lanes_are_those_of_the_single_mechanism() -> None:
@@ -157,3 +160,34 @@ def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(
     # 5 % of the crank, and of the longest link, 120
     assert np.abs(others - start).max(axis=0) == pytest.approx([2.0, 6.0], rel=0.02)
     assert np.abs(others.mean(axis=0) - start).max() < 1.0
+
+
+def test_a_design_with_a_dead_point_between_two_rows_is_not_sound(tmp_path: Path) -> None:
+    """The ground is at half a degree, and the crank's turn has a gap from 180.25 to 180.75 deg."""
+    begin = np.radians(0.5)
+    longest = np.sqrt(11600.0 + 8000.0 * np.cos(np.radians(0.25)))
+    text = lw.example_text("four-bar")
+    pivot = f"[{100.0 * np.cos(begin)}, {100.0 * np.sin(begin)}]"
+    text = text.replace("[100, 0]", pivot).replace('"A B"   = 120', f'"A B" = {longest - 80.0}')
+    bar = lw.loads(text)
+    motion = bar.sweep()
+    assert motion.certified.all()
+    end = branch_end(motion)
+    assert end is not None
+    assert min(abs(end.input - place) for place in (180.25, 180.75)) < 1e-6
+    goal = {"of": "rocker", "at": [90], "values": [float(bar.solve(at=90)["rocker"])]}
+    (design,) = bar.improve(goal, vary=["A B"], starts=1)
+    assert not design.sound
+    assert design.whole_motion is None
+    assert "all rows are proved; the branch ends at the dead point crank = 180." in design.message
+    goals = {"goals": [goal], "vary": ["A B"], "starts": 1}
+    (tmp_path / "bar.toml").write_text(text)
+    (judged,) = lw.Task.improve(tmp_path / "bar.toml", **goals).solve().designs
+    (defect,) = judged.defects
+    assert defect.kind is lw.DefectKind.RANGE
+    assert defect.message.startswith("the driven range reaches the dead point crank = 180.")
+    # limits that are not in the table do not count
+    door = lw.example("garage-door").sweep()
+    assert door.limits
+    assert branch_end(door) is None
+    assert branch_end(lw.loads(text.replace("to    = 360", "to = 180")).sweep()) is None

@@ -21,8 +21,9 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 from linkwork.foundation.rounding import EPSILON
+from linkwork.numerics.lane_bounds import Box, OwnVariables
 
-__all__ = ["Box", "LaneFit", "OwnVariables", "Residuals", "minimise", "starts_of"]
+__all__ = ["LaneFit", "Residuals", "minimise", "starts_of"]
 
 _FIRST_DAMPING, _LESS, _MORE = 1e-3, 0.2, 4.0
 _AFTER_MORE = 0.8  # less at the first step that gains: what has just failed would fail again
@@ -83,73 +84,6 @@ class Residuals:
 
 #: Residuals of parameters (D, P) and own variables (D, N) of the lanes with these numbers, (D,).
 Evaluate = Callable[[Array, Array, IndexArray], Residuals]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Box:
-    """Bounds of the parameters, (P,) each."""
-
-    least: Array
-    most: Array
-
-    def inside(self, x: Array) -> Array:
-        """The nearest parameters in the box."""
-        return np.asarray(np.clip(x, self.least, self.most))
-
-
-@dataclass(frozen=True, kw_only=True)
-class OwnVariables:
-    """Where the own variables of rows may be: between bounds, and in order.
-
-    Parameters
-    ----------
-    least, most : float
-        The bounds of all of them.
-    in_order : bool
-        Whether they rise from row to row.
-    gap, span : float
-        Of variables in order: they rise by ``gap`` or more, and by less than ``span`` altogether.
-    """
-
-    least: float = -np.inf
-    most: float = np.inf
-    in_order: bool = False
-    gap: float = 0.0
-    span: float = np.inf
-
-    def inside(self, t: Array) -> Array:
-        """Variables (D, N) moved into order, each as little as those before it allow, and between
-        the bounds.
-        """
-        low, high = self._bounds(t.shape[1])
-        if self.in_order:
-            steps = self.gap * np.arange(t.shape[1])
-            t = np.maximum.accumulate(t - steps, axis=1) + steps
-            t = np.minimum(t, t[:, :1] + self.span - steps[::-1])
-        return np.asarray(np.clip(t, low, high))
-
-    def held(self, t: Array, slope: Array) -> BoolArray:
-        """Whether a row is at a bound that it would pass down the slope, (D, N)."""
-        low, high = self._bounds(t.shape[1])
-        return np.asarray(((t <= low) & (slope > 0.0)) | ((t >= high) & (slope < 0.0)))
-
-    def together(self, t: Array, pull: Array) -> Array | None:
-        """Which rows move as one, (D, N, N): those that touch and are pushed together."""
-        if not self.in_order:
-            return None
-        contact = np.zeros(t.shape, dtype=bool)
-        # down the slope the later row would come before the earlier one
-        contact[:, 1:] = np.diff(t, axis=1) <= self.gap * (1.0 + 1e-3)
-        contact[:, 1:] &= pull[:, 1:] >= pull[:, :-1]
-        if not contact.any():
-            return None
-        group = np.cumsum(~contact, axis=1)
-        return np.asarray((group[:, :, None] == group[:, None, :]).astype(float))
-
-    def _bounds(self, count: int) -> tuple[Array, Array]:
-        """Bounds of each row, which leave room for those before and after it."""
-        steps = self.gap * np.arange(count)
-        return np.asarray(self.least + steps), np.asarray(self.most - steps[::-1])
 
 
 _ANYWHERE = OwnVariables()
@@ -377,7 +311,8 @@ def _solved(normal: Array, gradient: Array, scale: Array, work: LaneFit, box: Bo
     held = ((work.x <= box.least) & (gradient > 0.0)) | ((work.x >= box.most) & (gradient < 0.0))
     held |= box.least == box.most
     # parameters have units of their own; those without effect stay
-    diagonal = work.damping[:, None] * scale + _SINGULAR * np.where(scale > 0.0, scale, 1.0)
+    damped = scale + box.least_scale(scale)
+    diagonal = work.damping[:, None] * damped + _SINGULAR * np.where(damped > 0.0, damped, 1.0)
     parameters = normal.shape[1]
     matrix = normal + diagonal[:, :, None] * np.eye(parameters)
     if held.any():

@@ -479,7 +479,7 @@ def test_a_fit_whose_start_angles_were_found_has_its_structural_error(
         ),
         (
             {**_LOGARITHM, "wanted": {"input": {"from": 410, "to": 460}}},
-            "from 410 to 460 leaves out inputs of the function, which are from 409.019 to 460.981",
+            "from 410 to 460 leaves out inputs of the function, which are from 405 to 465",
         ),
         ({**_LOGARITHM, "input": (0, 400)}, "input  spans inputs of more than a turn, 360"),
         ({**_LOGARITHM, "wanted": {"lengths": {"least": 50}}}, "exclude the ground of length 1: "),
@@ -523,3 +523,58 @@ def test_a_range_that_touches_a_dead_point_is_not_proved() -> None:
     (design,) = task.solve().designs
     (defect,) = design.defects
     assert defect.message == "not proved: to rounding, the driven range touches a dead point"
+
+
+@pytest.mark.parametrize(("x", "ends"), [((0, 1), (10.0, 90.0)), ((1, 0), (90.0, 10.0))])
+def test_a_dead_point_behind_the_precision_points_is_in_the_range_of_a_function(
+    x: tuple[float, float], ends: tuple[float, float]
+) -> None:
+    """The last one is at 84.64 deg, the dead point at 84.84 deg."""
+    output = tuple(50.0 + 100.0 * number**2 for number in x)
+    task = lw.Task.function("x^2", x=x, input=ends, output=output, mechanism="four-bar")
+    (design,) = task.solve().designs
+    message = design.defects[0].message
+    expected = "the driven range passes a dead point: the branch ends at 275.2° and 84.8°"
+    assert message == expected
+    # as pairs the same points leave nothing behind them
+    outputs = 50.0 + 100.0 * ((np.array(design.inputs) - 10.0) / 80.0) ** 2
+    given = {"input": design.inputs[:: len(design.inputs) - 1], "output": outputs[[0, -1]]}
+    pairs = np.stack([design.inputs, outputs], axis=1).tolist()
+    (alone,) = lw.Task.function(pairs, mechanism="four-bar", **given).solve().delivered
+    assert alone.size == pytest.approx(design.size)
+
+
+@pytest.mark.parametrize(
+    ("given", "ends"),
+    [
+        ({"input": (120, 180), "output": (200, 290)}, (120.0, 180.0)),
+        ({"x": (1, 0), "input": (180, 120), "output": (290, 200)}, (180.0, 120.0)),
+        ({"input": 60, "output": 90}, None),
+        ({"input": -60, "output": -90}, None),
+    ],
+)
+def test_the_file_of_a_design_is_driven_through_the_whole_range_of_its_function(
+    given: dict[str, Any], ends: tuple[float, float] | None
+) -> None:
+    task = lw.Task.function("x^2", **{"x": (0, 1), "mechanism": "four-bar", **given})
+    design = task.solve().delivered[0]
+    inputs = lw.api.Mechanism(design.linkage).sweep().inputs["crank"]
+    if ends is None:
+        # the first of five precision points is 1.468 deg behind the begin
+        turn = np.sign(given["input"])
+        assert inputs[-1] - inputs[0] == pytest.approx(given["input"])
+        assert design.inputs[0] - inputs[0] == pytest.approx(1.4683 * turn, abs=1e-4)
+    else:
+        assert inputs[[0, -1]] == pytest.approx(ends)
+
+
+def test_a_wanted_range_holds_the_whole_range_of_a_function_that_begins_anywhere() -> None:
+    spans = {"x": (1, 2), "input": 60, "output": 50, "mechanism": "four-bar"}
+    (free,) = lw.Task.function("log10(x)", **spans).solve().delivered
+    begin, end = free.inputs[0], free.inputs[-1]
+    for low, high, kept in ((-2.0, 2.0, 1), (-1.0, 2.0, 0), (-2.0, 1.0, 0)):
+        wanted = {"input": {"from": begin + low, "to": end + high}}
+        designs = lw.Task.function("log10(x)", wanted=wanted, **spans).solve().designs
+        assert len([d for d in designs if not d.kinds]) == kept
+        told = "an end of the function's range is outside the driven range"
+        assert kept or told in [defect.message for defect in designs[0].defects]

@@ -18,13 +18,8 @@ from linkwork.design.improvement.curve_starts import CurveStarts, best_starts
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.sharing import share_out
-from linkwork.numerics.lane_least_squares import (
-    LaneFit,
-    OwnVariables,
-    Residuals,
-    minimise,
-    starts_of,
-)
+from linkwork.numerics.lane_bounds import OwnVariables
+from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, starts_of
 
 __all__ = ["FittedCurves", "fit_curve"]
 

@@ -12,7 +12,7 @@ from linkwork.design.improvement.coupler_curves import CouplerCurves
 from linkwork.foundation.angles import FULL_TURN, arc_in_order
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.rounding import EQUAL_ROWS
-from linkwork.numerics.lane_least_squares import Box
+from linkwork.numerics.lane_bounds import Box
 
 __all__ = ["INPUT", "CurveGoal"]
 

@@ -20,14 +20,8 @@ from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model
-from linkwork.numerics.lane_least_squares import (
-    Box,
-    LaneFit,
-    OwnVariables,
-    Residuals,
-    minimise,
-    starts_of,
-)
+from linkwork.numerics.lane_bounds import Box, OwnVariables
+from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, starts_of
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 

@@ -17,7 +17,8 @@ from linkwork.design.improvement.settings import Goal
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
 from linkwork.motion.model import Model, model_of
-from linkwork.numerics.lane_least_squares import Box, starts_of
+from linkwork.numerics.lane_bounds import Box
+from linkwork.numerics.lane_least_squares import starts_of
 
 __all__ = ["front_designs"]
 

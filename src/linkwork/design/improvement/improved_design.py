@@ -31,7 +31,8 @@ class ImprovedDesign:
     rms : float
         The root mean square of the distances from the points; 0 without points [length].
     sound : bool
-        Whether all rows of its table are proved to be on one branch.
+        Whether all rows of its table are proved to be on one branch, which does not end between
+        them.
     message : str
         Why it is not sound, and how the search ended.
     inputs : tuple of float

@@ -31,7 +31,7 @@ from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber, number_named
 from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep
-from linkwork.numerics.lane_least_squares import Box
+from linkwork.numerics.lane_bounds import Box
 from linkwork.results.motion import Motion
 
 __all__ = [
@@ -46,6 +46,9 @@ __all__ = [
 STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
 _FAR = 2.0  # longest numbers or links, by which others may change
+# near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
+# all steps would fail that move it by its effect alone
+_LEAST_EFFECT = 0.3
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
 
 
@@ -205,7 +208,7 @@ def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement)
             raise InputError(f'"{name}" has bounds and does not vary: add it to vary')
         k = numbers.index(number)
         least[k], most[k] = low, high
-    return Box(least=least, most=most)
+    return Box(least=least, most=most, least_effect=_LEAST_EFFECT)
 
 
 def point_named(model: Model, name: str) -> str:

@@ -19,6 +19,7 @@ from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model, model_of
 from linkwork.motion.sweeping import sweep
+from linkwork.results.branch_end import branch_end
 
 __all__ = ["fitted_design", "proved_design"]
 
@@ -60,16 +61,22 @@ def proved_design(
         motion = sweep(model)
         whole = WholeMotion.of(model, motion)
         lost = int(np.count_nonzero(~motion.certified))
+        end = branch_end(motion)
+        sound = not lost and end is None
         told += f"{lost} of {len(motion)} rows are not proved" if lost else "all rows are proved"
+        if end is not None:
+            lead = next(iter(motion.inputs))
+            told += f"; the branch ends at the {end.kind.word} "
+            told += end.told(lead, motion.input_units[lead])
     except LinkworkError as error:
-        lost, told = 1, f"{told}{error}"
+        sound, told = False, f"{told}{error}"
     return ImprovedDesign(
         description=description,
         numbers=numbers,
         total=np.nan,
         largest=np.nan,
         rms=0.0,
-        sound=not lost,
+        sound=sound,
         message=told,
         motion=motion,
         whole_motion=whole,

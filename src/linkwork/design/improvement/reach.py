@@ -15,7 +15,7 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.mechanism.varied_number import VariedNumber
-from linkwork.numerics.lane_least_squares import Box
+from linkwork.numerics.lane_bounds import Box
 
 __all__ = ["Reach"]
 

@@ -25,6 +25,7 @@ from linkwork.motion.motion_boxes import (
     refined,
     variables_of,
 )
+from linkwork.results.branch_end import branch_end
 from linkwork.results.motion import Motion
 
 __all__ = ["WholeMotion"]
@@ -56,7 +57,9 @@ class WholeMotion:
 
         A law of time says nothing about inputs between rows.
         """
-        proved = model.untimed is None and bool(motion.certified.all())
+        proved = (
+            model.untimed is None and branch_end(motion) is None and bool(motion.certified.all())
+        )
         return cls(model, motion) if proved else None
 
     @cached_property

@@ -110,6 +110,8 @@ class _Words:
             return f"position {unreached + 1} is outside the driven range", None
         if wanted.turns_fully and not self.drive.turns:
             return "the driven slider cannot turn fully", None
+        if unreached > self.verdicts.travel.place.shape[1]:
+            return "an end of the function's range is outside the driven range", None
         ends = " and ".join(map(self._input_text, filter(np.isfinite, self._dead_points())))
         return f"the driven range passes a dead point: the branch ends at {ends}", None
 

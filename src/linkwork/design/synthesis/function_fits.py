@@ -23,7 +23,8 @@ from linkwork.design.synthesis.structural_error import (
 )
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
-from linkwork.numerics.lane_least_squares import Box, LaneFit, Residuals, minimise, starts_of
+from linkwork.numerics.lane_bounds import Box
+from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, starts_of
 
 __all__ = ["FunctionFits", "fit_functions"]
 

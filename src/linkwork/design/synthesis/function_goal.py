@@ -184,7 +184,8 @@ class FunctionGoal:
 
     def range_problems(self, ends: Pair, turn: float) -> Problems:
         """An input that a driven range leaves out, in whatever turn the range is."""
-        inputs, (low, high) = self.points()[0], sorted(ends)
+        inputs = self.points()[0] if self.pairs else np.array(self.input)
+        low, high = sorted(ends)
         slack = EQUAL_ROWS * turn
         turned = math.ceil((low - slack - inputs.min()) / turn) * turn
         first, last = float(inputs.min()), float(inputs.max())

@@ -25,6 +25,8 @@ from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
+from linkwork.results.branch_end import branch_end
+from linkwork.results.limit import LimitKind
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
@@ -211,6 +213,12 @@ class ImprovedMechanism(SweptDesign):
         if lost:
             told = "the input does not turn fully: " if task.wanted.turns_fully else ""
             yield DefectKind.RANGE, f"{told}{lost} of {len(motion)} rows have no position"
+        elif (end := branch_end(motion)) is not None:
+            kind, place = end.kind, self._input_text(end.input)
+            if kind is LimitKind.DEAD_POINT:
+                yield DefectKind.RANGE, f"the driven range reaches the dead point {place}"
+            else:
+                yield DefectKind.NOT_PROVED, f"not proved: a {kind.word} at {place}"
         elif not motion.certified.all():
             unproved = int(np.count_nonzero(~motion.certified))
             yield DefectKind.NOT_PROVED, f"{unproved} of {len(motion)} rows are not proved"

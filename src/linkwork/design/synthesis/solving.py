@@ -254,6 +254,7 @@ def wishes_of(task: Task, drive: Drive) -> Wishes:
     return Wishes(
         ordered=wanted.ordered and not _is_timed_around(task),
         range=_range(task, wanted, drive),
+        beyond=_beyond(task),
         transmission=task.in_radians(wanted.transmission),
         region=np.array([complex(*corner) for corner in wanted.region]),
         shortest=wanted.shortest,
@@ -286,6 +287,14 @@ def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
     if drive.turns:
         start, stop = task.in_radians(start), task.in_radians(stop)
     return Range(start=start, stop=stop)
+
+
+def _beyond(task: Task) -> float:
+    """How far the range of a function reaches beyond its first and last precision point [rad]."""
+    goal = task.function
+    if goal is None or goal.pairs or goal.input is None:
+        return 0.0
+    return task.in_radians(float(abs(goal.points()[0][0] - goal.input[0])))
 
 
 def _ranked(task: Task, judged: list[JudgedDesigns]) -> Iterator[SynthesizedDesign]:

@@ -44,8 +44,8 @@ class Travel:
     out_of_order : (D,)
         Whether the input passes the positions in another order.
     unreached : (D,)
-        The position outside the driven range, N if the range itself leaves the circuit, ``NOWHERE``
-        if all is reached.
+        The position outside the driven range, N if the range itself leaves the circuit, N + 1 if
+        the way beyond the positions is outside, ``NOWHERE`` if all is reached.
     decided : (D,)
         Whether all of this is certain with the errors.
     """
@@ -60,8 +60,15 @@ class Travel:
     decided: BoolArray
 
 
-def travel_of(loops: DrivenLoops, wanted: Range | None, ordered: bool) -> Travel:
-    """The way through the positions; ``wanted``: by default the range from first to last."""
+def travel_of(
+    loops: DrivenLoops,
+    wanted: Range | None,
+    ordered: bool,
+    beyond: float = 0.0,
+) -> Travel:
+    """The way through the positions; ``wanted``: by default from ``beyond`` the first to ``beyond``
+    the last position.
+    """
     free, split = loops.is_free, loops.is_split
     side, half = np.sign(loops.side), np.sign(loops.half)
     number = np.where(free[:, None], side, np.where(split[:, None], half, 0.0))
@@ -73,7 +80,7 @@ def travel_of(loops: DrivenLoops, wanted: Range | None, ordered: bool) -> Travel
         decided &= order_decided
     else:
         in_order = np.ones_like(in_order)
-    first, last, unreached, range_decided = _driven_range(loops, place, free, wanted)
+    first, last, unreached, range_decided = _driven_range(loops, place, free, wanted, beyond)
     return Travel(
         place=place,
         first=first,
@@ -134,16 +141,22 @@ def _places(loops: DrivenLoops, free: BoolArray) -> tuple[Array, BoolArray, Bool
 
 
 def _driven_range(
-    loops: DrivenLoops, place: Array, free: BoolArray, wanted: Range | None
+    loops: DrivenLoops,
+    place: Array,
+    free: BoolArray,
+    wanted: Range | None,
+    beyond: float,
 ) -> tuple[Array, Array, IndexArray, BoolArray]:
     """The ends of the driven range, the position that is not reached, and whether it is certain."""
     count = place.shape[1]
-    nowhere = np.full(len(place), NOWHERE)
     sure = np.ones(len(place), dtype=bool)
     low, high = place.min(axis=1), place.max(axis=1)
     forward = place[:, -1] >= place[:, 0]
+    needed = np.stack([low - beyond, high + beyond], axis=1)
     if wanted is None:
-        return np.where(forward, low, high), np.where(forward, high, low), nowhere, sure
+        leaves = ~free & (beyond > 0.0) & _leaves(loops, needed[:, 0], needed[:, 1])
+        first, last = np.where(forward, needed.T, needed.T[::-1])
+        return first, last, np.where(leaves, count, NOWHERE), sure
     if wanted.turn:
         first = place[:, 0]
         last = first + np.where(forward, FULL_TURN, -FULL_TURN)
@@ -152,13 +165,15 @@ def _driven_range(
     last = first + (wanted.stop - wanted.start)
     if loops.turns:
         # the whole turns that bring the range to the positions
-        turns = np.round((0.5 * (low + high) - 0.5 * (first + last)) / FULL_TURN) * FULL_TURN
+        turns = np.round((needed.mean(axis=1) - 0.5 * (first + last)) / FULL_TURN) * FULL_TURN
         first, last = first + turns, last + turns
     begin, end = np.minimum(first, last), np.maximum(first, last)
-    error = 4.0 * loops.input_error
-    outside = (place < (begin - error)[:, None]) | (place > (end + error)[:, None])
+    error = (4.0 * loops.input_error)[:, None]
+    outside = (place < begin[:, None] - error) | (place > end[:, None] + error)
     leaves = ~free & _leaves(loops, begin, end)
+    short = (needed[:, 0] < begin - error[:, 0]) | (needed[:, 1] > end + error[:, 0])
     unreached = np.where(outside.any(axis=1), outside.argmax(axis=1), NOWHERE)
+    unreached = np.where((unreached == NOWHERE) & short, count + 1, unreached)
     unreached = np.where(leaves, count, unreached)
     return first, last, unreached, sure
 

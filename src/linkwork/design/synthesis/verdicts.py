@@ -96,7 +96,7 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
     Journal of Mechanical Design 115 (1993) 223-230.
     """
     loops = driven_loops(given, drive)
-    travel = travel_of(loops, wishes.range, wishes.ordered)
+    travel = travel_of(loops, wishes.range, wishes.ordered, wishes.beyond)
     found: dict[DefectKind, BoolArray] = {}
     open_ = travel.decided.copy()
     for kind, wrong in (

@@ -25,6 +25,8 @@ class Wishes:
         Whether the positions are passed in their order.
     range : Range, optional
         The driven range; by default from the first position to the last.
+    beyond : float
+        How far the range by default reaches before the first and behind the last position [rad].
     transmission : float
         The smallest transmission angle allowed [rad].
     region : (K,) complex
@@ -39,6 +41,7 @@ class Wishes:
 
     ordered: bool = True
     range: Range | None = None
+    beyond: float = 0.0
     transmission: float = 0.0
     region: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=complex))
     shortest: float = 0.0

@@ -10,9 +10,8 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
-from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.status import Status
-from linkwork.results.limit import Limit
+from linkwork.results.branch_end import is_in_table
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import short
 from linkwork.results.listing.position_listing import (
@@ -97,31 +96,17 @@ def limit_fields(motion: Motion) -> Iterator[tuple[str, str]]:
     name, _ = _lead(motion)
     unit = motion.input_units[name]
     # two ends of a branch may coincide
-    told = (
-        (limit.kind.word, limit.told(name, unit) + ", outside the table" * _outside(motion, limit))
-        for limit in motion.limits
-    )
-    yield from dict.fromkeys(told)
+    told: dict[tuple[str, str], None] = {}
+    for limit in motion.limits:
+        place = "" if is_in_table(limit, motion) else ", outside the table"
+        told[limit.kind.word, limit.told(name, unit) + place] = None
+    yield from told
     for extreme in motion.output_limits:
         value = f"{extreme.value:.10g} {motion.quantity(extreme.name).unit}".rstrip()
         text = f"{extreme.name} = {value} at {name} = {extreme.input:.12g} {unit}".rstrip()
         yield extreme.kind, text
     if motion.circuit is not None:
         yield "circuit", motion.circuit.value
-
-
-def _outside(motion: Motion, limit: Limit) -> bool:
-    """Whether no row is lost and the limit is at no input between the first row and the last."""
-    name, values = _lead(motion)
-    if not len(values) or not motion.found.all():
-        return False
-    low, high = float(values.min()), float(values.max())
-    is_angle = motion.input_units[name] == motion.units.angle.value
-    away = (limit.input - low) % motion.units.angle.turn if is_angle else limit.input - low
-    # rounding may leave a limit at an end of the table just beyond it
-    slack = EQUAL_ROWS * max(abs(low), abs(high))
-    beyond = away < -slack or high - low + slack < away
-    return beyond and not (is_angle and away > motion.units.angle.turn - slack)
 
 
 def evidence_fields(motion: Motion, measure: str) -> Iterator[tuple[str, str]]:
