@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import fit_numbers
+from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design
 from linkwork.design.improvement.settings import Goal, Improvement, Points
 from linkwork.design.improvement.written_designs import DesignWriter
@@ -33,6 +36,9 @@ from linkwork.motion.model import Model
 from linkwork.motion.sweeping import sweep
 from linkwork.numerics.lane_bounds import Box
 from linkwork.results.motion import Motion
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
+
+_Fit = tuple[PathGoal | None, FittedNumbers]
 
 __all__ = [
     "FACTOR",
@@ -41,11 +47,13 @@ __all__ = [
     "improved_designs",
     "numbers_to_vary",
     "point_named",
+    "transmission_goals",
 ]
 
 STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
 _FAR = 2.0  # longest numbers or links, by which others may change
+_OFF = math.radians(0.25)  # dead points: starts that lead to one are led again, so far from all
 # near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
 # all steps would fail that move it by its effect alone
 _LEAST_EFFECT = 0.3
@@ -77,23 +85,51 @@ def improved_designs(
     if not numbers:
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
+    starts = box.inside(_starts(model, numbers, settings))
+    asked = partial(_fits, model, numbers, box, points, settings=settings)
     try:
-        fits = _fits(model, numbers, box, points, others, settings, progress)
+        fits = asked(others, starts, tell=progress)
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
         return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
+    designs = _designs(model, numbers, fits, settings, [])
+    bound = model.description.angle.from_radians(_OFF)
+    locked = [
+        k for k, own in designs if own.motion is not None and least_in_rows(own.motion) < bound
+    ]
+    held = {goal.of for goal in others}
+    kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
+    if locked and kept_off and not fits[-1][1].interrupted:
+        known = [own for own in designs if own[1].sound or own[0] not in locked]
+        fits = asked([*others, *kept_off], starts[locked], tell=progress)
+        designs = _designs(model, numbers, fits, settings, known)
+    return tuple(sorted((own for _, own in designs), key=partial(_rank, settings)))
+
+
+def _designs(
+    model: Model,
+    numbers: Sequence[VariedNumber],
+    fits: Sequence[_Fit],
+    settings: Improvement,
+    known: Sequence[tuple[int, ImprovedDesign]],
+) -> list[tuple[int, ImprovedDesign]]:
+    """Known designs and further ones of fits, the best first, each with the number of its start."""
+    designs = [*known]
     best = sorted(
         (float((found.largest if settings.fit == "minimax" else found.total)[k]), part, int(k))
         for part, (_, found) in enumerate(fits)
         for k in np.flatnonzero(np.isfinite(found.total))
     )
-    designs: list[ImprovedDesign] = []
     for _, part, k in best:
         path, found = fits[part]
-        if not _is_known(found.x[k], designs):
-            designs.append(fitted_design(model, numbers, path, found, k))
-    return tuple(sorted(designs, key=lambda design: not design.sound))
+        if not _is_known(found.x[k], [own for _, own in designs]):
+            designs.append((k, fitted_design(model, numbers, path, found, k)))
+    return designs
+
+
+def _rank(settings: Improvement, design: ImprovedDesign) -> tuple[bool, float]:
+    return not design.sound, design.largest if settings.fit == "minimax" else design.total
 
 
 def _fits(
@@ -102,13 +138,38 @@ def _fits(
     box: Box,
     points: Points | None,
     goals: Sequence[Goal],
+    starts: Array,
+    *,
     settings: Improvement,
-    progress: Callable[[float], None] | None,
-) -> list[tuple[PathGoal | None, FittedNumbers]]:
-    """Fits from all starts, one for each way to time the points."""
+    tell: Callable[[float], None] | None,
+) -> list[_Fit]:
+    """Fits from starts (D, P), one for each way to time the points."""
     motion = sweep(model, certify=False)
     if not motion.found.any():
         raise InputError(f'"{model.description.name}" has no position: improve one that moves')
+    paths = _paths(model, motion, points) if points else (None,)
+    fits: list[_Fit] = []
+    for part, path in enumerate(paths):
+
+        def told(fraction: float, done: int = part) -> None:
+            if tell is not None:
+                tell((done + fraction) / len(paths))
+
+        given = Fitting(
+            model=model, motion=motion, numbers=numbers, box=box, path=path, goals=goals
+        )
+        if settings.front:
+            found = fit_front(given, starts, settings.front, progress=told)
+        else:
+            found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
+        fits.append((path, found))
+        if found.interrupted:
+            break
+    return fits
+
+
+def _starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Array:
+    """Numbers (D, P) around those of the mechanism, its own first."""
     x = np.array([float(q.of(model.description)) for q in numbers])
     rng = np.random.default_rng(settings.seed)
     count = settings.starts or STARTS
@@ -116,26 +177,16 @@ def _fits(
     sizes = np.where(x == 0.0, _sizes(model, numbers, x), x)
     starts = x + settings.spread * sizes * rng.uniform(-1.0, 1.0, (count, len(x)))
     starts[0] = x
-    paths = _paths(model, motion, points) if points else (None,)
-    fits: list[tuple[PathGoal | None, FittedNumbers]] = []
-    for part, path in enumerate(paths):
+    return starts
 
-        def tell(fraction: float, done: int = part) -> None:
-            if progress is not None:
-                progress((done + fraction) / len(paths))
 
-        begin = box.inside(starts)
-        given = Fitting(
-            model=model, motion=motion, numbers=numbers, box=box, path=path, goals=goals
-        )
-        if settings.front:
-            found = fit_front(given, begin, settings.front, progress=tell)
-        else:
-            found = fit_numbers(given, begin, minimax=settings.fit == "minimax", progress=tell)
-        fits.append((path, found))
-        if found.interrupted:
-            break
-    return fits
+def transmission_goals(model: Model, least: float) -> Iterator[Goal]:
+    """A least transmission angle of all dyads, as bounds in all rows [rad]."""
+    angle = model.description.angle
+    bound = angle.from_radians(least)
+    for name, asked in model.quantities.derived.items():
+        if asked.row is TRANSMISSION_ANGLE:
+            yield Goal(of=name, least=bound, most=angle.turn / 2.0 - bound)
 
 
 def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:

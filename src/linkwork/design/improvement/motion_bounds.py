@@ -6,10 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.dyad import Dyad
+from linkwork.results.motion import Motion
+from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-__all__ = ["Contact", "LeastAngle", "MotionBounds"]
+__all__ = ["Contact", "LeastAngle", "MotionBounds", "least_in_rows"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,3 +56,14 @@ class MotionBounds(Protocol):
         circles : (M, 3)
             x, y, radius [length].
         """
+
+
+def least_in_rows(motion: Motion) -> float:
+    """The least transmission angle of all dyads in the rows that have a position, NaN without one
+    [file's angle unit].
+    """
+    half = motion.units.angle.turn / 2.0
+    names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
+    # 40° and 140° transmit equally well
+    rows = [np.minimum(own, half - own) for own in (motion[n][motion.found] for n in names)]
+    return min((float(own.min()) for own in rows if len(own)), default=float("nan"))

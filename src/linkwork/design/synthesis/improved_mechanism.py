@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
+from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.synthesis.contradictions import outside_range
 from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
 from linkwork.design.synthesis.judged_design import JudgedDesign
@@ -146,13 +147,7 @@ class ImprovedMechanism(SweptDesign):
         if whole is not None and whole.dyads:
             least = whole.least_transmission(self.wishes.transmission)
             return self.task.angle.from_radians(least.low)
-        if motion is None or not motion.found.any():
-            return float("nan")
-        names = [n for n, a in motion.quantities.derived.items() if a.row is TRANSMISSION_ANGLE]
-        half = self.task.angle.turn / 2.0
-        rows = [motion[name][motion.found] for name in names]
-        # 40° and 140° transmit equally well
-        return min((float(np.minimum(a, half - a).min()) for a in rows), default=float("nan"))
+        return float("nan") if motion is None else least_in_rows(motion)
 
     @cached_property
     def _lengths(self) -> Array:

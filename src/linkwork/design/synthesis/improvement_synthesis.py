@@ -20,6 +20,7 @@ from linkwork.design.improvement.improving import (
     improved_designs,
     numbers_to_vary,
     point_named,
+    transmission_goals,
 )
 from linkwork.design.improvement.reach import Reach
 from linkwork.design.improvement.settings import Goal, Improvement, Points, Problems
@@ -91,7 +92,9 @@ def improve_description(
     task.refuse(_name_problems(model, settings))
     numbers = numbers_to_vary(model, settings.vary)
     settings = replace(settings, bounds=_bounds(description, task, wishes, numbers))
-    angles = list(_transmission_goals(model, task))
+    # rows hold a little more, so that all between them holds
+    least = min(wishes.transmission + ANGLE_MARGIN, math.pi / 2.0)
+    angles = [*transmission_goals(model, least)] if wishes.transmission else []
     if task.wanted.transmission and not angles:
         lacks = f'"{description.name}" has no dyad of pins and no transmission angle: leave it out'
         task.refuse([(("wanted", TRANSMISSION_ANGLE.word), lacks)])
@@ -207,15 +210,6 @@ def _wanted_bounds(
         if number.table == "points" and number.key in fixed and wishes.region.size:
             along = wishes.region.imag if number.axis else wishes.region.real
             yield number, (float(along.min()), float(along.max()))
-
-
-def _transmission_goals(model: Model, task: Task) -> Iterator[Goal]:
-    """The least transmission angle of all dyads, as bounds in all rows."""
-    least = task.wanted.transmission
-    least += min(task.angle.from_radians(ANGLE_MARGIN), task.angle.turn / 4.0 - least)
-    for name, asked in model.quantities.derived.items() if task.wanted.transmission else ():
-        if asked.row is TRANSMISSION_ANGLE:
-            yield Goal(of=name, least=least, most=task.angle.turn / 2.0 - least)
 
 
 def _points(task: Task, settings: Improvement) -> Points:
