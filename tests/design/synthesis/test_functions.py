@@ -578,3 +578,12 @@ def test_a_wanted_range_holds_the_whole_range_of_a_function_that_begins_anywhere
         assert len([d for d in designs if not d.kinds]) == kept
         told = "an end of the function's range is outside the driven range"
         assert kept or told in [defect.message for defect in designs[0].defects]
+
+
+def test_a_range_that_passes_a_dead_point_does_not_touch_one_besides() -> None:
+    points = [(250, 0), (520, 100), (600, 250), (350, 300)]
+    found = lw.Task.path(points, wanted={"input": "turns fully"}).solve()
+    kind = lw.DefectKind.RANGE
+    passing = [design for design in found.designs if kind in design.kinds]
+    assert passing
+    assert not any("touches a dead point" in d.message for e in passing for d in e.defects)
