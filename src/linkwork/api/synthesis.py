@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Sized
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
@@ -44,8 +44,13 @@ class Task:
     @classmethod
     def motion(cls, poses: Sequence[Sequence[float]], **tables: Any) -> Self:
         """A task of poses (x, y, angle), in order of travel and file units."""
-        positions = [{"point": list(pose[:2]), "angle": pose[2]} for pose in _rows(poses, 3)]
-        return cls._of("motion", positions=positions, **tables)
+        return cls._of("motion", **_apart(tables, positions=_positions(poses, "pose", (3,))))
+
+    @classmethod
+    def mixed(cls, positions: Sequence[Sequence[float]], **tables: Any) -> Self:
+        """A task of points (x, y) and poses (x, y, angle), in order of travel and file units."""
+        own = _positions(positions, "position", (2, 3))
+        return cls._of("mixed", **_apart(tables, positions=own))
 
     @classmethod
     def path(
@@ -63,7 +68,7 @@ class Task:
         met by least squares. ``tolerance``: how far every point may be missed [length].
         """
         wanted = {"order": order, **tables.pop("wanted", {})}
-        positions: list[dict[str, Any]] = [{"point": list(point)} for point in _rows(points, 2)]
+        positions = _positions(points, "point", (2,))
         if inputs is not None:
             if len(inputs) != len(positions):
                 raise InputError(f"{len(positions)} points need as many inputs, got {len(inputs)}")
@@ -71,7 +76,7 @@ class Task:
                 position["input"] = value
         for position in positions if tolerance else ():
             position["tolerance"] = tolerance
-        return cls._of("path", positions=positions, wanted=wanted, **tables)
+        return cls._of("path", **_apart(tables, positions=positions, wanted=wanted))
 
     @classmethod
     def function(cls, of: str | Sequence[Sequence[float]], **tables: Any) -> Self:
@@ -82,7 +87,7 @@ class Task:
         """
         own = {key: tables.pop(key) for key in _OF_FUNCTIONS if key in tables}
         own["of" if isinstance(of, str) else "pairs"] = of
-        return cls._of("function", function=own, **tables)
+        return cls._of("function", **_apart(tables, function=own))
 
     @classmethod
     def improve(cls, mechanism: str | Path, **tables: Any) -> Self:
@@ -92,7 +97,7 @@ class Task:
         ``seed`` are keys of the table ``improve``; all others are tables of the task.
         """
         own = {key: tables.pop(key) for key in _OF_IMPROVEMENTS if key in tables}
-        return cls._of("improve", mechanism=str(mechanism), improve=own, **tables)
+        return cls._of("improve", **_apart(tables, mechanism=str(mechanism), improve=own))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -182,10 +187,24 @@ _OF_IMPROVEMENTS = (
 _OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
 
 
-def _rows(given: Any, count: int) -> list[list[float]]:
-    """Rows of numbers; rows of another length are refused by the keys of the task."""
+def _apart(tables: dict[str, Any], **own: Any) -> dict[str, Any]:
+    """The tables of a task, none of which is given twice."""
+    for name in sorted({*own, "task"} & tables.keys()):
+        raise InputError(f'"{name}" is made of the other arguments: give its keys as arguments')
+    return {**own, **tables}
+
+
+def _positions(given: Any, what: str, sizes: tuple[int, ...]) -> list[dict[str, Any]]:
+    """Positions of rows of numbers: x, y and, in rows of three, the angle."""
     rows = np.asarray(given, dtype=float).tolist() if isinstance(given, np.ndarray) else given
-    return [[*row, *[float("nan")] * (count - len(row))] for row in rows]
+    found = []
+    for k, row in enumerate(rows, start=1):
+        count = len(row) if isinstance(row, Sized) else 1
+        if count not in sizes:
+            wanted = " or ".join("(x, y, angle)" if n == 3 else "(x, y)" for n in sizes)
+            raise InputError(f"{what} {k} has {count} numbers: give {wanted}")
+        found.append({"point": list(row[:2]), **({"angle": row[2]} if count == 3 else {})})
+    return found
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -216,7 +235,9 @@ class Synthesis(result.Synthesis):
         """All designs, one row each: numbers, points, and the first reason of refused ones."""
         return designs_table(self)
 
-    def save(self, folder: str | Path, *, refused: bool = False) -> tuple[str, ...]:
+    def save(
+        self, folder: str | Path, *, refused: bool = False, fresh: bool = False
+    ) -> tuple[str, ...]:
         """Write the delivered designs as mechanism files with their task beside them.
 
         Parameters
@@ -225,6 +246,8 @@ class Synthesis(result.Synthesis):
             A new or empty folder.
         refused : bool
             Whether to write the refused designs too, in its folder ``refused``.
+        fresh : bool
+            Whether to replace the designs of an earlier synthesis in the folder.
 
         Returns
         -------
@@ -236,4 +259,6 @@ class Synthesis(result.Synthesis):
         InputError
             If the folder is not empty, or cannot be written.
         """
-        return tuple(write_designs(self, folder, FolderOptions(refused=refused)).values())
+        return tuple(
+            write_designs(self, folder, FolderOptions(refused=refused, fresh=fresh)).values()
+        )

@@ -58,6 +58,10 @@ def place_contradictions(
     if wanted.region and _is_flat(wanted.region):
         yield _REGION, "encloses no area"
         return
+    for j, k in _crossings(wanted.region):
+        told = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
+        yield _REGION, f"{told}{(k + 1) % len(wanted.region) + 1}: list them around the region"
+        return
     for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
         if _away(pivot, wanted.region):
             yield ("given", "fixed_pivots", k), "is outside the region that is wanted for it"
@@ -123,6 +127,20 @@ def _away(place: Point, corners: Sequence[Point]) -> float:
     if Wishes(region=region).within_region(z, np.zeros(1))[0]:
         return 0.0
     return float(distances_to_segments(z, region, np.roll(region, -1)).min())
+
+
+def _crossings(corners: Sequence[Point]) -> Iterator[tuple[int, int]]:
+    """The sides of a polygon that cross another one: the first corners of both."""
+    z = [complex(*corner) for corner in corners]
+    sides = [*zip(z, z[1:] + z[:1], strict=True)]
+    for (j, (a, b)), (k, (c, d)) in combinations(enumerate(sides), 2):
+        if _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0:
+            yield j, k
+
+
+def _turn(a: complex, b: complex, c: complex) -> float:
+    """Twice the area of a triangle, positive counterclockwise, relative to its sides."""
+    return float(np.sign(((b - a).conjugate() * (c - a)).imag))
 
 
 def _is_flat(corners: Sequence[Point]) -> bool:

@@ -53,16 +53,15 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
     MechanismError
         For bounds of unknown dimensions.
     """
-    left = _left_out(task)
-    if {*task.mechanisms} <= left.keys():
-        name, why = next(iter(left.items()))
+    if {*task.mechanisms} <= task.left_out.keys():
+        name, why = next(iter(task.left_out.items()))
         told = f'"{name}" does not fit what is given: {why}; leave one out, or add "four-bar"'
         task.refuse([(("mechanism",), told)])
     goal = curve_goal_of(task, wishes)
     settings = task.improvement or Improvement()
     starts = settings.starts or _STARTS
     asked = [name for name in _KINDS if name in task.mechanisms]
-    kinds = [_KINDS[name] for name in asked if name not in _left_out(task)]
+    kinds = [_KINDS[name] for name in asked if name not in task.left_out]
     fitted: list[FittedCurves] = []
     for k, kind in enumerate(kinds):
         rng = np.random.default_rng([settings.seed, k])
@@ -82,7 +81,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
-        + "".join(f"; no {name}s: {why}" for name, why in _left_out(task).items() if name in asked)
+        + "".join(f"; no {name}s: {why}" for name, why in task.left_out.items() if name in asked)
         + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
         * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
@@ -133,16 +132,6 @@ def usual_longest(task: Task) -> float:
     return float(
         max(_USUAL * np.hypot(*away.T).max(), *given.lengths.values(), 2.0 * wanted.shortest)
     )
-
-
-def _left_out(task: Task) -> dict[str, str]:
-    """Kinds of mechanisms that have not all of what the task gives, and why."""
-    name = LoopKind.SLIDER_CRANK.value
-    if len(task.given.fixed_pivots) > 1:
-        return {name: "two fixed pivots are given, of which it has one"}
-    if "B0 B" in task.given.lengths:
-        return {name: 'the length "B0 B" is given, which it does not have'}
-    return {}
 
 
 def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
