@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence, Sized
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Self
@@ -44,13 +44,12 @@ class Task:
     @classmethod
     def motion(cls, poses: Sequence[Sequence[float]], **tables: Any) -> Self:
         """A task of poses (x, y, angle), in order of travel and file units."""
-        return cls._of("motion", **_apart(tables, positions=_positions(poses, "pose", (3,))))
+        return cls._of("motion", **_apart(tables, positions=_positions(poses)))
 
     @classmethod
     def mixed(cls, positions: Sequence[Sequence[float]], **tables: Any) -> Self:
         """A task of points (x, y) and poses (x, y, angle), in order of travel and file units."""
-        own = _positions(positions, "position", (2, 3))
-        return cls._of("mixed", **_apart(tables, positions=own))
+        return cls._of("mixed", **_apart(tables, positions=_positions(positions)))
 
     @classmethod
     def path(
@@ -68,7 +67,7 @@ class Task:
         met by least squares. ``tolerance``: how far every point may be missed [length].
         """
         wanted = {"order": order, **tables.pop("wanted", {})}
-        positions = _positions(points, "point", (2,))
+        positions = _positions(points)
         if inputs is not None:
             if len(inputs) != len(positions):
                 raise InputError(f"{len(positions)} points need as many inputs, got {len(inputs)}")
@@ -194,17 +193,13 @@ def _apart(tables: dict[str, Any], **own: Any) -> dict[str, Any]:
     return {**own, **tables}
 
 
-def _positions(given: Any, what: str, sizes: tuple[int, ...]) -> list[dict[str, Any]]:
-    """Positions of rows of numbers: x, y and, in rows of three, the angle."""
+def _positions(given: Any) -> list[dict[str, Any]]:
+    """Positions of rows: of three numbers poses; others are points, if the task's keys say so."""
     rows = np.asarray(given, dtype=float).tolist() if isinstance(given, np.ndarray) else given
-    found = []
-    for k, row in enumerate(rows, start=1):
-        count = len(row) if isinstance(row, Sized) else 1
-        if count not in sizes:
-            wanted = " or ".join("(x, y, angle)" if n == 3 else "(x, y)" for n in sizes)
-            raise InputError(f"{what} {k} has {count} numbers: give {wanted}")
-        found.append({"point": list(row[:2]), **({"angle": row[2]} if count == 3 else {})})
-    return found
+    return [
+        {"point": list(row[:2]), "angle": row[2]} if len(row) == 3 else {"point": list(row)}
+        for row in rows
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

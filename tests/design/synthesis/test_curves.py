@@ -90,7 +90,7 @@ def test_a_curve_in_a_file_is_followed_in_order(tmp_path: Path) -> None:
         ("1,2\n3,4\n", "", "2 points"),
         ("1,2\n3,4\n5,a\n", "", "'5,a'"),
         ("1,2\n3,4\n5,4\n6,4\n7,1\n", 'timing = "as given"', "third column"),
-        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", 'repeats line 2 in line 3 of "foot.csv"'),
+        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "repeats line 2 in line 3: leave one out"),
         ("# foot\n1,2\n", "", "has 1 point: a curve"),
     ],
 )

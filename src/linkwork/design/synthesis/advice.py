@@ -89,23 +89,19 @@ def advice_of(found: Synthesis) -> str:
     if found.costliest is not None:
         return ""
     if found.task.kind == "improve":
-        return _of_range(found) if found.designs else _of_goals(found)
+        if not found.designs:
+            return _of_goals(found)
+        told = (
+            f"The driven range is that of {found.task.mechanisms[0]}: [wanted] input = "
+            "{ from = …, to = … } drives designs through less of it."
+        )
+        return told if DefectKind.RANGE in found.defects else ""
     if found.designs and not found.defects.keys() & {*_MOVING}:
         return ""
     first, *others = _changes(found)
     steps = first + "".join(f", or {other}" for other in others)
     blame = "No wish is to blame. " if found.designs else ""
     return f"{blame}Try to {steps}."
-
-
-def _of_range(found: Synthesis) -> str:
-    """What to do about designs that lose positions of a driven range that no wish names."""
-    if DefectKind.RANGE not in found.defects:
-        return ""
-    return (
-        f"The driven range is that of {found.task.mechanisms[0]}: [wanted] input = "
-        "{ from = …, to = … } drives designs through less of it."
-    )
 
 
 def _of_goals(found: Synthesis) -> str:

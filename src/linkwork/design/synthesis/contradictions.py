@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.design.improvement.settings import Problems
 from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.rounding import EQUAL_ROWS
 
 __all__ = ["length_contradictions", "outside_range", "place_contradictions", "unreached_places"]
@@ -58,7 +58,7 @@ def place_contradictions(
     if wanted.region and _is_flat(wanted.region):
         yield _REGION, "encloses no area"
         return
-    for j, k in _crossings(wanted.region):
+    for j, k in _crossings(wanted.region)[:1]:
         told = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
         yield _REGION, f"{told}{(k + 1) % len(wanted.region) + 1}: list them around the region"
         return
@@ -129,18 +129,12 @@ def _away(place: Point, corners: Sequence[Point]) -> float:
     return float(distances_to_segments(z, region, np.roll(region, -1)).min())
 
 
-def _crossings(corners: Sequence[Point]) -> Iterator[tuple[int, int]]:
-    """The sides of a polygon that cross another one: the first corners of both."""
-    z = [complex(*corner) for corner in corners]
-    sides = [*zip(z, z[1:] + z[:1], strict=True)]
-    for (j, (a, b)), (k, (c, d)) in combinations(enumerate(sides), 2):
-        if _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0:
-            yield j, k
-
-
-def _turn(a: complex, b: complex, c: complex) -> float:
-    """Twice the area of a triangle, positive counterclockwise, relative to its sides."""
-    return float(np.sign(((b - a).conjugate() * (c - a)).imag))
+def _crossings(corners: Sequence[Point]) -> CountArray:
+    """The sides of a polygon that cross another one: the first corners of both, (C, 2)."""
+    z = np.array([complex(*corner) for corner in corners])
+    left = np.sign(((np.roll(z, -1) - z).conj()[:, None] * (z - z[:, None])).imag)
+    parted = left * np.roll(left, -1, axis=1) < 0  # the ends of each side by each other one
+    return np.argwhere(parted & parted.T)
 
 
 def _is_flat(corners: Sequence[Point]) -> bool:

@@ -94,7 +94,9 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
             told = "all have the same angle: the body only translates, and two guides (a PP dyad) "
             told += "carry it through any such poses; no dyad with a pivot is determined"
             raise _refused(task, "positions", told)
-        if len(points) == FIVE - 2 and not _away_from_line(points) > _PARALLEL:
+        ways = points[1:] - points[0]
+        off = abs((ways[-1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max()
+        if len(ways) > 1 and not off > _PARALLEL:
             told = "have one angle and lie on a line: a slider along it carries the body, and no "
             raise _refused(task, "positions", f"{told}linkage is determined")
         return
@@ -106,12 +108,6 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size:
         told = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
         raise _refused(task, "positions", f"{told}carries the body, and no linkage is determined")
-
-
-def _away_from_line(points: ComplexArray) -> float:
-    """How far three points are from a line, relative to the square of their distances."""
-    ways = points[1:] - points[0]
-    return float(abs((ways[1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -323,7 +323,10 @@ class Synthesis:
         """The wish without which most of the refused designs would be sound, and their number;
         several wishes together if no design breaks one alone.
         """
-        broken = Counter(d.kinds for d in self.refused if self._wished >= {*d.kinds})
+        wishes, wanted = {*_WISHES}, self.task.wanted
+        if not wanted.turns_fully and wanted.range is None:
+            wishes.remove(DefectKind.RANGE)
+        broken = Counter(d.kinds for d in self.refused if wishes >= {*d.kinds})
         for number in sorted({len(kinds) for kinds in broken}):
             alike = Counter({kinds: n for kinds, n in broken.items() if len(kinds) == number})
             costs = [
@@ -334,13 +337,6 @@ class Synthesis:
                 first, *others = (_WISHES[kind][0] for kind in kinds)
                 return first + (f", together with {' and '.join(others)}" * bool(others)), count
         return None
-
-    @property
-    def _wished(self) -> set[DefectKind]:
-        """The defects that are wishes of the task; the driven range only if it names one."""
-        wanted = self.task.wanted
-        named = wanted.turns_fully or wanted.range is not None
-        return {*_WISHES} - (set() if named else {DefectKind.RANGE})
 
     def _sound_without(self, kinds: tuple[DefectKind, ...]) -> int:
         """How many of the refused designs would be sound without some wishes.

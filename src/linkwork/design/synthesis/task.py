@@ -179,19 +179,20 @@ class Task:
 
     def _small_places(self) -> Problems:
         """Coordinates and lengths whose powers are below those of floating point."""
-        points = [abs(x) for position in self.positions for x in position.point]
         wanted, given = self.wanted, self.given
-        circles = [abs(x) for circle in wanted.obstacles for x in circle]
-        pivots = [abs(x) for pivot in given.fixed_pivots + given.moving_pivots for x in pivot]
-        for key, sizes in (
-            (("positions",) if self.curve is None else ("curve", "file"), points),
-            (("given",), [*pivots, *map(abs, given.lengths.values())]),
-            (("wanted", "fixed_pivots"), [abs(x) for corner in wanted.region for x in corner]),
-            (("wanted", "lengths"), [x for x in (wanted.shortest, wanted.longest) if x < math.inf]),
-            (("wanted", "clear_of"), circles),
+        sides = tuple(given.lengths.values())
+        for key, places in (
+            (
+                ("positions",) if self.curve is None else ("curve", "file"),
+                [p.point for p in self.positions],
+            ),
+            (("given",), [*given.fixed_pivots, *given.moving_pivots, sides]),
+            (("wanted", "fixed_pivots"), wanted.region),
+            (("wanted", "clear_of"), wanted.obstacles),
         ):
-            if 0.0 < max(sizes, default=0.0) < _SMALLEST:
-                told = f"has no number beyond ±{max(sizes):.3g} {self.length}"
+            largest = max((abs(x) for place in places for x in place), default=0.0)
+            if 0.0 < largest < _SMALLEST:
+                told = f"has no number beyond ±{largest:.3g} {self.length}"
                 yield key, f"{told}: choose a unit in which it reaches {_SMALLEST:g}"
 
     def _mixed_problems(self) -> Problems:
@@ -269,9 +270,8 @@ class Task:
             if one.angle is not None and other.angle is not None:
                 same &= math.remainder(one.angle - other.angle, turn) == 0
             if same and self.curve is not None:
-                lines = self.curve.lines
-                told = f'repeats line {lines[j]} in line {lines[k]} of "{self.curve.file}"'
-                yield ("curve", "file"), f"{told}: leave one out"
+                first, again = self.curve.lines[j], self.curve.lines[k]
+                yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
             elif same:
                 yield ("positions", k), f"is the same as position {j + 1}: leave one out"
             elif self.is_approximate and one.input is not None and one.input == other.input:
@@ -286,12 +286,13 @@ class Task:
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
         # ranges of sliders are lengths, and mechanisms of files may make several turns
-        cranks = self.kind not in ("motion", "improve") or self.mechanisms == ("four-bar",)
-        if wanted.range is not None and cranks and self.kind != "improve":
-            asked = abs(wanted.range[1] - wanted.range[0])
-            if asked > self.angle.turn * (1.0 + EQUAL_ROWS):
-                told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
-                yield ("wanted", "input"), f'{told}: write input = "turns fully"'
+        cranks = (
+            self.mechanisms == ("four-bar",) if self.kind == "motion" else self.kind != "improve"
+        )
+        asked = abs(wanted.range[1] - wanted.range[0]) if wanted.range and cranks else 0.0
+        if asked > self.angle.turn * (1.0 + EQUAL_ROWS):
+            told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
+            yield ("wanted", "input"), f'{told}: write input = "turns fully"'
         timed = [p.input for p in self.positions if p.input is not None]
         if self.function is not None and not self.is_six_bar:
             given = [one for one, _ in self.function.pairs] or self.function.input or (0.0,)
