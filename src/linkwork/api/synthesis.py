@@ -153,7 +153,8 @@ class Task:
         Raises
         ------
         InputError
-            If the number of inputs differs from that of the positions, or no point is named.
+            If the number of inputs differs from that of the positions, no point is named, or one
+            configuration is nearest to different positions of one input.
 
         Examples
         --------
