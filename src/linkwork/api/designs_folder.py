@@ -175,6 +175,6 @@ def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     """``pick-and-place-01.toml``; refused ones are in their own folder."""
     # composed letters have one spelling in all file systems, and four bytes at most
     name = unicodedata.normalize("NFKC", found.task.name.lower())
-    stem = re.sub(r"[\W_]+", "-", name).strip("-")[:_LONGEST_STEM] or "design"
+    stem = re.sub(r"[\W_]+", "-", name)[:_LONGEST_STEM].strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"
     return f"{_REFUSED}/{name}" if design.kinds else name
