@@ -82,6 +82,59 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     assert len(list(folder.glob("tilt-a-box-*.toml"))) == 5
 
 
+def test_a_fresh_folder_has_no_empty_folder_of_refused_designs(tmp_path: Path) -> None:
+    found, folder = lw.Task.load(_TASK).solve(), tmp_path / "designs"
+    found.save(folder, refused=True)
+    with pytest.raises(
+        lw.InputError, match=r"replace earlier designs: --fresh, in Python fresh=True$"
+    ):
+        found.save(folder)
+    found.save(folder, fresh=True, refused=True)
+    assert (folder / "refused").is_dir()
+    found.save(folder, fresh=True)
+    assert not (folder / "refused").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "stem"),
+    [
+        ("Größe_2", "größe-2"),
+        ("e\u0301tau", "étau"),
+        ("機構/設計", "機構-設計"),
+        ("…", "design"),
+        ("x" * 300, "x" * 60),
+    ],
+)
+def test_files_keep_the_letters_of_the_task(name: str, stem: str, tmp_path: Path) -> None:
+    text = _TASK.read_text().replace('name   = "Tilt a box"', f'name = "{name}"')
+    found = lw.Task.loads(text).solve()
+    files = write_designs(found, tmp_path / "out", FolderOptions(csv=True, refused=True))
+    assert Path(files[0]).name == f"{stem}-01.toml"
+    table = (tmp_path / "out" / "designs.csv").read_text(encoding="utf-8").splitlines()
+    named = [row.rsplit(",", 1)[1] for row in table[1:]]
+    assert all((tmp_path / "out" / name).is_file() for name in named)
+    assert f"{stem}-01.toml" in named
+    assert f"refused/{stem}-01.toml" in named
+
+
+@pytest.mark.parametrize("place", ["inside", "outside"])
+def test_a_curve_in_another_folder_is_copied_only_into_that_of_the_designs(
+    tmp_path: Path, place: str
+) -> None:
+    curve = "data/foot.csv" if place == "inside" else str(tmp_path / "data" / "foot.csv")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "foot.csv").write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
+    text = (
+        f'format = 1\ntask = "path"\nimprove = {{ starts = 2 }}\ncurve = {{ file = "{curve}" }}\n'
+    )
+    (tmp_path / "task.toml").write_text(text)
+    before = (tmp_path / "data" / "foot.csv").stat().st_mtime_ns
+    lw.Task.load(tmp_path / "task.toml").solve().save(tmp_path / "out")
+    assert (tmp_path / "out" / "data" / "foot.csv").exists() == (place == "inside")
+    assert (tmp_path / "data" / "foot.csv").stat().st_mtime_ns == before
+    lw.Task.load(tmp_path / "out" / "task.toml")
+
+
 def test_designs_of_an_interrupted_search_are_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

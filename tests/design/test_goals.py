@@ -134,13 +134,36 @@ def test_points_without_inputs_are_met_on_one_branch(order: str) -> None:
         assert (steps > 0).all() or (steps < 0).all()
 
 
-@pytest.mark.parametrize(
-    ("of", "count"), [("max(s.mechanical_advantage)", 0), ("max(disc_dx.d2)/min(disc_dx.d2)", 1)]
-)
-def test_goals_of_a_cam_without_a_value_or_without_effect_end_quietly(of: str, count: int) -> None:
+def _cam(of: str, **goal: float) -> lw.Task:
+    wanted = {"input": "turns fully"}
+    return lw.Task.improve("eccentric-cam", starts=1, goals=[{"of": of, **goal}], wanted=wanted)
+
+
+def test_goals_of_a_cam_without_a_value_or_without_effect() -> None:
     """The force ratio is infinite at both ends of the stroke; the quotient is -1 of any disc."""
-    task = {"goals": [{"of": of, "target": 3.0}], "wanted": {"input": "turns fully"}}
-    assert len(lw.Task.improve("eccentric-cam", starts=1, **task).solve().designs) == count
+    assert not _cam("max(s.mechanical_advantage)", target=3.0).solve().designs
+    quotient = "max(disc_dx.d2)/min(disc_dx.d2)"
+    with pytest.raises(lw.MechanismError, match=r"improve.goals\[1\].of .* no number that varies"):
+        _cam(quotient, target=3.0).solve()
+    assert len(_cam(quotient, most=3.0).solve().designs) == 1
+
+
+def test_goals_of_a_front_that_no_number_changes_are_refused() -> None:
+    goals = [{"of": "max(crank)", "target": 3.0}, {"of": "stroke(d)", "target": 70.0}]
+    with pytest.raises(lw.MechanismError, match=r'goals\[1\].of  "max\(crank\)" changes with no'):
+        lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=2, front=3).solve()
+
+
+def test_the_larger_of_two_is_no_number_of_the_motion() -> None:
+    """The slider is never farther than 1000."""
+    goal = {"of": "max(d - 1000, min(d, 0))", "target": 0.0, "at": [0.0]}
+    with pytest.raises(lw.MechanismError, match="no number that varies"):
+        lw.Task.improve("slider-crank", goals=[goal], starts=1).solve()
+    goal = {"of": "max(d, 3)", "target": 160.0, "at": [0.0]}
+    (best,) = lw.Task.improve("slider-crank", goals=[goal], vary=["O2 A"], starts=1).solve().designs
+    assert lw.Mechanism(best.linkage).solve(at=0.0)["d"] == pytest.approx(160.0)
+    with pytest.raises(InputError, match=r'^"max" of one formula: .* takes a name, max\(d\), in'):
+        lw.example("slider-crank").improve({"of": "max(abs(d))", "target": 3.0})
 
 
 def test_what_cannot_be_a_goal_says_why() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import re
+import unicodedata
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,7 @@ from linkwork.viewer.designs_page import designs_page
 __all__ = ["FolderOptions", "write_designs"]
 
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
+_LONGEST_STEM = 60  # characters of a name
 _REFUSED = "refused"
 _PICTURES = 24  # designs that a page shows
 _OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
@@ -72,7 +74,7 @@ def write_designs(
     names = {k: _file_name(found, design) for k, design in chosen}
     files = {k: str(root / name) for k, name in names.items()}
     with written_folder(root) as part:
-        _write_tables(found, part, options, files)
+        _write_tables(found, part, options, names)
         for done, (k, design) in enumerate(chosen):
             path = part / names[k]
             save_text(write_text(design.linkage), path)
@@ -85,6 +87,9 @@ def write_designs(
     for path in earlier:
         if path not in new:
             path.unlink(missing_ok=True)
+    emptied = root / _REFUSED
+    if options.fresh and not options.refused and emptied.is_dir() and not any(emptied.iterdir()):
+        emptied.rmdir()
     return files
 
 
@@ -96,8 +101,11 @@ def _write_tables(
         (part / _REFUSED).mkdir()
     save_text(found.task.text, part / "task.toml")
     if found.task.curve is not None:
-        # the task names the file of its curve
-        save_text(found.task.curve.text, part / found.task.curve.file)
+        # the task names the file of its curve; one elsewhere is left where it is
+        copy = part / found.task.curve.file
+        if ".." not in copy.parts and copy.is_relative_to(part):
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            save_text(found.task.curve.text, copy)
     if options.csv:
         save_text(csv_text(designs_table(found, files)), part / "designs.csv")
     front = _front_picture(found) if options.draw or options.html else b""
@@ -157,7 +165,7 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
         if not (options.fresh and path.is_file() and own):
             raise InputError(
                 f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
-                "folder, or replace earlier designs with --fresh"
+                "folder, or replace earlier designs: --fresh, in Python fresh=True"
             )
     check_place(root)
     return there
@@ -165,6 +173,8 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
 
 def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     """``pick-and-place-01.toml``; refused ones are in their own folder."""
-    stem = re.sub(r"[^a-z0-9]+", "-", found.task.name.lower()).strip("-") or "design"
+    # composed letters have one spelling in all file systems, and four bytes at most
+    name = unicodedata.normalize("NFKC", found.task.name.lower())
+    stem = re.sub(r"[\W_]+", "-", name)[:_LONGEST_STEM].strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"
     return f"{_REFUSED}/{name}" if design.kinds else name

@@ -44,8 +44,12 @@ class Task:
     @classmethod
     def motion(cls, poses: Sequence[Sequence[float]], **tables: Any) -> Self:
         """A task of poses (x, y, angle), in order of travel and file units."""
-        positions = [{"point": list(pose[:2]), "angle": pose[2]} for pose in _rows(poses, 3)]
-        return cls._of("motion", positions=positions, **tables)
+        return cls._of("motion", **_apart(tables, positions=_positions(poses)))
+
+    @classmethod
+    def mixed(cls, positions: Sequence[Sequence[float]], **tables: Any) -> Self:
+        """A task of points (x, y) and poses (x, y, angle), in order of travel and file units."""
+        return cls._of("mixed", **_apart(tables, positions=_positions(positions)))
 
     @classmethod
     def path(
@@ -63,7 +67,7 @@ class Task:
         met by least squares. ``tolerance``: how far every point may be missed [length].
         """
         wanted = {"order": order, **tables.pop("wanted", {})}
-        positions: list[dict[str, Any]] = [{"point": list(point)} for point in _rows(points, 2)]
+        positions = _positions(points)
         if inputs is not None:
             if len(inputs) != len(positions):
                 raise InputError(f"{len(positions)} points need as many inputs, got {len(inputs)}")
@@ -71,7 +75,7 @@ class Task:
                 position["input"] = value
         for position in positions if tolerance else ():
             position["tolerance"] = tolerance
-        return cls._of("path", positions=positions, wanted=wanted, **tables)
+        return cls._of("path", **_apart(tables, positions=positions, wanted=wanted))
 
     @classmethod
     def function(cls, of: str | Sequence[Sequence[float]], **tables: Any) -> Self:
@@ -82,7 +86,7 @@ class Task:
         """
         own = {key: tables.pop(key) for key in _OF_FUNCTIONS if key in tables}
         own["of" if isinstance(of, str) else "pairs"] = of
-        return cls._of("function", function=own, **tables)
+        return cls._of("function", **_apart(tables, function=own))
 
     @classmethod
     def improve(cls, mechanism: str | Path, **tables: Any) -> Self:
@@ -92,7 +96,7 @@ class Task:
         ``seed`` are keys of the table ``improve``; all others are tables of the task.
         """
         own = {key: tables.pop(key) for key in _OF_IMPROVEMENTS if key in tables}
-        return cls._of("improve", mechanism=str(mechanism), improve=own, **tables)
+        return cls._of("improve", **_apart(tables, mechanism=str(mechanism), improve=own))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -149,7 +153,8 @@ class Task:
         Raises
         ------
         InputError
-            If the number of inputs differs from that of the positions, or no point is named.
+            If the number of inputs differs from that of the positions, no point is named, or one
+            configuration is nearest to different positions of one input.
 
         Examples
         --------
@@ -182,10 +187,20 @@ _OF_IMPROVEMENTS = (
 _OF_FUNCTIONS = ("x", "input", "output", "positions", "spacing", "fit")
 
 
-def _rows(given: Any, count: int) -> list[list[float]]:
-    """Rows of numbers; rows of another length are refused by the keys of the task."""
+def _apart(tables: dict[str, Any], **own: Any) -> dict[str, Any]:
+    """The tables of a task, none of which is given twice."""
+    for name in sorted({*own, "task"} & tables.keys()):
+        raise InputError(f'"{name}" is made of the other arguments: give its keys as arguments')
+    return {**own, **tables}
+
+
+def _positions(given: Any) -> list[dict[str, Any]]:
+    """Positions of rows: of three numbers poses; others are points, if the task's keys say so."""
     rows = np.asarray(given, dtype=float).tolist() if isinstance(given, np.ndarray) else given
-    return [[*row, *[float("nan")] * (count - len(row))] for row in rows]
+    return [
+        {"point": list(row[:2]), "angle": row[2]} if len(row) == 3 else {"point": list(row)}
+        for row in rows
+    ]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -216,7 +231,9 @@ class Synthesis(result.Synthesis):
         """All designs, one row each: numbers, points, and the first reason of refused ones."""
         return designs_table(self)
 
-    def save(self, folder: str | Path, *, refused: bool = False) -> tuple[str, ...]:
+    def save(
+        self, folder: str | Path, *, refused: bool = False, fresh: bool = False
+    ) -> tuple[str, ...]:
         """Write the delivered designs as mechanism files with their task beside them.
 
         Parameters
@@ -225,6 +242,8 @@ class Synthesis(result.Synthesis):
             A new or empty folder.
         refused : bool
             Whether to write the refused designs too, in its folder ``refused``.
+        fresh : bool
+            Whether to replace the designs of an earlier synthesis in the folder.
 
         Returns
         -------
@@ -236,4 +255,6 @@ class Synthesis(result.Synthesis):
         InputError
             If the folder is not empty, or cannot be written.
         """
-        return tuple(write_designs(self, folder, FolderOptions(refused=refused)).values())
+        return tuple(
+            write_designs(self, folder, FolderOptions(refused=refused, fresh=fresh)).values()
+        )

@@ -10,7 +10,7 @@ import numpy as np
 from linkwork.batch.building import write_equations
 from linkwork.design.tape import Tape
 from linkwork.equations.compiling import Compiled
-from linkwork.foundation.errors import InputError, LinkworkError
+from linkwork.foundation.errors import InputError, LinkworkError, key_text
 from linkwork.foundation.operand import NotElementwise
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import (
@@ -91,7 +91,13 @@ def _refusal(description: Description, numbers: Sequence[VariedNumber]) -> str:
                 "acos, sqrt), where it has no derivative: change the number a little"
             )
         problems = getattr(error, "problems", ())
-        return problems[0].message if problems else str(error)
+        if not problems:
+            return str(error)
+        held = problems[0].key
+        if held[0] in ("lengths", "angles") and "ground coordinates" in problems[0].message:
+            told = f"ground coordinates are exact and give {key_text(held)}"
+            return f"{told}: leave that out to vary coordinates, or vary other numbers"
+        return str(problems[0].message)
     return ""
 
 

@@ -90,7 +90,8 @@ def test_a_curve_in_a_file_is_followed_in_order(tmp_path: Path) -> None:
         ("1,2\n3,4\n", "", "2 points"),
         ("1,2\n3,4\n5,a\n", "", "'5,a'"),
         ("1,2\n3,4\n5,4\n6,4\n7,1\n", 'timing = "as given"', "third column"),
-        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "same as position 2"),
+        ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "repeats line 2 in line 3: leave one out"),
+        ("# foot\n1,2\n", "", "has 1 point: a curve"),
     ],
 )
 def test_a_file_without_a_curve_is_refused_with_its_place(
@@ -202,6 +203,40 @@ def test_a_curve_whose_ends_meet_is_a_part_of_one_if_the_crank_swings() -> None:
         assert curve_goal_of(task, wishes_of(task, Drive.A0)).closed is closed
 
 
+def test_few_points_and_inputs_of_less_than_a_turn_are_no_closed_curve() -> None:
+    square = [(0, 0), (1, 1), (3, 0), (4, 4), (1, 2)]
+    for points, inputs, closed in (
+        (square, None, True),
+        (square[:4], None, False),
+        (square, [0, 72, 144, 216, 288], True),
+        (square, [0, 30, 60, 90, 120], False),
+        (square, [0, -30, -60, -90, -120], False),
+        (square[:4], [0, 90, 180, 270], False),
+    ):
+        extra = {"inputs": inputs} if inputs else {"improve": {"starts": 2}}
+        task = lw.Task.path(points, **extra).described
+        assert curve_goal_of(task, wishes_of(task, Drive.A0)).closed is closed
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"fixed_pivots": [(0, 0), (100, 0)]}, "two fixed pivots are given, of which it has one"),
+        ({"lengths": {"B0 B": 90}}, 'the length "B0 B" is given, which it does not have'),
+    ],
+)
+def test_kinds_that_have_not_all_of_what_is_given_are_left_out(given: Any, why: str) -> None:
+    points = [(20, 80), (60, 100), (90, 90), (100, 60), (105, 40)]
+    task = {"given": given, "improve": {"starts": 20}}
+    found = lw.Task.path(points, **task).solve()
+    assert found.starts == 20
+    assert f"; no slider-cranks: {why};" in found.message
+    assert {design.mechanism for design in found.designs} <= {"four-bar"}
+    assert "slider" not in lw.Task.path(points, mechanism="four-bar", **task).solve().message
+    with pytest.raises(MechanismError, match=f'"slider-crank" does not fit what is given: {why}'):
+        lw.Task.path(points, mechanism="slider-crank", **task).solve()
+
+
 def test_a_range_that_excludes_given_inputs_is_refused() -> None:
     points, wanted = _part_of_a_four_bar(20.0, 140.0), {"input": {"from": 20.0, "to": 100.0}}
     inputs = [10.0 * k for k in range(12)]
@@ -298,7 +333,7 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
         f"Delivered designs with a longest link at the usual bound, 2040 mm: {ending}. [wanted] "
         "lengths = { most = … } refuses them."
     )
-    assert kin.startswith("Cognates draw one curve with different links: designs 1 and 2")
+    assert kin.startswith("Cognates draw one curve with different links: designs 1, 2")
     one, other = (
         lw.api.Mechanism(design.linkage).sweep(certify=False).trace("P")
         for design in found.of_loops[:2]

@@ -237,3 +237,17 @@ def _traced(monkeypatch: pytest.MonkeyPatch) -> list[TracedCurve]:
 
     monkeypatch.setattr("linkwork.motion.circuit.walks.trace_boldly", counted)
     return traced
+
+
+def test_equal_inputs_of_different_places_need_different_configurations() -> None:
+    bar = lw.example("four-bar")
+    ways = bar.configurations(at=60)
+    here, there = (ways[name].points["B"] for name in ("open", "crossed"))
+    near = (here[0] + 1e-9, here[1])
+    assert lw.Task.path([here, near]).defects_of(bar, (60, 60), point="B") == ()
+    (defect,) = lw.Task.path([here, there]).defects_of(bar, (60, 60), point="B")
+    assert defect.kind is lw.DefectKind.CIRCUIT
+    told = "^positions 1 and 3 differ, but have one input and one nearest configuration: correct"
+    far = (here[0] + 5.0, here[1])
+    with pytest.raises(lw.InputError, match=told):
+        lw.Task.path([here, (0, 0), far]).defects_of(bar, (60, 70, 60), point="B")

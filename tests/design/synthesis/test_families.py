@@ -164,6 +164,19 @@ def test_parallel_guides_make_no_mechanism_and_given_pivots_are_those_of_cranks(
         lw.Task.path([(0, 0), (1, 1), (3, 1)], mechanism=["four-bar", "oldham-coupling"])
 
 
+def test_three_poses_of_one_angle_have_parallelograms_only_and_on_a_line_none() -> None:
+    found = lw.Task.motion([(0, 0, 30), (10, 2, 30), (20, 3, 30)]).solve()
+    assert "every four-bar is a parallelogram" in found.message
+    assert found.designs
+    for design in found.designs:
+        at = design.points
+        assert at["A"] - at["A0"] == pytest.approx(at["B"] - at["B0"], rel=1e-9)
+    turned = lw.Task.motion([(0, 0, 30), (10, 2, 31), (20, 3, 30)]).solve()
+    assert "parallelogram" not in turned.message
+    with pytest.raises(lw.MechanismError, match="have one angle and lie on a line: a slider"):
+        lw.Task.motion([(0, 0, 5), (10, 2, 5), (30, 6, 5)]).solve()
+
+
 def test_two_given_fixed_pivots_and_three_poses_make_one_four_bar() -> None:
     pivots = [(100, -200), (400, -100)]
     found = lw.Task.motion(_POSES[:3], mechanism="four-bar", given={"fixed_pivots": pivots}).solve()

@@ -359,6 +359,7 @@ def test_a_function_that_no_single_four_bar_is_determined_by_says_so() -> None:
     same = {"x": (0, 1), "input": (0, 90), "output": (0, 90), "mechanism": "four-bar"}
     found = lw.Task.function("x", **same).solve()
     assert found.completeness is lw.Completeness.NOT_PROVED
+    assert found.message.endswith("families of mechanisms, such as parallelograms, are not listed")
     assert not found.designs
     same |= {"input": (30, 120), "output": (30, 120)}
     fitted = lw.Task.function("x", fit="minimax", **same).solve()
@@ -578,3 +579,20 @@ def test_a_wanted_range_holds_the_whole_range_of_a_function_that_begins_anywhere
         assert len([d for d in designs if not d.kinds]) == kept
         told = "an end of the function's range is outside the driven range"
         assert kept or told in [defect.message for defect in designs[0].defects]
+
+
+def test_an_angle_of_the_formula_in_degrees_is_remarked_on() -> None:
+    ends = {"input": (97, 187), "output": (60, 150), "mechanism": "four-bar"}
+    told = "; x is in radians in sin(x), and 90 are 14.3 turns"
+    assert lw.Task.function("sin(x)", x=(0, 90), **ends).solve().message.endswith(told)
+    for of, x in (("sin(x)", (0, 1.5)), ("x^2", (0, 90))):
+        assert "radians" not in lw.Task.function(of, x=x, **ends).solve().message
+
+
+def test_a_range_that_passes_a_dead_point_does_not_touch_one_besides() -> None:
+    points = [(250, 0), (520, 100), (600, 250), (350, 300)]
+    found = lw.Task.path(points, wanted={"input": "turns fully"}).solve()
+    kind = lw.DefectKind.RANGE
+    passing = [design for design in found.designs if kind in design.kinds]
+    assert passing
+    assert not any("touches a dead point" in d.message for e in passing for d in e.defects)

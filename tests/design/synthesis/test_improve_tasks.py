@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.design.synthesis import improvement_synthesis
+from linkwork.design.synthesis.advice import advice_of
 from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.judged_design import JudgedDesign
@@ -208,6 +210,15 @@ def test_an_input_that_does_not_turn_fully_is_a_defect() -> None:
             _HEAD + '[improve.bounds]\n"A B" = [200, 300]\n[wanted.lengths]\nmost = 150\n' + _GOAL,
             5, "excludes",
         ),
+        (
+            _HEAD + '[improve]\nvary = ["A B", "O4.x"]\n' + _GOAL,
+            5, r'give lengths."O2 O4": .* \(numbers that can vary: O2 A, A B, O4 B\)',
+        ),
+        (
+            _HEAD + "[improve]\nstarts = 2\n[[positions]]\npoint = [1, 2]\n[[positions]]\n"
+            "point = [3, 4]\n",
+            4, r"traces no point; name .* \(points: O2, O4, A, B\)",
+        ),
     ],
 )  # fmt: skip
 def test_a_wrong_task_is_refused_with_its_line(
@@ -306,3 +317,31 @@ def test_a_transmission_angle_that_binds_is_held(target: float, least: float) ->
     text += f"starts = 2\n[[improve.goals]]\nof = 'stroke(d)'\ntarget = {target}\n"
     (best, *_) = lw.Task.loads(text).solve().delivered
     assert least <= best.transmission < least + 0.02
+
+
+def test_problems_of_the_mechanism_are_those_of_its_own_file(tmp_path: Path) -> None:
+    (tmp_path / "bar.toml").write_text(lw.example_text("four-bar").replace('"crank"', '"crnk"'))
+    (tmp_path / "task.toml").write_text(_HEAD.replace("four-bar", "bar.toml") + _GOAL)
+    with pytest.raises(MechanismFileError) as caught:
+        lw.Task.load(tmp_path / "task.toml").solve()
+    assert caught.value.where == str(tmp_path / "bar.toml")
+
+
+def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
+    """The rocker turns so far, but the crank no longer does."""
+    task: dict[str, Any] = {"goals": [{"of": "rocker", "at": [10, 20, 30], "values": [50, 52, 57]}]}
+    found = lw.Task.improve("four-bar", starts=3, **task).solve()
+    assert [kind.name for kind in found.defects] == ["RANGE"]
+    assert found.costliest is None
+    assert advice_of(found) == (
+        "The driven range is that of four-bar: [wanted] input = { from = …, to = … } drives "
+        "designs through less of it."
+    )
+    task["wanted"] = {"input": "turns fully"}
+    wished = lw.Task.improve("four-bar", starts=3, **task).solve()
+    assert wished.costliest == ("the driven range", 1)
+
+
+def test_goals_that_are_missing_are_named_by_their_key() -> None:
+    with pytest.raises(lw.MechanismError, match=r"improve.goals  are missing: say what is wanted"):
+        lw.Task.improve("four-bar").solve()

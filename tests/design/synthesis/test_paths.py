@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import time
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import linkwork as lw
 from linkwork import Completeness
+from linkwork.design.synthesis import path_synthesis
 from linkwork.design.synthesis.advice import remarks_on
 
 _PROBLEM_3 = [
@@ -199,3 +201,13 @@ def test_equally_spaced_points_on_a_line_are_solved_in_seconds() -> None:
     assert time.process_time() - begun < 50.0
     assert found.real == found.proved == 191
     assert found.designs
+
+
+@pytest.mark.parametrize("grade", [Completeness.NOT_PROVED, Completeness.MULTIPLE])
+def test_an_unproved_list_advises_what_a_task_can_change(grade: Completeness) -> None:
+    """A task has no input value."""
+    roots = SimpleNamespace(closed=None, paths=9, at_infinity=1, lost_paths=1)
+    solved: Any = [SimpleNamespace(roots=roots, completeness=grade)]
+    _, told = path_synthesis._completeness(solved, [])
+    assert "move a position a little" in told
+    assert "input" not in told

@@ -171,8 +171,58 @@ def test_tasks_of_python_are_those_of_files() -> None:
     assert again.wanted == made.described.wanted
     with pytest.raises(lw.MechanismError, match="is not a key of"):
         lw.Task.motion(poses, wanted={"transmision": {"least": 30}})
-    with pytest.raises(lw.MechanismError, match="must be a finite number"):
-        lw.Task.motion([(0, 0), *poses])
+    for wrong, told in (
+        ([(0, 0), *poses], r"positions\[1\].angle  is missing: a motion task is a list of poses"),
+        ([(0, 0, 0, 1), *poses], r"positions\[1\].point"),
+    ):
+        with pytest.raises(lw.MechanismError, match=told):
+            lw.Task.motion(wrong)
+    with pytest.raises(lw.MechanismError, match=r"positions\[2\].angle  belongs to poses"):
+        lw.Task.path([(0, 0), (1, 1, 5)])
+    with pytest.raises(lw.InputError, match=r'^"function" is made of the other arguments: give'):
+        lw.Task.function("x^2", x=(0, 1), input=(30, 120), output=(60, 150), function={})
+
+
+def test_a_task_of_points_and_poses_is_that_of_its_file() -> None:
+    rows = [(0, 0), (40, -40, 10), (100, -80), (170, -110, 45)]
+    task = lw.Task.mixed(rows, given={"fixed_pivots": [(0, 90)]}).described
+    assert task.kind == "mixed"
+    assert [(*p.point, p.angle) for p in task.positions] == [
+        (*row[:2], row[2] if len(row) == 3 else None) for row in rows
+    ]
+    with pytest.raises(lw.MechanismError, match=r"positions\[1\].point  needs two coordinates"):
+        lw.Task.mixed([(0,), *rows])
+
+
+@pytest.mark.parametrize("size", [1e-13, 1e-200])
+@pytest.mark.parametrize("key", ["positions", "given", "clear_of", "fixed_pivots"])
+def test_sizes_beyond_floating_point_are_refused(key: str, size: float) -> None:
+    points = [(0.0, 0.0), (1.0, 1.0), (3.0, 0.0)]
+    every: dict[str, dict[str, Any]] = {
+        "positions": {},
+        "given": {"given": {"lengths": {"A B": size}}},
+        "clear_of": {"wanted": {"clear_of": [[0, 0, size]]}},
+        "fixed_pivots": {"wanted": {"fixed_pivots": {"inside": [[0, 0], [size, 0], [0, size]]}}},
+    }
+    if key == "positions":
+        points = [(x * size / 3.0, y * size / 3.0) for x, y in points]
+    with pytest.raises(
+        lw.MechanismError, match=rf"1 pro.*\n.*{key}  has no number beyond ±{size:g} "
+    ):
+        lw.Task.path(points, **every[key])
+
+
+def test_a_range_of_more_than_a_turn_is_refused_of_cranks_alone() -> None:
+    wanted = {"input": {"from": 20, "to": 500}}
+    told = 'wanted.input  spans 480, more than a turn of 360: write input = "turns fully"'
+    points, poses = [(0, 0), (1, 1), (3, 0)], [(0, 0, 0), (40, -40, 10), (100, -80, 25)]
+    with pytest.raises(lw.MechanismError, match=told):
+        lw.Task.path(points, wanted=wanted)
+    with pytest.raises(lw.MechanismError, match=told):
+        lw.Task.motion(poses, mechanism="four-bar", wanted=wanted)
+    lw.Task.motion(poses, wanted=wanted)
+    lw.Task.improve("four-bar", wanted=wanted)
+    lw.Task.path(points, wanted={"input": {"from": 20, "to": 380}})
 
 
 def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
@@ -245,11 +295,13 @@ def test_bounds_of_lengths_refuse_no_places_that_other_kinds_of_links_reach() ->
         read_task_text(_points(10, "tolerance = 39.5") + far)
 
 
-def test_a_fit_to_given_lengths_that_close_no_loop_has_no_design() -> None:
+def test_a_fit_to_given_lengths_that_close_no_loop_is_refused() -> None:
     given = {"lengths": {"A0 A": 2.0, "A B": 3.0, "B0 B": 4.0}, "fixed_pivots": [(0, 9), (90, 9)]}
     points, improve = [(0, 0), (1, 1), (4, 2), (9, 3)], {"starts": 40}
-    found = lw.Task.path(points, given=given, improve=improve).solve()
-    assert {design.mechanism for design in found.designs} == {"slider-crank"}
+    with pytest.raises(lw.MechanismError, match="cannot close a loop"):
+        lw.Task.path(points, given=given, improve=improve)
+    del given["fixed_pivots"]
+    lw.Task.path(points, given=given, improve=improve)
 
 
 def test_wishes_that_some_design_has_are_not_refused() -> None:
@@ -267,7 +319,11 @@ def test_wishes_that_some_design_has_are_not_refused() -> None:
     with pytest.raises(lw.MechanismError, match="no design can be clear of it"):
         lw.Task.motion(poses, wanted=wanted)
     bow = [[0, -50], [50, 0], [50, -50], [0, 0]]
-    lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": bow}})
+    crosses = r"crosses itself between corners 1, 2 and 3, 4: list them around the region"
+    with pytest.raises(lw.MechanismError, match=crosses):
+        lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": bow}})
+    around = [[0, 0], [0, -50], [50, -50], [20, -20], [50, 0]]
+    lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": around}})
     with pytest.raises(lw.MechanismError, match="encloses no area"):
         lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": [[0, 0], [1, 1], [3, 3]]}})
 

@@ -16,6 +16,7 @@ from linkwork.design.improvement.trade_off import Objectives, TradeOff
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
+from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
@@ -213,6 +214,28 @@ class FitProblem:
         t = np.array(np.broadcast_to(inputs, (len(starts), own)))
         self._lead(np.broadcast_to(self.x, starts.shape), starts, t, np.arange(len(starts)))
         return starts_of(starts, t)
+
+    def check_moved(self, fit: LaneFit) -> None:
+        """Refuse goals with wanted values that no number changes at any start.
+
+        Raises
+        ------
+        MechanismError
+        """
+        designs, lanes = self.writer.written(fit.x), np.arange(len(fit))
+        found = []
+        for k, misses in enumerate(self.goals):
+            solved = self.rows[misses.at.tobytes()]
+            at = np.broadcast_to(solved.rows_at, (len(fit), len(solved.rows_at)))
+            with np.errstate(all="ignore"):
+                value, by_x = misses.values(solved.at(designs, at, lanes))
+            there = np.isfinite(value)
+            if there.any() and not misses.is_bound and not by_x[there].any():
+                told = f'"{misses.goal.of}" changes with no number that varies, at any start: '
+                told += "vary numbers that it depends on, or leave this goal out"
+                found.append(Problem(key=("goals", k, "of"), message=told))
+        if found:
+            raise MechanismError(found, "the improvement")
 
     def move(self, fit: LaneFit, lanes: IndexArray, x: Array) -> None:
         """Lanes that were at a design of another lane, led to other numbers (D, P)."""

@@ -66,6 +66,7 @@ class _Front:
         self.used, lanes = 0, alone + weighted + between
         self.problem = FitProblem(given, lanes)
         fit = self.problem.begun(np.tile(starts, (self.size, 1)))
+        self.problem.check_moved(fit)
         self.alone = np.arange(alone)
         # lanes that are not used yet
         self.fit = fit.take(np.minimum(np.arange(lanes), alone - 1))

@@ -35,6 +35,8 @@ __all__ = ["Misses", "PathGoal", "goal_of"]
 
 _WORDS = "|".join(quantity.word for quantity in MOTION_QUANTITIES)
 _CALL = re.compile(rf"\b(?:{_WORDS})\s*\([^()]*\)")
+_OF_ROWS = re.compile(r"(?:max|min)\s*\([^,]*,")  # the larger or smaller of several in each row
+_OF_FORMULA = re.compile(r"\b(max|min)\s*\((?:[^(),]|\([^()]*\))*\([^()]*\)[^(),]*\)")
 _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
@@ -164,7 +166,13 @@ def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: flo
     UnknownNameError, InputError
         For a quantity that is not known, or whose derivatives are not known.
     """
-    calls = list(dict.fromkeys(found.group() for found in _CALL.finditer(goal.of)))
+    calls = [call for call in dict.fromkeys(_CALL.findall(goal.of)) if not _OF_ROWS.match(call)]
+    inner = _OF_FORMULA.search(goal.of)
+    if inner:
+        raise InputError(
+            f'"{inner[1]}" of one formula: of the whole motion it takes a name, {inner[1]}(d), in '
+            f"each row two formulas, {inner[1]}(d, 0); give the formula a name in [outputs]"
+        )
     if goal.of.strip() in LIMITS:
         raise InputError(
             f'"{goal.of}" cannot be a goal: ask for a wider table of inputs, which has to be '

@@ -45,6 +45,7 @@ def fit_numbers(
     rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
     problem.tell, problem.whole = progress, sum(steps for _, steps in rounds)
     fit = problem.begun(starts)
+    problem.check_moved(fit)
     for k, (power, steps) in enumerate(rounds):
         problem.power = power
         # sums of other powers and shifts say nothing of this round

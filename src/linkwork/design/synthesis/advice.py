@@ -89,7 +89,13 @@ def advice_of(found: Synthesis) -> str:
     if found.costliest is not None:
         return ""
     if found.task.kind == "improve":
-        return "" if found.designs else _of_goals(found)
+        if not found.designs:
+            return _of_goals(found)
+        told = (
+            f"The driven range is that of {found.task.mechanisms[0]}: [wanted] input = "
+            "{ from = …, to = … } drives designs through less of it."
+        )
+        return told if DefectKind.RANGE in found.defects else ""
     if found.designs and not found.defects.keys() & {*_MOVING}:
         return ""
     first, *others = _changes(found)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations, product
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
+from linkwork.foundation.errors import InputError
 from linkwork.motion.assembly.assembling import Assemblies, positions_at
 from linkwork.motion.circuit.followed_circuit import (
     FollowedCircuit,
@@ -63,7 +65,7 @@ def defects_by_circuits(
     Raises
     ------
     InputError
-        If the mechanism has no input, or several that time drives.
+        If the mechanism has no input, or several that time drives; for places it cannot pass.
     """
     return _Search(Drive.of_circuits(model), inputs, places).defects()
 
@@ -101,6 +103,7 @@ class _Search:
         """None if one branch passes all positions, else the defect of that which comes farthest."""
         if len(self.values) < 2:
             return ()
+        self._check_equal_inputs()
         guess = self._guess()
         way = None if guess is None else straight_way(self.drive, guess, self.values[:1])
         mine = [] if way is None or np.isnan(way.v).any() else [way.v[0]]
@@ -120,6 +123,17 @@ class _Search:
             doubts = [start.doubt for start in leading if start.doubt is not None]
             return tuple(doubts[:1]) if len(doubts) == len(leading) else ()
         return (self._defect_behind(leading, most),)
+
+    def _check_equal_inputs(self) -> None:
+        """Refuse different places of one input to which one configuration comes nearest."""
+        far = _ELSEWHERE * self.model.equations.length_scale
+        for j, k in combinations(range(len(self.values)), 2):
+            places = zip(self.places[j].values(), self.places[k].values(), strict=True)
+            if self.values[j] != self.values[k] or all(abs(z - w) <= far for z, w in places):
+                continue
+            if any(same_position(self.leads, *p) for p in product(*map(self._nearest, (j, k)))):
+                told = f"positions {j + 1} and {k + 1} differ, but have one input and one nearest "
+                raise InputError(f"{told}configuration: correct one of them")
 
     def _defect_behind(self, leading: Sequence[_Start], most: int) -> Defect:
         """The defect between the last position that any branch passes and the next one.

@@ -11,7 +11,7 @@ import numpy as np
 from linkwork.design.improvement.settings import Problems
 from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
-from linkwork.foundation.arrays import Array
+from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.rounding import EQUAL_ROWS
 
 __all__ = ["length_contradictions", "outside_range", "place_contradictions", "unreached_places"]
@@ -57,6 +57,10 @@ def place_contradictions(
         yield ("given", "fixed_pivots", 1), "is the same place as the first: a link needs two"
     if wanted.region and _is_flat(wanted.region):
         yield _REGION, "encloses no area"
+        return
+    for j, k in _crossings(wanted.region)[:1]:
+        told = f"crosses itself between corners {j + 1}, {j + 2} and {k + 1}, "
+        yield _REGION, f"{told}{(k + 1) % len(wanted.region) + 1}: list them around the region"
         return
     for k, pivot in enumerate(given.fixed_pivots if wanted.region else ()):
         if _away(pivot, wanted.region):
@@ -123,6 +127,14 @@ def _away(place: Point, corners: Sequence[Point]) -> float:
     if Wishes(region=region).within_region(z, np.zeros(1))[0]:
         return 0.0
     return float(distances_to_segments(z, region, np.roll(region, -1)).min())
+
+
+def _crossings(corners: Sequence[Point]) -> CountArray:
+    """The sides of a polygon that cross another one: the first corners of both, (C, 2)."""
+    z = np.array([complex(*corner) for corner in corners])
+    left = np.sign(((np.roll(z, -1) - z).conj()[:, None] * (z - z[:, None])).imag)
+    parted = left * np.roll(left, -1, axis=1) < 0  # the ends of each side by each other one
+    return np.argwhere(parted & parted.T)
 
 
 def _is_flat(corners: Sequence[Point]) -> bool:

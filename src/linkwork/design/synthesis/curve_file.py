@@ -15,10 +15,10 @@ from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.textfile.toml_text import bytes_of, text_of
 
-__all__ = ["Curve", "read_curve"]
+__all__ = ["FEWEST", "Curve", "read_curve"]
 
 _COLUMNS = ("x", "y", "input")
-_FEWEST = 5
+FEWEST = 5  # points of a curve
 _MOST = 2000  # points: beyond, a fit takes minutes and gains nothing
 
 
@@ -36,6 +36,8 @@ class Curve:
         closed, open or partial; "": by the distance of the ends.
     file, text : str
         The file, as the task names it, and its text.
+    lines : tuple of int
+        The lines of the points in the file.
     note : str
         What a summary adds: which line repeats the first point of a closed curve, and is left out.
     """
@@ -45,6 +47,7 @@ class Curve:
     closed: str = ""
     file: str = ""
     text: str = ""
+    lines: tuple[int, ...] = ()
     note: str = ""
 
 
@@ -71,8 +74,9 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
     if closed in ("", "closed") and _is_repeated([row for _, row in rows], timed, turn):
         line, _ = rows.pop()
         note = f'; line {line} of "{name}" repeats the first point, which counts once'
-    if not _FEWEST <= len(rows) <= _MOST:
-        told = f'"{name}" has {len(rows)} points: a curve needs {_FEWEST} to {_MOST}'
+    if not FEWEST <= len(rows) <= _MOST:
+        count = f"{len(rows)} point{'' if len(rows) == 1 else 's'}"
+        told = f'"{name}" has {count}: a curve needs {FEWEST} to {_MOST}'
         raise _problem(("curve", "file"), told)
     return Curve(
         points=tuple((row[0], row[1]) for _, row in rows),
@@ -80,6 +84,7 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
         closed=closed,
         file=name,
         text=text,
+        lines=tuple(line for line, _ in rows),
         note=note,
     )
 

@@ -16,11 +16,12 @@ from linkwork.design.improvement.curve_fit import FittedCurves, fit_curve
 from linkwork.design.improvement.curve_goal import INPUT, CurveGoal
 from linkwork.design.improvement.settings import Improvement
 from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
+from linkwork.design.synthesis.curve_file import FEWEST
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.task_conditions import LENGTHS
 from linkwork.design.synthesis.wishes import Wishes
-from linkwork.foundation.angles import FULL_TURN
+from linkwork.foundation.angles import FULL_TURN, arc_in_order
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
@@ -52,10 +53,15 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
     MechanismError
         For bounds of unknown dimensions.
     """
+    if {*task.mechanisms} <= task.left_out.keys():
+        name, why = next(iter(task.left_out.items()))
+        told = f'"{name}" does not fit what is given: {why}; leave one out, or add "four-bar"'
+        task.refuse([(("mechanism",), told)])
     goal = curve_goal_of(task, wishes)
     settings = task.improvement or Improvement()
     starts = settings.starts or _STARTS
-    kinds = [_KINDS[name] for name in _KINDS if name in task.mechanisms]
+    asked = [name for name in _KINDS if name in task.mechanisms]
+    kinds = [_KINDS[name] for name in asked if name not in task.left_out]
     fitted: list[FittedCurves] = []
     for k, kind in enumerate(kinds):
         rng = np.random.default_rng([settings.seed, k])
@@ -75,6 +81,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
+        + "".join(f"; no {name}s: {why}" for name, why in task.left_out.items() if name in asked)
         + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
         * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),
@@ -132,6 +139,13 @@ def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) ->
         return task.curve.closed == "closed"
     if driven is not None and driven[1] - driven[0] < FULL_TURN:
         return False  # less than a turn passes a part of the curve
+    if len(points) < FEWEST:
+        return False  # of which any ends are near each other
+    inputs = [position.input for position in task.positions if position.input is not None]
+    if inputs:
+        _, span = arc_in_order(np.array(inputs), task.angle.turn)
+        if span + _CLOSES * float(np.abs(np.diff(inputs)).max()) < task.angle.turn:
+            return False
     steps = np.abs(np.diff(points))
     return bool(abs(points[-1] - points[0]) <= _CLOSES * steps.max())
 

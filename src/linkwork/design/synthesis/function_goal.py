@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from linkwork.expression.grammar import parse
 from linkwork.expression.tree import Binary, Call, Name, Negative, Node, Number, names_in
 from linkwork.expression.values import OF_ANGLE, TO_ANGLE, value
 from linkwork.expression.writing import text
-from linkwork.foundation.angles import AngleUnit
+from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.plain_numbers import as_told
@@ -96,6 +97,14 @@ class FunctionGoal:
     spacing: str = "chebyshev"
     fit: str = ""
     exact: ExactPairs = LOOP_PAIRS
+
+    @property
+    def note(self) -> str:
+        """What a summary adds: that trigonometric functions of more than a turn are of radians."""
+        x = max(map(abs, self.x or (0.0,)))
+        if not self.of or x <= FULL_TURN or not re.search(r"\b(sin|cos|tan)\s*\(", self.of):
+            return ""
+        return f"; x is in radians in {self.of}, and {x:g} are {x / FULL_TURN:.3g} turns"
 
     def problems(self) -> Problems:
         """What is wrong, with the key of each problem."""

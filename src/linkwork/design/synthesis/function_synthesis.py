@@ -343,7 +343,8 @@ def _found(
         message = "all solutions: the equations have no others"
     elif complete < 0:
         grade = Completeness.NOT_PROVED
-        message = "not proved: to rounding, the equations are singular"
+        message = "not proved: to rounding, the equations are singular: families of mechanisms, "
+        message += "such as parallelograms, are not listed"
     return Found(
         candidates=tuple(made),
         complex=abs(complete) or real,

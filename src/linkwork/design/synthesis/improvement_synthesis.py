@@ -28,7 +28,7 @@ from linkwork.design.synthesis.contradictions import outside_range
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.wishes import Wishes
-from linkwork.foundation.errors import InputError, choices
+from linkwork.foundation.errors import InputError, MechanismError, choices
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.rounding import EQUAL_ROWS
@@ -104,6 +104,10 @@ def improve_description(
         box = box_of(model, numbers, settings)
         reach = Reach(model.description, numbers, box)
         name = points.point or next(iter(description.trace), "")
+        if not name:
+            known = choices("points", model.equations.points)
+            told = f'is missing: "{description.name}" traces no point; name the one that passes '
+            task.refuse([(("improve", "point"), f"{told}the positions {known}")])
         task.refuse(_unreached(reach, name, points))
         goals.append(points)
     task.refuse((("improve", *key), told) for key, told in settings.front_problems(goals))
@@ -111,9 +115,13 @@ def improve_description(
     def judged(design: ImprovedDesign) -> ImprovedMechanism:
         return ImprovedMechanism(task=task, improved=design, wishes=wishes)
 
-    found = improved_designs(
-        model, goals, settings, progress, is_sound=lambda design: not judged(design).kinds
-    )
+    try:
+        found = improved_designs(
+            model, goals, settings, progress, is_sound=lambda design: not judged(design).kinds
+        )
+    except MechanismError as error:
+        task.refuse((("improve", *problem.key), problem.message) for problem in error.problems)
+        raise
     designs = [judged(design) for design in found]
     interrupted = any(design.message.startswith("interrupted") for design in found)
     return tuple(designs), settings.starts or STARTS, interrupted
@@ -177,6 +185,9 @@ def _name_problems(model: Model, settings: Improvement) -> Problems:
             ask()
         except InputError as error:
             told = str(error.args[0] if isinstance(error, KeyError) else error)
+            if key[0] == "vary" and not isinstance(error, KeyError):
+                free = [number.name for number in numbers_to_vary(model, ())]
+                told = f"{told} {choices('numbers that can vary', free)}"
             yield ("improve", *key), told
 
 

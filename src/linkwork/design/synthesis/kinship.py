@@ -19,15 +19,20 @@ _Pair = tuple[SynthesizedDesign, SynthesizedDesign]
 
 
 def alike_among(found: Synthesis) -> Iterator[str]:
-    """The pairs of delivered loops that are alike, in words."""
+    """The groups of delivered loops that are alike, in words."""
     loops = [design for design in found.of_loops if design.delivered]
     for told, pairs in (
         ("Cognates draw one curve with different links", _cognates(loops)),
         ("The same links in different places", _images(loops)),
     ):
-        shown = [f"designs {one.number} and {other.number}" for one, other in pairs]
+        groups: list[set[int]] = []
+        for one, other in pairs:
+            pair = {one.number, other.number}
+            joined = [group for group in groups if group & pair]
+            groups = [g for g in groups if g not in joined] + [pair.union(*joined)]
+        shown = [", ".join(map(str, sorted(group))) for group in sorted(groups, key=min)]
         if shown:
-            yield f"{told}: {'; '.join(shown)}."
+            yield f"{told}: designs {'; '.join(shown)}."
 
 
 def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:

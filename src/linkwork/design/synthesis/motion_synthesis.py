@@ -41,6 +41,12 @@ _ON_CURVE = 1e-6  # relative to the size of the task: a given pivot on the centr
 _EXACT = 1e-12  # the same: pivots on it to rounding
 _CURVE_SAMPLES = 400
 _MOST_PARALLEL = 4  # three parallel poses still have parallelograms
+#: The centres of three positions of points of a body that translates differ like these points.
+_PARALLELOGRAMS = (
+    "; the poses have one angle, so all cranks are equal and parallel and every four-bar is a "
+    "parallelogram, whose branch is lost at its change points: turn a pose, or guide the body by "
+    "a third crank"
+)
 _PARALLEL = 1e-12  # angles that differ by less are equal to rounding
 
 
@@ -88,6 +94,11 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
             told = "all have the same angle: the body only translates, and two guides (a PP dyad) "
             told += "carry it through any such poses; no dyad with a pivot is determined"
             raise _refused(task, "positions", told)
+        ways = points[1:] - points[0]
+        off = abs((ways[-1] * ways[0].conj()).imag) / (np.abs(ways) ** 2).max()
+        if len(ways) > 1 and not off > _PARALLEL:
+            told = "have one angle and lie on a line: a slider along it carries the body, and no "
+            raise _refused(task, "positions", f"{told}linkage is determined")
         return
     if len(points) == 2 and points[0] != points[1]:
         return
@@ -189,10 +200,11 @@ def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> 
     pivots_given = len(fixed) + len(moving)
     if pivots_given == 2 and count == 3:
         return _Family(dyads=DyadSet.joined(given), message="the one four-bar with these pivots")
+    parallel = count > 2 and bool(np.abs(turns - turns[0]).max() < _PARALLEL)
     return _Family(
         dyads=DyadSet.joined([*given, *free]) if pivots_given < 2 else DyadSet.joined(given),
         leading=sum(map(len, given)) if pivots_given == 1 else 0,
-        message=f"a sample of the family through {count} poses",
+        message=f"a sample of the family through {count} poses" + parallel * _PARALLELOGRAMS,
     )
 
 

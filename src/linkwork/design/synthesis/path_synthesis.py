@@ -34,6 +34,12 @@ _MOST = 64  # and at most so many while fewer designs are sound than are to be d
 _PATHS, _SLOW_PATHS = 4000, 500  # followed before the last ones, with Numba and without: a second
 _NEAR = 16  # tasks within tolerances
 _SEED = 1
+#: What a task can do about a list that is not proved: it has no input to change.
+_GRADES = {
+    Completeness.NOT_PROVED: "not proved: solution paths were lost, so mechanisms may be missing; "
+    "move a position a little to see whether it has more",
+    Completeness.MULTIPLE: "not proved: some solutions coincide; move a position a little",
+}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -255,8 +261,9 @@ def _completeness(
         return Completeness.SAMPLED, f"a sample: {len(solved)} tasks{told}"
     roots, grade = solved[0].roots, solved[0].completeness
     closed = "" if roots.closed is None else "closed" if roots.closed else "not closed"
+    told = _GRADES.get(grade, grade.value)
     message = (
-        f"{grade.value} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost_paths}"
+        f"{told} ({roots.paths} paths, {roots.at_infinity} to infinity, {roots.lost_paths}"
         f"{closed and f'; {closed} under conjugation'})"
     )
     return grade, message

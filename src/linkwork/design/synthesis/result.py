@@ -323,7 +323,10 @@ class Synthesis:
         """The wish without which most of the refused designs would be sound, and their number;
         several wishes together if no design breaks one alone.
         """
-        broken = Counter(d.kinds for d in self.refused if _WISHES.keys() >= {*d.kinds})
+        wishes, wanted = {*_WISHES}, self.task.wanted
+        if not wanted.turns_fully and wanted.range is None:
+            wishes.remove(DefectKind.RANGE)
+        broken = Counter(d.kinds for d in self.refused if wishes >= {*d.kinds})
         for number in sorted({len(kinds) for kinds in broken}):
             alike = Counter({kinds: n for kinds, n in broken.items() if len(kinds) == number})
             costs = [

@@ -46,6 +46,7 @@ _MOST_FREE = 4  # poses that leave pivots to choose
 _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
+_SMALLEST = 1e-12  # of the largest coordinate [length]
 _SIDES = 4  # of the lengths that may be given: a four-bar's
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
 
@@ -140,6 +141,10 @@ class Task:
             if self.improvement.front and self.rank != Ranking():
                 told = "has no effect on a front, which is delivered as a whole: leave it out"
                 yield ("rank",), told
+        small = [*self._small_places()]
+        yield from small
+        if small:  # of which other checks would say what is not true
+            return
         yield from self._given_problems()
         yield from self._wish_problems()
         yield from self.rank.problems()
@@ -171,6 +176,24 @@ class Task:
         if 0 < timed < count:
             missing = next(k for k, p in enumerate(self.positions) if p.input is None)
             yield ("positions", missing, "input"), "is missing: time all positions or none"
+
+    def _small_places(self) -> Problems:
+        """Coordinates and lengths whose powers are below those of floating point."""
+        wanted, given = self.wanted, self.given
+        sides = tuple(given.lengths.values())
+        for key, places in (
+            (
+                ("positions",) if self.curve is None else ("curve", "file"),
+                [p.point for p in self.positions],
+            ),
+            (("given",), [*given.fixed_pivots, *given.moving_pivots, sides]),
+            (("wanted", "fixed_pivots"), wanted.region),
+            (("wanted", "clear_of"), wanted.obstacles),
+        ):
+            largest = max((abs(x) for place in places for x in place), default=0.0)
+            if 0.0 < largest < _SMALLEST:
+                told = f"has no number beyond ±{largest:.3g} {self.length}"
+                yield key, f"{told}: choose a unit in which it reaches {_SMALLEST:g}"
 
     def _mixed_problems(self) -> Problems:
         """Poses alone, and more conditions than a four-bar meets."""
@@ -246,7 +269,10 @@ class Task:
             same = one.point == other.point
             if one.angle is not None and other.angle is not None:
                 same &= math.remainder(one.angle - other.angle, turn) == 0
-            if same:
+            if same and self.curve is not None:
+                first, again = self.curve.lines[j], self.curve.lines[k]
+                yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
+            elif same:
                 yield ("positions", k), f"is the same as position {j + 1}: leave one out"
             elif self.is_approximate and one.input is not None and one.input == other.input:
                 yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
@@ -259,6 +285,14 @@ class Task:
             yield ("wanted", TRANSMISSION_ANGLE.word, "least"), told
         if wanted.range is not None and wanted.range[0] == wanted.range[1]:
             yield ("wanted", "input"), f"begins and ends at {wanted.range[0]:g}: give a range"
+        # ranges of sliders are lengths, and mechanisms of files may make several turns
+        cranks = (
+            self.mechanisms == ("four-bar",) if self.kind == "motion" else self.kind != "improve"
+        )
+        asked = abs(wanted.range[1] - wanted.range[0]) if wanted.range and cranks else 0.0
+        if asked > self.angle.turn * (1.0 + EQUAL_ROWS):
+            told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
+            yield ("wanted", "input"), f'{told}: write input = "turns fully"'
         timed = [p.input for p in self.positions if p.input is not None]
         if self.function is not None and not self.is_six_bar:
             given = [one for one, _ in self.function.pairs] or self.function.input or (0.0,)
@@ -291,12 +325,21 @@ class Task:
         pivots, lengths = self.given.fixed_pivots, self.given.lengths
         sides = {name: lengths[name] for name in LENGTHS[:_SIDES] if name in lengths}
         many = self.is_approximate or self.kind == "function"
-        if many and "slider-crank" in self.mechanisms:
+        if many and "slider-crank" in {*self.mechanisms} - self.left_out.keys():
             return {name: size for name, size in sides.items() if name in ("A0 A", "A B")}
         if len(pivots) == 2:
             return {**sides, "A0 B0": math.dist(*pivots)}
         unit = self.kind == "function" and self.mechanisms[0] == "four-bar"
         return {**sides, "A0 B0": 1.0} if unit else sides
+
+    @property
+    def left_out(self) -> dict[str, str]:
+        """Kinds of mechanisms that a fit of points leaves out, and what given they lack."""
+        if self.kind == "path" and len(self.given.fixed_pivots) > 1:
+            return {"slider-crank": "two fixed pivots are given, of which it has one"}
+        if self.kind == "path" and "B0 B" in self.given.lengths:
+            return {"slider-crank": 'the length "B0 B" is given, which it does not have'}
+        return {}
 
     @property
     def is_six_bar(self) -> bool:

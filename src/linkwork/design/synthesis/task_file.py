@@ -18,7 +18,7 @@ from linkwork.design.synthesis.task_conditions import Given, PrecisionPosition, 
 from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
 from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS, WATT_II, WATT_PAIRS
 from linkwork.foundation.angles import AngleUnit
-from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
@@ -68,7 +68,7 @@ def read_task_text(text: str, name: str = "the task", folder: Path | None = None
 
 def located_task_error(error: MechanismError, task: Task, name: str) -> MechanismError:
     """Problems that a solver found, with the lines of the task's file."""
-    if not task.text:
+    if not task.text or isinstance(error, MechanismFileError):  # of the mechanism's own file
         return error
     return located_error(error.problems, Lines.of(task.text), name)
 

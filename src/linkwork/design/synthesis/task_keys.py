@@ -65,7 +65,7 @@ _FUNCTION = Key(
     "function",
     Table(
         (
-            Key("of", Formula(), 'The function, a formula of x: "log10(x)"'),
+            Key("of", Formula(), 'The function, a formula of x, of sin(x) in radians: "log10(x)"'),
             Key("x", _PAIR, "The range of x: [1, 2]"),
             Key(
                 "pairs",

@@ -128,7 +128,9 @@ def judge(given: Candidates, drive: Drive, wishes: Wishes) -> Verdicts:
         met[index] = meets_obstacle(given.take(index), drive, loops, travel, index, wishes)
     found[DefectKind.OBSTACLE] = met
     # a bound of zero leaves it open whether the range ends in front of a dead point
-    found[DefectKind.NOT_PROVED] = ~travel.decided | (open_ & (transmission == 0.0))
+    found[DefectKind.NOT_PROVED] = ~travel.decided | (
+        open_ & (transmission == 0.0) & ~found[DefectKind.RANGE]
+    )
     return Verdicts(
         loops=loops,
         travel=travel,
