@@ -23,6 +23,7 @@ from tests.campaigns.defects import defect_campaign
 from tests.campaigns.families import family_campaign
 from tests.campaigns.forces import force_campaign
 from tests.campaigns.fuzz import fuzz_campaign
+from tests.campaigns.goals import goal_campaign
 from tests.campaigns.gradients import EVERY, gradient_campaign
 from tests.campaigns.imports import import_campaign
 from tests.campaigns.improvement import PARTS as IMPROVEMENTS, improvement_campaign
@@ -46,6 +47,7 @@ __all__ = ["CAMPAIGNS", "WHOLE", "Report", "run"]
 _PART = 50
 # every length of train and every mechanism is a part; tasks of poses are solved many at a time
 _OWN_PART = {
+    "goals": 1,
     "gradients": 1,
     "improve": 1,
     "library-defects": 1,
@@ -164,6 +166,7 @@ CAMPAIGNS: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]
     "poses": (_poses, 100_000),
     "defects": (_defects, 10_000),
     "library-defects": (library_defect_campaign, len(MECHANISMS)),
+    "goals": (goal_campaign, 4 * len(MECHANISMS)),
     "gradients": (_gradients, EVERY),
     "improve": (improvement_campaign, IMPROVEMENTS),
     "whole-motions": (whole_motion_campaign, MOTIONS),
