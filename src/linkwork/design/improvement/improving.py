@@ -14,7 +14,7 @@ from linkwork.design.improvement.front_fit import fit_front
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import fit_numbers
-from linkwork.design.improvement.proved_design import fitted_design
+from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Goal, Improvement, Points
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
@@ -45,6 +45,7 @@ __all__ = [
 
 STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
+_SEARCH = 0.9  # share of the search in the work; the rest is proofs
 _FAR = 2.0  # longest numbers or links, by which others may change
 # near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
 # all steps would fail that move it by its effect alone
@@ -59,11 +60,13 @@ def improved_designs(
     progress: Callable[[float], None] | None = None,
     *,
     is_sound: Callable[[ImprovedDesign], bool] = lambda design: design.sound,
+    enough: int | None = None,
 ) -> tuple[ImprovedDesign, ...]:
     """Different local minima, sound ones first, then by their misses; or a front, in its order,
     and the designs found on the way to it that are not sound.
 
-    ``is_sound``: what a design of a front has to be, besides undominated.
+    ``is_sound``: what a design of a front has to be, besides undominated. ``enough``: so many sound
+    designs end the proofs of an interrupted search. An interruption of the proofs keeps those done.
 
     Raises
     ------
@@ -89,10 +92,23 @@ def improved_designs(
         for k in np.flatnonzero(np.isfinite(found.total))
     )
     designs: list[ImprovedDesign] = []
-    for _, part, k in best:
-        path, found = fits[part]
-        if not _is_known(found.x[k], designs):
-            designs.append(fitted_design(model, numbers, path, found, k))
+    sound, interrupted = 0, any(found.interrupted for _, found in fits)
+    try:
+        for done, (_, part, k) in enumerate(best):
+            if progress is not None and not interrupted:
+                interrupted = _is_stopped(progress, _SEARCH + (1.0 - _SEARCH) * done / len(best))
+            if interrupted and sound == enough:
+                break
+            path, found = fits[part]
+            if not _is_known(found.x[k], designs):
+                designs.append(fitted_design(model, numbers, path, found, k))
+                sound += is_sound(designs[-1])
+    except KeyboardInterrupt:
+        interrupted = True
+    if interrupted and not designs:
+        raise KeyboardInterrupt
+    if interrupted:
+        designs = [interrupted_design(design) for design in designs]
     return tuple(sorted(designs, key=lambda design: not design.sound))
 
 
@@ -122,7 +138,7 @@ def _fits(
 
         def tell(fraction: float, done: int = part) -> None:
             if progress is not None:
-                progress((done + fraction) / len(paths))
+                progress(_SEARCH * (done + fraction) / len(paths))
 
         begin = box.inside(starts)
         given = Fitting(
@@ -136,6 +152,14 @@ def _fits(
         if found.interrupted:
             break
     return fits
+
+
+def _is_stopped(progress: Callable[[float], None], fraction: float) -> bool:
+    try:
+        progress(fraction)
+    except KeyboardInterrupt:
+        return True
+    return False
 
 
 def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:

@@ -109,7 +109,12 @@ def improve_description(
         return ImprovedMechanism(task=task, improved=design, wishes=wishes)
 
     found = improved_designs(
-        model, goals, settings, progress, is_sound=lambda design: not judged(design).kinds
+        model,
+        goals,
+        settings,
+        progress,
+        is_sound=lambda design: not judged(design).kinds,
+        enough=task.rank.deliver,
     )
     designs = [judged(design) for design in found]
     interrupted = any(design.message.startswith("interrupted") for design in found)
