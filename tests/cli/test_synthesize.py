@@ -119,13 +119,13 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
     home.mkdir()
     folder, found, written = home / "designs", lw.Task.load(_TASK).solve(), list[Path]()
 
-    def stop_at_the_third(text: str, path: Path) -> None:
+    def stop_at_the_fourth(text: str, path: Path) -> None:
         written.append(path)
-        if len(written) == 3:
+        if len(written) == 4:
             raise KeyboardInterrupt
         path.write_text(text)
 
-    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt, match="after 1 of 12 designs were written in "):
         write_designs(found, folder, FolderOptions(refused=True, draw=True, csv=True))
     names = sorted(path.name for path in folder.iterdir())
@@ -144,7 +144,7 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
     found.save(folder, refused=True)
     before = {path: path.read_bytes() for path in folder.rglob("*.toml")}
     assert len(before) == 13
-    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt):
         write_designs(found, folder, FolderOptions(fresh=True, csv=True))
     assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before
