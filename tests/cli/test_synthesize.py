@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -135,6 +136,16 @@ def test_a_curve_in_another_folder_is_copied_only_into_that_of_the_designs(
     lw.Task.load(tmp_path / "out" / "task.toml")
 
 
+def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any, **__: Any) -> lw.Synthesis:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(lw.Task, "solve", interrupted)
+    done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK)])
+    assert done.exit_code == interrupts.INTERRUPTED
+    assert "Interrupted before there was a design." in done.output
+
+
 def test_designs_of_an_interrupted_search_are_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,28 +165,39 @@ def test_designs_of_an_interrupted_search_are_written(
     assert len(list((tmp_path / "designs").glob("tilt-a-box-*.toml"))) == 5
 
 
-def test_an_interruption_leaves_the_folder_as_it_was(
+def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_one_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     home = tmp_path / "home"
     home.mkdir()
     folder, found, written = home / "designs", lw.Task.load(_TASK).solve(), list[Path]()
 
-    def stop_at_the_third(text: str, path: Path) -> None:
+    def stop_at_the_fourth(text: str, path: Path) -> None:
         written.append(path)
-        if len(written) % 3 == 0:
+        if len(written) == 4:
             raise KeyboardInterrupt
         path.write_text(text)
 
-    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
-    with pytest.raises(KeyboardInterrupt):
-        found.save(folder)
-    assert list(home.iterdir()) == []
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_fourth)
+    with pytest.raises(KeyboardInterrupt, match="after 1 of 12 designs were written in "):
+        write_designs(found, folder, FolderOptions(refused=True, draw=True, csv=True))
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == [
+        "designs.csv",
+        "refused",
+        "task.toml",
+        "tilt-a-box-01.svg",
+        "tilt-a-box-01.toml",
+    ]
+    assert list((folder / "refused").iterdir()) == []
+    assert (folder / "designs.csv").read_text().count("tilt-a-box-") == 1
+    shutil.rmtree(folder)
+    written.clear()
     monkeypatch.undo()
     found.save(folder, refused=True)
     before = {path: path.read_bytes() for path in folder.rglob("*.toml")}
     assert len(before) == 13
-    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_third)
+    monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt):
         write_designs(found, folder, FolderOptions(fresh=True, csv=True))
     assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before

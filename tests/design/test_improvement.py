@@ -9,10 +9,14 @@ import pytest
 
 import linkwork as lw
 from linkwork.design.improvement import improving
+from linkwork.design.improvement.fit_problem import Fitting
+from linkwork.design.improvement.mechanism_fit import fit_numbers
+from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.mechanism.varied_number import number_named
+from linkwork.numerics.lane_bounds import Box
 from linkwork.results.branch_end import branch_end
 
 
@@ -191,3 +195,54 @@ def test_a_design_with_a_dead_point_between_two_rows_is_not_sound(tmp_path: Path
     assert door.limits
     assert branch_end(door) is None
     assert branch_end(lw.loads(text.replace("to    = 360", "to = 180")).sweep()) is None
+
+
+def test_a_start_that_leads_to_a_dead_point_is_led_again_kept_off_it() -> None:
+    """Of 0.8 of its largest angle, the rocker's crank first comes so long that it hardly turns."""
+    bar = lw.example("four-bar")
+    goal = {"of": "max(rocker)", "target": 0.8 * bar.sweep().value("max(rocker)")}
+    found = bar.improve(goal, starts=6)
+    met = [design for design in found if design.sound and design.total < 1e-12]
+    angles = [lw.api.Mechanism(design.description).sweep()["B.transmission"] for design in met]
+    assert min(np.minimum(a, 180.0 - a).min() for a in angles) > 0.24
+    assert len(met) == 5
+    assert [design.sound for design in found] == sorted((d.sound for d in found), reverse=True)
+    told: list[float] = []
+    bar.improve(goal, starts=6, progress=told.append)
+    assert told == sorted(told)
+    assert told[-1] <= 1.0
+
+    def stop(fraction: float) -> None:
+        if fraction > 0.65:
+            raise KeyboardInterrupt
+
+    kept = bar.improve(goal, starts=6, progress=stop)
+    assert len(kept) >= 6
+    assert all(design.message.startswith("interrupted") for design in kept)
+
+
+def test_designs_at_dead_points_are_replaced_by_those_of_the_same_start() -> None:
+    leg = lw.example("jansen-leg")
+    goal = {"of": "stroke(F.x)", "target": 1.2 * leg.sweep().value("stroke(F.x)")}
+    found = leg.improve(goal, starts=6)
+    # a start of which two lanes end alike has one design
+    assert [design.sound for design in found] == [True, True, True, True, False]
+
+
+def test_fits_name_the_starts_of_the_lanes_that_are_left() -> None:
+    bar = lw.example("four-bar")
+    numbers = improving.numbers_to_vary(bar.model, ["O2 A", "A B"])
+    given = Fitting(
+        model=bar.model,
+        motion=bar.sweep(),
+        numbers=numbers,
+        box=Box(least=np.array([1.0, 1.0]), most=np.array([900.0, 900.0])),
+        path=None,
+        goals=[Goal(of="stroke(rocker)", target=60.0)],
+    )
+    # no row closes with the second
+    starts = np.array([[40.0, 120.0], [900.0, 1.0], [38.0, 125.0]])
+    fits = fit_numbers(given, starts)
+    assert fits.start.tolist() == [0, 2]
+    for x, k in zip(fits.x, fits.start, strict=True):
+        assert x == pytest.approx(fit_numbers(given, starts[[k]]).x[0], rel=1e-9)

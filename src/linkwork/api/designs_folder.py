@@ -59,6 +59,9 @@ def write_designs(
 ) -> dict[int, str]:
     """Write a synthesis into a folder; returns the files of designs by their place in the list.
 
+    An interruption (Ctrl-C) leaves a new folder with the designs that are written by then, and one
+    of earlier designs as it was.
+
     Raises
     ------
     InputError
@@ -71,34 +74,50 @@ def write_designs(
         for k, design in enumerate(found.designs)
         if design.delivered or (options.refused and design.kinds)
     ]
-    names = {k: _file_name(found, design) for k, design in chosen}
-    files = {k: str(root / name) for k, name in names.items()}
+    names: dict[int, str] = {}
+    interrupted = False
     with written_folder(root) as part:
-        _write_tables(found, part, options, names)
+        if options.refused:
+            (part / _REFUSED).mkdir()
         for done, (k, design) in enumerate(chosen):
-            path = part / names[k]
-            save_text(write_text(design.linkage), path)
-            if options.draw:
-                picture = inline_svg(_scene(design), FixedInks(), longest=_LONGEST)
-                save_text(picture, path.with_suffix(".svg"))
-            if progress is not None:
-                progress((done + 1) / len(chosen))
+            name = _file_name(found, design)
+            try:
+                if progress is not None:
+                    progress(done / len(chosen))
+                _write_design(design, part / name, options.draw)
+            except KeyboardInterrupt:
+                if earlier or not names:
+                    raise
+                interrupted = True
+                for half in (part / name, (part / name).with_suffix(".svg")):
+                    half.unlink(missing_ok=True)
+                break
+            names[k] = name
+        _write_tables(found, part, options, names)
         new = {root / path.relative_to(part) for path in part.rglob("*")}
+    if interrupted:
+        told = f"after {len(names)} of {len(chosen)} designs were written in {root}"
+        raise KeyboardInterrupt(told)
     for path in earlier:
         if path not in new:
             path.unlink(missing_ok=True)
     emptied = root / _REFUSED
     if options.fresh and not options.refused and emptied.is_dir() and not any(emptied.iterdir()):
         emptied.rmdir()
-    return files
+    return {k: str(root / name) for k, name in names.items()}
+
+
+def _write_design(design: JudgedDesign, path: Path, draw: bool) -> None:
+    save_text(write_text(design.linkage), path)
+    if draw:
+        picture = inline_svg(_scene(design), FixedInks(), longest=_LONGEST)
+        save_text(picture, path.with_suffix(".svg"))
 
 
 def _write_tables(
     found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
-    """The task with its curve, the table, the front and the page; the folder of refused designs."""
-    if options.refused:
-        (part / _REFUSED).mkdir()
+    """The task with its curve, the table, the front and the page."""
     save_text(found.task.text, part / "task.toml")
     if found.task.curve is not None:
         # the task names the file of its curve; one elsewhere is left where it is

@@ -95,11 +95,12 @@ def _ended_by(error: BaseException, debug: bool) -> int:
     if debug:
         click.echo(traceback.format_exc(), err=True)
     # a library may have turned the interrupt into an error of its own
-    if was_interrupted():
+    if was_interrupted() and not isinstance(error, KeyboardInterrupt):
         error = KeyboardInterrupt()
     match error:
         case KeyboardInterrupt():
-            lines, code = ["", "Interrupted."], INTERRUPTED
+            told = " ".join(["Interrupted", *map(str, error.args)])
+            lines, code = ["", f"{told}."], INTERRUPTED
         case LinkworkError():
             lines, code = problem_lines(error), error.exit_code
         case MemoryError():

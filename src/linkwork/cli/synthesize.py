@@ -56,8 +56,11 @@ def synthesize(
     asked = Task.load(task)
     if output is not None:
         check_folder(as_path(output), options, asked.described)
-    with progress("solving the task") as tell:
-        found = asked.solve(progress=tell)
+    try:
+        with progress("solving the task") as tell:
+            found = asked.solve(progress=tell)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt("before there was a design") from None
     if found.interrupted:
         answer_interrupt()
     if not found.sound:

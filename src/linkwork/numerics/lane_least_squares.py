@@ -68,6 +68,13 @@ class Residuals:
         ]
         return Residuals(*parts)
 
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Those of several parts in one."""
+        columns = zip(*(part._parts for part in parts), strict=True)
+        every: list[Any] = [None if own[0] is None else np.concatenate(own) for own in columns]
+        return cls(*every)
+
     @property
     def _parts(self) -> tuple[Any, ...]:
         return tuple(getattr(self, field.name) for field in fields(self))

@@ -328,8 +328,9 @@ def test_problems_of_the_mechanism_are_those_of_its_own_file(tmp_path: Path) -> 
 
 
 def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
-    """The rocker turns so far, but the crank no longer does."""
-    task: dict[str, Any] = {"goals": [{"of": "rocker", "at": [10, 20, 30], "values": [50, 52, 57]}]}
+    """The rocker turns so far, but no crank within these bounds does."""
+    goal = {"of": "rocker", "at": [60, 80, 100], "values": [80, 90, 105]}
+    task: dict[str, Any] = {"goals": [goal], "vary": ["O2 A"], "bounds": {"O2 A": [90, 110]}}
     found = lw.Task.improve("four-bar", starts=3, **task).solve()
     assert [kind.name for kind in found.defects] == ["RANGE"]
     assert found.costliest is None

@@ -7,7 +7,7 @@ spent on those that may become the best.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ __all__ = ["FittedCurves", "fit_curve"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad]: far above rounding
 _DRAWS = 6  # for each start that is kept
+_DRAWING = 0.1  # of the work of the steps
 #: Lanes that go on, as shares of the starts, their steps, and the weight of constraints; after each
 #: the multipliers of constraints change.
 _STAGES = (
@@ -80,12 +81,25 @@ def fit_curve(
     progress: Callable[[float], None] | None = None,
     threads: int = 1,
 ) -> FittedCurves:
-    """The best mechanisms of one kind; the same for the same generator, whatever the threads."""
-    found = best_starts(kind, goal, _DRAWS * starts, starts, rng)
+    """The best mechanisms of one kind; the same for the same generator, whatever the threads.
+
+    An interruption of the draws improves the few best ones so far, one of the steps ends these.
+    """
+    work = sum(share * steps for share, steps, _ in _STAGES)
+    drawing, asked = _DRAWING * work, starts
+
+    def told(part: float) -> None:
+        if progress is not None:
+            progress(part / (drawing + work))
+
+    found, drawn = best_starts(
+        kind, goal, _DRAWS * starts, starts, rng, lambda part: told(part * drawing)
+    )
+    if not drawn:
+        found, starts = found.take(np.arange(min(_FEWEST, len(found.x)))), _FEWEST
     problem = _Problem(kind, goal, found)
     fit = starts_of(problem.entries(found), problem.own(found))
     numbers = np.arange(len(fit))
-    work = sum(share * steps for share, steps, _ in _STAGES)
     done = 0.0
     for share, steps, weight in _STAGES:
         problem.constraints.weigh(weight)
@@ -94,14 +108,17 @@ def fit_curve(
             fit, numbers = fit.take(keep), numbers[keep]
 
         def tell(part: float, done: float = done, whole: float = share * steps) -> None:
-            if progress is not None:
-                progress((done + part * whole) / work)
+            if drawn:  # what has stopped the draws would stop this too
+                told(drawing + done + part * whole)
 
         fit = problem.minimised(fit, numbers, steps, threads, tell)
         done += share * steps
         if fit.interrupted:
+            keep = np.argsort(fit.total, kind="stable")
+            keep = keep[: max(_FEWEST, round(_STAGES[-1][0] * starts))]
+            fit, numbers = fit.take(keep), numbers[keep]
             break
-    return problem.result(fit, numbers, starts)
+    return problem.result(replace(fit, interrupted=fit.interrupted or not drawn), numbers, asked)
 
 
 class _Problem:

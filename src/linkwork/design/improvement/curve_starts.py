@@ -7,7 +7,7 @@ timing, points correspond by the shares of arc length at which they lie.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from typing import Self
 
@@ -86,20 +86,34 @@ def random_loops(kind: type[CouplerCurves], count: int, rng: np.random.Generator
 
 
 def best_starts(
-    kind: type[CouplerCurves], goal: CurveGoal, count: int, keep: int, rng: np.random.Generator
-) -> CurveStarts:
-    """The best of ``count`` draws, each driven both ways on both sides of its loop."""
+    kind: type[CouplerCurves],
+    goal: CurveGoal,
+    count: int,
+    keep: int,
+    rng: np.random.Generator,
+    tell: Callable[[float], None],
+) -> tuple[CurveStarts, bool]:
+    """The best of ``count`` draws, each driven both ways on both sides of its loop, and whether
+    all were compared: an interruption keeps those so far, if there are any.
+    """
     free = goal.is_placed_freely
     x = random_loops(kind, count, rng)
     if not free:
         x = _spread(kind, x, goal, rng)
     parts: list[CurveStarts] = []
-    for begin in range(0, count, _PART):
-        some = x[begin : begin + _PART]
-        for side in (1.0, -1.0):
-            parts += [_compared(kind, some, side, way, goal, free) for way in goal.ways]
+    finished = False
+    try:
+        for begin in range(0, count, _PART):
+            tell(begin / count)
+            some = x[begin : begin + _PART]
+            for side in (1.0, -1.0):
+                parts += [_compared(kind, some, side, way, goal, free) for way in goal.ways]
+        finished = True
+    except KeyboardInterrupt:
+        if not parts:
+            raise
     every = CurveStarts.joined(parts)
-    return every.take(np.argsort(every.missed, kind="stable")[:keep])
+    return every.take(np.argsort(every.missed, kind="stable")[:keep]), finished
 
 
 def _spread(

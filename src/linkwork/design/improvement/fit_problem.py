@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from linkwork.design.improvement.goals import PathGoal, goal_of
+from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
 from linkwork.design.improvement.settings import Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
@@ -26,12 +27,10 @@ from linkwork.numerics.lane_least_squares import LaneFit, Residuals, minimise, s
 from linkwork.results.motion import Motion
 from linkwork.results.quantity import Kind
 
-__all__ = ["FitProblem", "FittedNumbers", "Fitting", "inputs_away"]
+__all__ = ["APPROACH", "FitProblem", "FittedNumbers", "Fitting", "inputs_away"]
 
 _GAP = 1e-7  # between inputs of positions in order [rad or length]
-_APPROACH = 4  # parts of the way from the mechanism to a start
-_PART, _MOST = 8, 64  # lanes of one thread: of many rows, of few
-_ROWS = 4000  # of all lanes of a thread: fewer would take as long
+APPROACH = 4  # parts of the way from the mechanism to a start
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,6 +53,8 @@ class FittedNumbers:
         Root mean squares of the misses of each goal that is no bound, without its weight.
     broken : (D,)
         The largest weighted residual of a bound.
+    start : (D,)
+        The numbers of their starts.
     interrupted : bool
     """
 
@@ -65,6 +66,7 @@ class FittedNumbers:
     names: tuple[str, ...]
     objectives: Array
     broken: Array
+    start: IndexArray
     interrupted: bool
 
 
@@ -145,8 +147,10 @@ class FitProblem:
         self.counted = np.concatenate(
             [np.zeros(0, bool), *(np.full(m.count, not m.is_bound) for m in self.goals)]
         )
-        self.tell: Callable[[float], None] | None = None
-        self.whole, self.done, self.stopped = 1, 0, False
+        self.work = LaneWork(sum(len(solved.rows_at) for solved in self._solvers))
+        self._reached = np.zeros(lanes, dtype=bool)
+        # how much numbers change each goal, where it is not known to be at all
+        self._moved = np.full(len(self.goals), np.nan)
 
     @property
     def has_bounds(self) -> bool:
@@ -182,6 +186,7 @@ class FitProblem:
             getattr(fit, name)[to] = getattr(fit, name)[of]
         for solved in self._solvers:
             solved.copy_lanes(of, to)
+        self._reached[to] = True
 
     def _timing(self, table: Array) -> OwnVariables:
         """Where inputs of points with free timing may be: in the table, unless it is a turn."""
@@ -208,29 +213,38 @@ class FitProblem:
         return [*([self.points] if self.points is not None else []), *self.rows.values()]
 
     def begun(self, starts: Array) -> LaneFit:
-        """The starts, reached from the mechanism in some steps; infinite where lost."""
+        """The starts, which are reached from the mechanism when their lanes are first worked on."""
         own = 0 if self.path is None or self.path.timed else len(self.path.places)
         inputs = self.path.inputs[:own] if self.path else np.zeros(0)
-        t = np.array(np.broadcast_to(inputs, (len(starts), own)))
-        self._lead(np.broadcast_to(self.x, starts.shape), starts, t, np.arange(len(starts)))
-        return starts_of(starts, t)
+        return starts_of(starts, np.array(np.broadcast_to(inputs, (len(starts), own))))
 
-    def check_moved(self, fit: LaneFit) -> None:
-        """Refuse goals with wanted values that no number changes at any start.
+    def reached(self, fit: LaneFit, lanes: IndexArray) -> LaneFit:
+        """Starts reached from the mechanism, with their sums; infinite where lost."""
+        every = fit.take(np.arange(len(fit)))
+
+        def work(own: IndexArray, count: Callable[[], None]) -> None:
+            every.total[own] = self._reach(fit.take(own), own, count)
+
+        self.work.share(lanes, APPROACH, work)
+        return replace(every, interrupted=self.work.stopped)
+
+    def _reach(self, fit: LaneFit, lanes: IndexArray, count: Callable[[], None]) -> Array:
+        """The sums of starts that are reached in some steps."""
+        begin = np.broadcast_to(self.x, fit.x.shape)
+        total = self._lead(begin, fit.x, fit.t, lanes, count)
+        self._reached[lanes] = True
+        return total
+
+    def check_moved(self) -> None:
+        """Refuse goals with wanted values that no number has changed at any design so far.
 
         Raises
         ------
         MechanismError
         """
-        designs, lanes = self.writer.written(fit.x), np.arange(len(fit))
         found = []
         for k, misses in enumerate(self.goals):
-            solved = self.rows[misses.at.tobytes()]
-            at = np.broadcast_to(solved.rows_at, (len(fit), len(solved.rows_at)))
-            with np.errstate(all="ignore"):
-                value, by_x = misses.values(solved.at(designs, at, lanes))
-            there = np.isfinite(value)
-            if there.any() and not misses.is_bound and not by_x[there].any():
+            if not misses.is_bound and self._moved[k] == 0.0:
                 told = f'"{misses.goal.of}" changes with no number that varies, at any start: '
                 told += "vary numbers that it depends on, or leave this goal out"
                 found.append(Problem(key=("goals", k, "of"), message=told))
@@ -242,62 +256,65 @@ class FitProblem:
         self._lead(fit.x[lanes], x, fit.t[lanes], lanes)
         fit.x[lanes] = x
 
-    def _lead(self, begin: Array, end: Array, t: Array, lanes: IndexArray) -> None:
-        """From numbers to others in some steps, so that positions follow."""
-        for part in range(1, _APPROACH + 1):
+    def _lead(
+        self,
+        begin: Array,
+        end: Array,
+        t: Array,
+        lanes: IndexArray,
+        count: Callable[[], None] = lambda: None,
+    ) -> Array:
+        """From numbers to others in some steps, so that positions follow; the sums there."""
+        total = np.zeros(0)
+        for part in range(1, APPROACH + 1):
+            count()
             for solved in self._solvers:
                 solved.total[lanes] = np.inf
-            self.evaluate(begin + (end - begin) * (part / _APPROACH), t, lanes)
+            total = self.evaluate(begin + (end - begin) * (part / APPROACH), t, lanes).total
+        return total
 
     def further(self, fit: LaneFit, keep: IndexArray, steps: int) -> LaneFit:
         """Some lanes after more steps."""
-        for solved in self._solvers:
-            # sums of an earlier round are no measure of this one
-            solved.total[keep] = np.inf
-        if self.power > 1:
-            self.power, power = 1, self.power
-            now = self.evaluate(fit.x[keep], fit.t[keep], keep)
-            self.largest[keep] = np.maximum(largest_misses(now, self.counted), 1e-300)
-            self.power = power
-        rows = sum(len(solved.rows_at) for solved in self._solvers)
-        part = min(max(_PART, _ROWS // max(1, rows)), _MOST)
-        parts = [keep[k : k + part] for k in range(0, len(keep), part)]
-        found = [fit.take(part) for part in parts]
+        found: list[tuple[IndexArray, LaneFit]] = []
 
-        def work(k: int) -> None:
-            own = parts[k]
+        def work(own: IndexArray, count: Callable[[], None]) -> None:
+            start = fit.take(own)
+            if not self._reached[own].all():
+                start = replace(start, total=self._reach(start, own, count))
+                found.append((own, start))
+            for solved in self._solvers:
+                # sums of an earlier round are no measure of this one
+                solved.total[own] = np.inf
+            if self.power > 1:
+                now = self.evaluate(start.x, start.t, own, power=1)
+                self.largest[own] = np.maximum(largest_misses(now, self.counted), 1e-300)
 
             def evaluate(x: Array, t: Array, lanes: IndexArray) -> Residuals:
-                if self.stopped:
-                    raise KeyboardInterrupt
-                if k == 0 and self.tell is not None:
-                    self.tell(min(1.0, (self.done + tried[0]) / self.whole))
-                    tried[0] += 1
+                count()
                 return self.evaluate(x, t, own[lanes])
 
-            found[k] = minimise(evaluate, fit.take(own), self.box, steps, own=self.own_variables)
-            self.stopped = self.stopped or found[k].interrupted
+            after = minimise(evaluate, start, self.box, steps, own=self.own_variables)
+            found.append((own, after))
+            if after.interrupted:
+                raise KeyboardInterrupt
+            if self.has_bounds:
+                self.evaluate(after.x, after.t, own)
+                for shift, new in zip(self.shifts, self.new_shifts, strict=True):
+                    shift[:, own] = new[:, own]
+                if self.trade is not None:
+                    self.trade.update(own)
 
-        tried = [0]
-        try:
-            share_out(work, range(len(parts)), cores())
-        except KeyboardInterrupt:
-            # while waiting for the other threads, which stop at their next step
-            self.stopped = True
-        self.done += steps
-        own = replace(LaneFit.joined(found), interrupted=self.stopped)
+        self.work.share(keep, steps, work)
         every = fit.take(np.arange(len(fit)))
-        every.put(keep, own)
-        if self.has_bounds and not own.interrupted:
-            self.evaluate(own.x, own.t, keep)
-            for shift, new in zip(self.shifts, self.new_shifts, strict=True):
-                shift[:, keep] = new[:, keep]
-            if self.trade is not None:
-                self.trade.update(keep)
-        return replace(every, interrupted=own.interrupted)
+        for own, after in found:
+            every.put(own, after)
+        return replace(every, interrupted=self.work.stopped)
 
-    def evaluate(self, x: Array, t: Array, lanes: IndexArray) -> Residuals:
+    def evaluate(
+        self, x: Array, t: Array, lanes: IndexArray, power: int | None = None
+    ) -> Residuals:
         """All misses of designs (D, P); NaN for those of other equations."""
+        power = power or self.power
         count, parameters = x.shape
         rows, by_x = np.zeros((count, 0, 2)), np.zeros((count, 0, 2, parameters))
         by_t: Array | None = None
@@ -319,6 +336,8 @@ class FitProblem:
         for k, misses in enumerate(self.goals):
             own, slopes, new = misses.of(positions[misses.at.tobytes()], self.shifts[k][:, lanes])
             self.new_shifts[k][:, lanes] = new
+            if not self._moved[k] > 0.0 and (there := np.isfinite(own)).any():
+                self._moved[k] = float(np.abs(slopes[there]).max())
             shared.append(own)
             shared_by_x.append(slopes)
         result = Residuals(
@@ -326,8 +345,8 @@ class FitProblem:
         )
         if self.trade is not None:
             result = self.trade.applied(result, lanes)
-        if self.power > 1:
-            result = powered(result, self.power, self.largest[lanes], self.counted)
+        if power > 1:
+            result = powered(result, power, self.largest[lanes], self.counted)
         for solver, found, at in kept:
             solver.keep(found, x, at, lanes, result.total)
         return result
@@ -339,27 +358,36 @@ class FitProblem:
         self.shifts = [np.zeros_like(shift) for shift in self.shifts]
         for solved in self._solvers:
             solved.total[lanes] = np.inf
-        found = self.evaluate(fit.x[lanes], fit.t[lanes], lanes)
-        self.power, self.trade, self.shifts = kept
-        return found
+        parts = self.work.parts(lanes)
+        found: dict[int, Residuals] = {}
 
-    def result(self, fit: LaneFit) -> FittedNumbers:
-        """All lanes with their misses."""
-        there = self.measured(fit, np.arange(len(fit)))
+        def measure(k: int) -> None:
+            found[k] = self.evaluate(fit.x[parts[k]], fit.t[parts[k]], parts[k])
+
+        share_out(measure, range(len(parts)), cores())
+        self.power, self.trade, self.shifts = kept
+        return Residuals.joined([found[k] for k in range(len(parts))])
+
+    def result(self, fit: LaneFit, most: int | None = None) -> FittedNumbers:
+        """All lanes that are known, or the best ones, with their misses."""
+        known = np.argsort(fit.total, kind="stable")[: max(1, np.isfinite(fit.total).sum())]
+        known = np.sort(known[:most])
+        there = self.measured(fit, known)
+        fit = fit.take(known)
         timed = self.path is None or self.path.timed
         t = fit.t
         if timed and self.path is not None:
             t = np.array(np.broadcast_to(self.path.inputs, (len(fit), len(self.path.places))))
-        known = np.isfinite(fit.total)
         return FittedNumbers(
             x=fit.x,
             t=t,
-            total=np.where(known, there.total, np.inf),
-            largest=np.where(known, largest_misses(there, self.counted), np.inf),
+            total=np.where(np.isfinite(fit.total), there.total, np.inf),
+            largest=largest_misses(there, self.counted),
             path=np.asarray(np.einsum("dnm,dnm->d", there.rows, there.rows)),
             names=self.objectives.names,
             objectives=self.objectives.values(there),
             broken=self.objectives.broken(there),
+            start=known,
             interrupted=fit.interrupted,
         )
 

@@ -18,7 +18,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting
+from linkwork.design.improvement.fit_problem import APPROACH, FitProblem, FittedNumbers, Fitting
 from linkwork.design.improvement.pareto_front import objective_spans, undominated
 from linkwork.design.improvement.trade_off import TradeOff
 from linkwork.foundation.arrays import Array, IndexArray
@@ -43,11 +43,10 @@ def fit_front(
     progress: Callable[[float], None] | None = None,
 ) -> FittedNumbers:
     """All designs on the way to a front of ``count`` designs, from starts (D, P)."""
-    front = _Front(given, starts, count)
-    front.problem.tell = progress
+    front = _Front(given, starts, count, progress)
     for stage in (front.minimise_each, front.weigh, front.limit):
         stage()
-        if front.fit.interrupted:
+        if front.problem.work.stopped:
             break
     return front.result()
 
@@ -55,7 +54,13 @@ def fit_front(
 class _Front:
     """Lanes of one problem, taken into use stage by stage."""
 
-    def __init__(self, given: Fitting, starts: Array, count: int) -> None:
+    def __init__(
+        self,
+        given: Fitting,
+        starts: Array,
+        count: int,
+        progress: Callable[[float], None] | None,
+    ) -> None:
         probe = FitProblem(given, 1)
         self.size, self.count = len(probe.objectives.names), count
         self.weights = _weights(self.size, count)
@@ -65,15 +70,17 @@ class _Front:
         between = 2 * count * _FILLINGS if self.size == 2 else len(self.limits)
         self.used, lanes = 0, alone + weighted + between
         self.problem = FitProblem(given, lanes)
-        fit = self.problem.begun(np.tile(starts, (self.size, 1)))
-        self.problem.check_moved(fit)
+        self.problem.work.tell = progress
+        fillings = _FILLINGS if self.size == 2 else 1
+        self.problem.work.whole = APPROACH + len(_OTHERS) * _STEPS + (2 + fillings) * sum(_ROUNDS)
         self.alone = np.arange(alone)
+        fit = self.problem.reached(self.problem.begun(np.tile(starts, (self.size, 1))), self.alone)
+        if not fit.interrupted:
+            self.problem.check_moved()
         # lanes that are not used yet
         self.fit = fit.take(np.minimum(np.arange(lanes), alone - 1))
         self.trade = self._trade(lanes)
         self._tried: set[tuple[int, float]] = set()
-        fillings = _FILLINGS if self.size == 2 else 1
-        self.problem.whole = len(_OTHERS) * _STEPS + (2 + fillings) * sum(_ROUNDS)
 
     def _trade(self, lanes: int) -> TradeOff:
         objectives = self.problem.objectives

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -17,7 +18,7 @@ from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import fit_numbers
 from linkwork.design.improvement.motion_bounds import least_in_rows
-from linkwork.design.improvement.proved_design import fitted_design
+from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Goal, Improvement, Points
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
@@ -52,7 +53,9 @@ __all__ = [
 
 STARTS = 16
 FACTOR = 4.0  # by which lengths may change, unless bounds are given
+_SEARCH = 0.9  # share of the search in the work; the rest is proofs
 _FAR = 2.0  # longest numbers or links, by which others may change
+_FIRST = 0.6  # share of the first search, if starts may have to be led again
 _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again, so far from all
 # near a number that a goal does not depend on, such as a rod's length in a stroke without offset,
 # all steps would fail that move it by its effect alone
@@ -67,11 +70,13 @@ def improved_designs(
     progress: Callable[[float], None] | None = None,
     *,
     is_sound: Callable[[ImprovedDesign], bool] = lambda design: design.sound,
+    enough: int | None = None,
 ) -> tuple[ImprovedDesign, ...]:
     """Different local minima, sound ones first, then by their misses; or a front, in its order,
     and the designs found on the way to it that are not sound.
 
-    ``is_sound``: what a design of a front has to be, besides undominated.
+    ``is_sound``: what a design of a front has to be, besides undominated. ``enough``: so many sound
+    designs end the proofs of an interrupted search. An interruption of the proofs keeps those done.
 
     Raises
     ------
@@ -86,86 +91,135 @@ def improved_designs(
         raise InputError(f'"{model.description.name}" has no number that can vary alone')
     box = box_of(model, numbers, settings)
     starts = box.inside(_starts(model, numbers, settings))
-    asked = partial(_fits, model, numbers, box, points, settings=settings)
+    search = _Search(model, numbers, box, points, settings, is_sound, enough, progress)
+    held = {goal.of for goal in others}
+    kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
+    search.share = _FIRST if kept_off and not settings.front else 1.0
     try:
-        fits = asked(others, starts, tell=progress)
+        fits = search.fits(others, starts)
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
         return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
-    designs = _designs(model, numbers, fits, settings, [])
-    bound = model.description.angle.from_radians(_OFF)
-    locked = [
-        k for k, own in designs if own.motion is not None and least_in_rows(own.motion) < bound
-    ]
-    held = {goal.of for goal in others}
-    kept_off = [goal for goal in transmission_goals(model, _OFF) if goal.of not in held]
-    if locked and kept_off and not fits[-1][1].interrupted:
+    designs = search.proved(fits, range(len(starts)), [])
+    locked = [k for k, own in designs if _locks(own)]
+    if locked and kept_off and not search.interrupted:
+        search.begin, search.share = _FIRST, 1.0 - _FIRST
         known = [own for own in designs if own[1].sound or own[0] not in locked]
-        fits = asked([*others, *kept_off], starts[locked], tell=progress)
-        designs = _designs(model, numbers, fits, settings, known)
-    return tuple(sorted((own for _, own in designs), key=partial(_rank, settings)))
+        led = search.proved(search.fits([*others, *kept_off], starts[locked]), locked, known)
+        # starts that cannot be kept off, or are not led again, keep their designs
+        again = {k for k, _ in led}
+        designs = led + [own for own in designs if own not in known and own[0] not in again]
+    if search.interrupted and not designs:
+        raise KeyboardInterrupt
+    found = [interrupted_design(own) if search.interrupted else own for _, own in designs]
+    return tuple(sorted(found, key=partial(_rank, settings)))
 
 
-def _designs(
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    fits: Sequence[_Fit],
-    settings: Improvement,
-    known: Sequence[tuple[int, ImprovedDesign]],
-) -> list[tuple[int, ImprovedDesign]]:
-    """Known designs and further ones of fits, the best first, each with the number of its start."""
-    designs = [*known]
-    best = sorted(
-        (float((found.largest if settings.fit == "minimax" else found.total)[k]), part, int(k))
-        for part, (_, found) in enumerate(fits)
-        for k in np.flatnonzero(np.isfinite(found.total))
-    )
-    for _, part, k in best:
-        path, found = fits[part]
-        if not _is_known(found.x[k], [own for _, own in designs]):
-            designs.append((k, fitted_design(model, numbers, path, found, k)))
-    return designs
+def _locks(design: ImprovedDesign) -> bool:
+    """Whether a design comes to a dead point."""
+    motion = design.motion
+    if motion is None:
+        return False
+    return not motion.found.all() or least_in_rows(motion) * motion.units.angle.radians < _OFF
 
 
 def _rank(settings: Improvement, design: ImprovedDesign) -> tuple[bool, float]:
     return not design.sound, design.largest if settings.fit == "minimax" else design.total
 
 
-def _fits(
-    model: Model,
-    numbers: Sequence[VariedNumber],
-    box: Box,
-    points: Points | None,
-    goals: Sequence[Goal],
-    starts: Array,
-    *,
-    settings: Improvement,
-    tell: Callable[[float], None] | None,
-) -> list[_Fit]:
-    """Fits from starts (D, P), one for each way to time the points."""
-    motion = sweep(model, certify=False)
-    if not motion.found.any():
-        raise InputError(f'"{model.description.name}" has no position: improve one that moves')
-    paths = _paths(model, motion, points) if points else (None,)
-    fits: list[_Fit] = []
-    for part, path in enumerate(paths):
+@dataclass(eq=False)
+class _Search:
+    """Fits from starts, and their proofs, which the user may stop.
 
-        def told(fraction: float, done: int = part) -> None:
-            if tell is not None:
-                tell((done + fraction) / len(paths))
+    ``begin``, ``share``: its part of all progress.
+    """
 
-        given = Fitting(
-            model=model, motion=motion, numbers=numbers, box=box, path=path, goals=goals
+    model: Model
+    numbers: Sequence[VariedNumber]
+    box: Box
+    points: Points | None
+    settings: Improvement
+    is_sound: Callable[[ImprovedDesign], bool]
+    enough: int | None
+    progress: Callable[[float], None] | None
+    begin: float = 0.0
+    share: float = 1.0
+    interrupted: bool = False
+
+    def tell(self, fraction: float) -> None:
+        """A fraction of this search is done."""
+        if self.progress is not None:
+            self.progress(self.begin + self.share * fraction)
+
+    def fits(self, goals: Sequence[Goal], starts: Array) -> list[_Fit]:
+        """Fits from starts (D, P), one for each way to time the points."""
+        model, settings = self.model, self.settings
+        motion = sweep(model, certify=False)
+        if not motion.found.any():
+            raise InputError(f'"{model.description.name}" has no position: improve one that moves')
+        paths = _paths(model, motion, self.points) if self.points else (None,)
+        fits: list[_Fit] = []
+        for part, path in enumerate(paths):
+
+            def told(fraction: float, done: int = part) -> None:
+                self.tell(_SEARCH * (done + fraction) / len(paths))
+
+            given = Fitting(
+                model=model,
+                motion=motion,
+                numbers=self.numbers,
+                box=self.box,
+                path=path,
+                goals=goals,
+            )
+            if settings.front:
+                found = fit_front(given, starts, settings.front, progress=told)
+            else:
+                found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
+            fits.append((path, found))
+            self.interrupted |= found.interrupted
+            if self.interrupted:
+                break
+        return fits
+
+    def proved(
+        self,
+        fits: Sequence[_Fit],
+        starts: Sequence[int],
+        known: Sequence[tuple[int, ImprovedDesign]],
+    ) -> list[tuple[int, ImprovedDesign]]:
+        """Known designs and different ones of fits from starts with these numbers, the best first,
+        each with the number of its start.
+        """
+        designs, sound = [*known], 0
+        minimax = self.settings.fit == "minimax"
+        best = sorted(
+            (float((found.largest if minimax else found.total)[k]), part, int(k))
+            for part, (_, found) in enumerate(fits)
+            for k in np.flatnonzero(np.isfinite(found.total))
         )
-        if settings.front:
-            found = fit_front(given, starts, settings.front, progress=told)
-        else:
-            found = fit_numbers(given, starts, minimax=settings.fit == "minimax", progress=told)
-        fits.append((path, found))
-        if found.interrupted:
-            break
-    return fits
+        try:
+            for done, (_, part, k) in enumerate(best):
+                self._tell_proofs(done / len(best))
+                if self.interrupted and sound == self.enough:
+                    break
+                path, found = fits[part]
+                if not _is_known(found.x[k], [own for _, own in designs]):
+                    design = fitted_design(self.model, self.numbers, path, found, k)
+                    designs.append((starts[int(found.start[k])], design))
+                    sound += self.is_sound(design)
+        except KeyboardInterrupt:
+            self.interrupted = True
+        return designs
+
+    def _tell_proofs(self, fraction: float) -> None:
+        """A first interruption ends the proofs when enough designs are sound."""
+        if not self.interrupted:
+            try:
+                self.tell(_SEARCH + (1.0 - _SEARCH) * fraction)
+            except KeyboardInterrupt:
+                self.interrupted = True
 
 
 def _starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Array:

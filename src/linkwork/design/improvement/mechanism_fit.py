@@ -21,7 +21,7 @@ __all__ = ["fit_numbers", "path_misses"]
 _STEPS = (60, 200, 200)  # of all lanes, then of the better half
 _BOUND_STEPS = (60,) * 7  # the same; after each the shifts of bounds change
 _POWER_STEPS = 60
-_ALL = 64  # so few lanes all go on
+_ALL = 64  # so few lanes all go on, and are left of an interrupted fit
 
 
 def fit_numbers(
@@ -43,9 +43,8 @@ def fit_numbers(
     problem = FitProblem(given, len(starts))
     rounds = [(1, steps) for steps in (_BOUND_STEPS if problem.has_bounds else _STEPS)]
     rounds += [(power, _POWER_STEPS) for power in (POWERS if minimax else ())]
-    problem.tell, problem.whole = progress, sum(steps for _, steps in rounds)
+    problem.work.tell, problem.work.whole = progress, sum(steps for _, steps in rounds)
     fit = problem.begun(starts)
-    problem.check_moved(fit)
     for k, (power, steps) in enumerate(rounds):
         problem.power = power
         # sums of other powers and shifts say nothing of this round
@@ -59,7 +58,8 @@ def fit_numbers(
         fit = problem.further(fit, keep, steps)
         if fit.interrupted:
             break
-    return problem.result(fit)
+        problem.check_moved()
+    return problem.result(fit, _ALL if fit.interrupted else None)
 
 
 def path_misses(

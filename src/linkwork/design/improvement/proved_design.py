@@ -21,7 +21,9 @@ from linkwork.motion.model import Model, model_of
 from linkwork.motion.sweeping import sweep
 from linkwork.results.branch_end import branch_end
 
-__all__ = ["fitted_design", "proved_design"]
+__all__ = ["fitted_design", "interrupted_design", "proved_design"]
+
+_INTERRUPTED = "interrupted: the best so far; "
 
 
 def fitted_design(
@@ -32,7 +34,7 @@ def fitted_design(
     k: int,
 ) -> ImprovedDesign:
     """The design of one lane of a fit."""
-    told = "interrupted: the best so far; " if found.interrupted else ""
+    told = _INTERRUPTED if found.interrupted else ""
     new = dict(zip(numbers, map(float, found.x[k]), strict=True))
     design = replace(
         proved_design(
@@ -46,6 +48,12 @@ def fitted_design(
         return design
     rms = float(np.sqrt(found.path[k] / len(path.places)))
     return _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
+
+
+def interrupted_design(design: ImprovedDesign) -> ImprovedDesign:
+    """A design that says that it is the best so far."""
+    told = design.message.removeprefix(_INTERRUPTED)
+    return replace(design, message=f"{_INTERRUPTED}{told}")
 
 
 def proved_design(

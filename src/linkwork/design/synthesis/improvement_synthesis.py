@@ -117,7 +117,12 @@ def improve_description(
 
     try:
         found = improved_designs(
-            model, goals, settings, progress, is_sound=lambda design: not judged(design).kinds
+            model,
+            goals,
+            settings,
+            progress,
+            is_sound=lambda design: not judged(design).kinds,
+            enough=task.rank.deliver,
         )
     except MechanismError as error:
         task.refuse((("improve", *problem.key), problem.message) for problem in error.problems)

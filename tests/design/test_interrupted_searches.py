@@ -1,0 +1,129 @@
+"""Ctrl-C while starts are prepared, improved and proved: the best designs so far are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.improvement import (
+    curve_starts,
+    fit_problem,
+    improving,
+    lane_work,
+    proved_design,
+)
+from tests.design.test_pareto_front import CRANK
+
+_GOALS = [{"of": "stroke(d)", "target": 70}]
+
+
+def _stops(work: Callable[..., Any], call: int) -> Callable[..., Any]:
+    """What raises an interruption instead of its call of this number."""
+    calls = 0
+
+    def stopping(*args: Any, **given: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls >= call:
+            raise KeyboardInterrupt
+        return work(*args, **given)
+
+    return stopping
+
+
+@pytest.fixture
+def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lane_work, "cores", lambda: 1)
+    monkeypatch.setattr(lane_work, "_MOST", 8)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_starts_that_are_reached_are_improved_when_the_next_ones_are_interrupted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    given: dict[str, Any] = {"vary": ["O2 A"], "starts": 30}
+    monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(fit_problem.FitProblem._reach, 2))
+    found = lw.loads(CRANK).improve(_GOALS, **given)
+    assert found[0].sound
+    assert found[0].total == pytest.approx(0.0, abs=1e-18)
+    assert found[0].message.startswith("interrupted: the best so far")
+    monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(lambda: None, 1))
+    with pytest.raises(KeyboardInterrupt):
+        lw.loads(CRANK).improve(_GOALS, **given)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_the_preparation_of_starts_is_counted_and_prepared_starts_are_designs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told: list[float] = []
+    monkeypatch.setattr(fit_problem, "minimise", _stops(lambda: None, 1))
+    found = lw.loads(CRANK).improve(_GOALS, vary=["O2 A"], starts=30, progress=told.append)
+    assert len(found) == 8
+    assert found[0].sound
+    assert found[0].message.startswith("interrupted: the best so far")
+    assert len(set(told)) == len(told) == fit_problem.APPROACH
+    assert told == sorted(told)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_a_front_is_begun_from_the_starts_that_are_reached(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(fit_problem.FitProblem._reach, 2))
+    goals = [*_GOALS, {"of": "max(d)", "target": 60}]
+    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=30, front=4)
+    assert front
+    assert all(design.message.startswith("interrupted: the best so far") for design in front)
+
+
+def test_results_do_not_depend_on_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = []
+    for count in (1, 3):
+        monkeypatch.setattr(lane_work, "cores", lambda count=count: count)
+        found = lw.loads(CRANK).improve(_GOALS, starts=30, seed=3)
+        numbers.append([list(design.numbers.values()) for design in found])
+    assert numbers[0] == numbers[1]
+
+
+def test_proofs_that_are_interrupted_keep_the_designs_that_are_proved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    every = lw.loads(CRANK).improve(_GOALS, starts=5)
+    assert len(every) > 2
+    monkeypatch.setattr(improving, "fitted_design", _stops(proved_design.fitted_design, 3))
+    some = lw.loads(CRANK).improve(_GOALS, starts=5)
+    assert len(some) == 2
+    assert all(design.message.startswith("interrupted: the best so far") for design in some)
+
+
+def test_an_interrupted_search_proves_as_many_sound_designs_as_are_delivered() -> None:
+    def stop(fraction: float) -> None:
+        if fraction > 0.3:
+            raise KeyboardInterrupt
+
+    task = lw.Task.improve("slider-crank", goals=_GOALS, starts=6, rank={"deliver": 2})
+    assert len(task.solve().designs) > 3
+    found = task.solve(progress=stop)
+    assert found.interrupted
+    assert len(found.designs) == len(found.delivered) == 2
+
+
+def test_draws_of_curves_that_are_interrupted_improve_the_best_so_far(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    turns = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
+    points = [(3.0 * np.cos(a), np.sin(a)) for a in turns]
+    task = lw.Task.path(points, mechanism="four-bar", improve={"starts": 2000})
+    compared = curve_starts._compared
+    monkeypatch.setattr(curve_starts, "_compared", _stops(compared, 7))
+    found = task.solve()
+    assert found.interrupted
+    assert found.starts == 2000
+    assert 0 < found.linkages <= 12
+    assert min(design.error for design in found.designs) < 0.05
+    monkeypatch.setattr(curve_starts, "_compared", _stops(compared, 1))
+    with pytest.raises(KeyboardInterrupt):
+        task.solve()
