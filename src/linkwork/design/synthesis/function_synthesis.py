@@ -233,7 +233,9 @@ def _fitted(
     x, side = (np.concatenate(part) for part in zip(*starts, strict=True))
     size = float(np.ptp(v)) if slides else 1.0
     if usual := has_usual_ratio(task):
-        wishes = replace(wishes, ratio=USUAL_RATIO)
+        # a slider-crank's lengths may grow without end, its output has a size of its own
+        longest = USUAL_RATIO * size if slides else math.inf
+        wishes = replace(wishes, ratio=USUAL_RATIO, longest=longest)
     fits = fit_functions(
         u,
         v,
@@ -262,7 +264,8 @@ def _fitted(
     if not fits.closes.all():
         message += "; the loop of the best one hardly closes: it may be no local minimum"
     if usual:
-        message += f"; lengths up to {USUAL_RATIO:g} times the shortest unless [wanted] bounds them"
+        of = "the shortest and the range of the output" if slides else "the shortest"
+        message += f"; lengths up to {USUAL_RATIO:g} times {of} unless [wanted] bounds them"
     return replace(found, message=message, starts=len(x))
 
 
