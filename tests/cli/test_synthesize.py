@@ -134,6 +134,13 @@ def test_a_curve_in_another_folder_is_copied_only_into_that_of_the_designs(
     assert (tmp_path / "out" / "data" / "foot.csv").exists() == (place == "inside")
     assert (tmp_path / "data" / "foot.csv").stat().st_mtime_ns == before
     lw.Task.load(tmp_path / "out" / "task.toml")
+    again = lw.Task.load(tmp_path / "task.toml").solve()
+    again.save(tmp_path / "out", fresh=True)
+    (tmp_path / "out" / "data").mkdir(exist_ok=True)
+    (tmp_path / "out" / "data" / "mine.csv").write_text("1,2\n")
+    with pytest.raises(lw.InputError, match="mine.csv" if place == "inside" else '"data"'):
+        again.save(tmp_path / "out", fresh=True)
+    assert (tmp_path / "out" / "data" / "mine.csv").exists()
 
 
 def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -120,9 +120,8 @@ def _write_tables(
     """The task with its curve, the table, the front and the page."""
     save_text(found.task.text, part / "task.toml")
     if found.task.curve is not None:
-        # the task names the file of its curve; one elsewhere is left where it is
-        copy = part / found.task.curve.file
-        if ".." not in copy.parts and copy.is_relative_to(part):
+        copy = _curve_in(part, found.task)
+        if copy is not None:
             copy.parent.mkdir(parents=True, exist_ok=True)
             save_text(found.task.curve.text, copy)
     if options.csv:
@@ -169,18 +168,21 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
         If the folder holds files, and these are not to be replaced or are none of a synthesis, or
         if it cannot be written.
     """
+    curve = _curve_in(root, task)
+    own_folders = {root, root / _REFUSED}
+    if curve is not None:
+        own_folders |= {place for place in curve.parents if place.is_relative_to(root)}
     try:
         there = [
             path
-            for place in (root, root / _REFUSED)
+            for place in sorted(own_folders)
             for path in (sorted(place.iterdir()) if place.exists() else ())
-            if not (path.name == _REFUSED and path.is_dir())
+            if not (path in own_folders and path.is_dir())
         ]
     except OSError as error:
         raise unwritten(root, error) from None
-    curve = "" if task.curve is None else task.curve.file
     for path in there:
-        own = _OWN.fullmatch(path.name) or path == root / curve
+        own = _OWN.fullmatch(path.name) or path == curve
         if not (options.fresh and path.is_file() and own):
             raise InputError(
                 f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
@@ -188,6 +190,15 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
             )
     check_place(root)
     return there
+
+
+def _curve_in(root: Path, task: Task) -> Path | None:
+    """The place in a folder that the task names for its curve; none if the curve is elsewhere."""
+    if task.curve is None:
+        return None
+    place = root / task.curve.file
+    inside = place.is_relative_to(root) and ".." not in place.relative_to(root).parts
+    return place if inside else None
 
 
 def _file_name(found: Synthesis, design: JudgedDesign) -> str:

@@ -600,7 +600,7 @@ def test_a_range_that_passes_a_dead_point_does_not_touch_one_besides() -> None:
 
 def test_a_slider_crank_that_would_grow_without_end_is_bounded_by_its_output() -> None:
     """Ever longer cranks and rods follow these pairs ever better, by ever less."""
-    pairs = [[0, 0], [30, 12], [40, 18.3], [50, 24.5], [60, 32], [70, 40]]
+    pairs = [(0, 0), (30, 12), (40, 18.3), (50, 24.5), (60, 32), (70, 40)]
     found = lw.Task.function(pairs, mechanism="slider-crank", fit="minimax").solve()
     assert max(design.size for design in found.designs) == pytest.approx(800.0, rel=1e-3)
     assert "20 times the shortest and the range of the output" in found.message
