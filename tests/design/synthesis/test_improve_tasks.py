@@ -346,3 +346,33 @@ def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
 def test_goals_that_are_missing_are_named_by_their_key() -> None:
     with pytest.raises(lw.MechanismError, match=r"improve.goals  are missing: say what is wanted"):
         lw.Task.improve("four-bar").solve()
+
+
+def test_scores_of_goals_do_not_depend_on_the_unit_of_length(tmp_path: Path) -> None:
+    scores = []
+    for size in (1.0, 1024.0):
+        text = f"""format = 1
+            points.A0 = [0, 0]
+            points.A = [{20 * size}, {34.6 * size}]
+            points.B = [{127 * size}, {-20 * size}]
+            points.S = [0, {-20 * size}]
+            points.T = [{160 * size}, {-20 * size}]
+            links.ground = ["A0", "S", "T"]
+            links.crank = ["A0", "A"]
+            links.rod = ["A", "B"]
+            links.block = ["B"]
+            lengths = {{ "A0 A" = {40 * size}, "A B" = {120 * size} }}
+            input = {{ link = "crank", from = 0, to = 360, step = 5 }}
+            [[sliders]]
+            name = "d"
+            link = "block"
+            points = ["B"]
+            on = "ground"
+            line = ["S", "T"]
+        """
+        (tmp_path / "crank.toml").write_text(text)
+        goals = [{"of": "stroke(d)", "target": 70 * size}, {"of": "max(d)", "target": 400 * size}]
+        task = lw.Task.improve(tmp_path / "crank.toml", goals=goals, vary=["A0 A"], starts=3)
+        scores.append([design.score for design in task.solve().designs])
+    assert scores[1] == pytest.approx(scores[0], rel=1e-6)
+    assert 0.1 < min(scores[0]) < 0.9

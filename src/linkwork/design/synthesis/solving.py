@@ -327,7 +327,7 @@ def _scores_of(task: Task, part: JudgedDesigns) -> Array:
 
 def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array:
     """Weighted means of transmission, smallness and exactness, (D,), each from 0 to 1."""
-    rank, (size, usual_miss) = task.rank, _task_sizes(task)
+    rank, (size, usual_miss) = task.rank, _task_sizes(task, sizes)
     with np.errstate(invalid="ignore"):
         parts = [
             (rank.transmission, transmission / _RIGHT),
@@ -338,9 +338,15 @@ def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array
     return np.asarray(sum(weight * np.nan_to_num(score) for weight, score in parts) / total)
 
 
-def _task_sizes(task: Task) -> tuple[float, float]:
-    """A length of the task's size, and what its misses are compared with, of their own unit."""
+def _task_sizes(task: Task, sizes: Array) -> tuple[float, float]:
+    """A length of the task's size, or the median size of designs (D,) for goals alone, and what
+    misses are compared with, of their own unit.
+    """
     goal = task.function
+    if task.improvement is not None and task.improvement.goals and not task.positions:
+        goals, known = task.improvement.goals, sizes[np.isfinite(sizes)]
+        wanted = [one.weight * abs(x) for one in goals for x in (*one.values, one.target or 0.0)]
+        return float(np.median(known)) if len(known) else 1.0, max(wanted) or 1.0
     if goal is not None and "slider-crank" not in task.mechanisms:
         return task.given.ground, 1.0
     points = np.array([complex(*position.point) for position in task.positions] or [0.0])
