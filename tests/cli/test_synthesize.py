@@ -103,7 +103,9 @@ def test_a_fresh_folder_has_no_empty_folder_of_refused_designs(tmp_path: Path) -
         ("e\u0301tau", "étau"),
         ("機構/設計", "機構-設計"),
         ("…", "design"),
-        ("x" * 300, "x" * 60),
+        ("x" * 300, "x" * 160),
+        ("\N{CJK UNIFIED IDEOGRAPH-20000}" * 80, "\N{CJK UNIFIED IDEOGRAPH-20000}" * 40),
+        ("प्रक्षेपण", "प्रक्षेपण"),
     ],
 )
 def test_files_keep_the_letters_of_the_task(name: str, stem: str, tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -156,9 +158,13 @@ def test_goals_of_a_front_that_no_number_changes_are_refused() -> None:
 
 def test_the_larger_of_two_is_no_number_of_the_motion() -> None:
     """The slider is never farther than 1000."""
-    goal = {"of": "max(d - 1000, min(d, 0))", "target": 0.0, "at": [0.0]}
+    goal: dict[str, Any] = {"of": "max(d - 1000, min(d, 0))", "target": 5.0, "at": [0.0]}
     with pytest.raises(lw.MechanismError, match="no number that varies"):
         lw.Task.improve("slider-crank", goals=[goal], starts=1).solve()
+    # a penalty that is met everywhere has no derivative either
+    goals = [{**goal, "target": 0.0}, {"of": "stroke(d)", "target": 70.0}]
+    (best,) = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=1).solve().designs
+    assert best.error < 1e-9
     goal = {"of": "max(d, 3)", "target": 160.0, "at": [0.0]}
     (best,) = lw.Task.improve("slider-crank", goals=[goal], vary=["O2 A"], starts=1).solve().designs
     assert lw.Mechanism(best.linkage).solve(at=0.0)["d"] == pytest.approx(160.0)
@@ -185,3 +191,19 @@ def test_numbers_on_which_a_goal_hardly_depends_do_not_hold_the_others_back() ->
     goal = {"of": "stroke(d)", "target": 70.0}
     found = lw.example("slider-crank").improve(goal, starts=6)
     assert [design.total for design in found] == pytest.approx([0.0] * 6, abs=1e-12)
+
+
+@pytest.mark.parametrize("further", [{}, {"front": 4}])
+def test_a_goal_that_numbers_do_not_change_at_the_start_alone_is_none_without_effect(
+    further: dict[str, Any],
+) -> None:
+    """The stroke of a centric crank has no derivative by the offset."""
+    text = lw.example_text("slider-crank").replace("S  = [0, -20]\n", "").replace("-20]", "0]")
+    text = text.replace('"O2", "S", "T"', '"O2", "T"').replace('["S", "T"]', '["O2", "T"]')
+    goals = [{"of": "stroke(d)", "target": 84.0}, {"of": "max(d)", "target": 150.0}]
+    assert lw.loads(text).improve(goals, vary=["B A", "d.offset"], starts=1, **further)
+
+
+def test_rows_whole_turns_apart_differ_in_geared_mechanisms() -> None:
+    goal = {"of": "max(B.x)", "target": 100.0}
+    assert lw.example("belt-drive").improve(goal, vary=["A B", "O4 B"], starts=2)

@@ -14,8 +14,10 @@ from linkwork.design.improvement import (
     fit_problem,
     improving,
     lane_work,
+    mechanism_fit,
     proved_design,
 )
+from linkwork.design.synthesis import solving
 from tests.design.test_pareto_front import CRANK
 
 _GOALS = [{"of": "stroke(d)", "target": 70}]
@@ -127,3 +129,40 @@ def test_draws_of_curves_that_are_interrupted_improve_the_best_so_far(
     monkeypatch.setattr(curve_starts, "_compared", _stops(compared, 1))
     with pytest.raises(KeyboardInterrupt):
         task.solve()
+
+
+def test_the_first_search_is_kept_when_the_second_is_interrupted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The crank that swings its rocker so far comes to a dead point, and is led again."""
+    goal = {"of": "stroke(rocker)", "target": 150}
+    bar = lw.example("four-bar")
+    monkeypatch.setattr(improving, "fit_numbers", _stops(mechanism_fit.fit_numbers, 2))
+    found = bar.improve(goal, starts=4, spread=0.3)
+    assert len(found) == 4
+    assert all(design.message.startswith("interrupted") for design in found)
+
+
+def test_proofs_end_when_more_designs_are_sound_than_are_delivered() -> None:
+    """They begin at 0.54 of all work, and are ten."""
+
+    def stop(fraction: float) -> None:
+        if fraction > 0.56:
+            raise KeyboardInterrupt
+
+    task = lw.Task.improve("slider-crank", goals=_GOALS, starts=10, rank={"deliver": 2})
+    assert 2 < len(task.solve(progress=stop).designs) < 6
+
+
+def test_a_ranking_that_is_interrupted_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    rank, calls = solving._ranked_alone, iter([True])
+
+    def ranked(*given: Any, **further: Any) -> Any:
+        if next(calls, False):
+            raise KeyboardInterrupt
+        return rank(*given, **further)
+
+    monkeypatch.setattr(solving, "_ranked_alone", ranked)
+    found = lw.Task.improve("slider-crank", goals=_GOALS, vary=["O2 A"], starts=2).solve()
+    assert found.interrupted
+    assert found.delivered

@@ -30,7 +30,7 @@ from linkwork.viewer.designs_page import designs_page
 __all__ = ["FolderOptions", "write_designs"]
 
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
-_LONGEST_STEM = 60  # characters of a name
+_LONGEST_STEM = 160  # bytes of a name: file systems take 255, temporary files add some
 _REFUSED = "refused"
 _PICTURES = 24  # designs that a page shows
 _OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
@@ -203,8 +203,11 @@ def _curve_in(root: Path, task: Task) -> Path | None:
 
 def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     """``pick-and-place-01.toml``; refused ones are in their own folder."""
-    # composed letters have one spelling in all file systems, and four bytes at most
+    # composed letters have one spelling in all file systems
     name = unicodedata.normalize("NFKC", found.task.name.lower())
-    stem = re.sub(r"[\W_]+", "-", name)[:_LONGEST_STEM].strip("-") or "design"
+    # vowel signs and accents belong to their letters
+    kept = (c if c.isalnum() or unicodedata.category(c)[0] == "M" else "-" for c in name)
+    stem = re.sub("-+", "-", "".join(kept)).encode()[:_LONGEST_STEM].decode(errors="ignore")
+    stem = stem.strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"
     return f"{_REFUSED}/{name}" if design.kinds else name

@@ -339,3 +339,12 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
         for design in found.of_loops[:2]
     )
     assert np.abs(one[:, None] - other).min(axis=1).max() < 5.0
+
+
+@pytest.mark.parametrize("inputs", [(300, 330, 360, 390, 420), (300, 330, 0, 30, 60)])
+def test_inputs_across_a_whole_turn_are_those_of_a_part_of_a_curve(inputs: tuple[int, ...]) -> None:
+    points = [(0, 0), (1, 1), (3, 0), (4, 4), (1, 2)]
+    task = lw.Task.path(points, inputs=inputs).described
+    assert not curve_goal_of(task, wishes_of(task, Drive.A0)).closed
+    around = lw.Task.path(points, inputs=(288, 0, 72, 144, 216)).described
+    assert curve_goal_of(around, wishes_of(around, Drive.A0)).closed

@@ -584,6 +584,8 @@ def test_a_wanted_range_holds_the_whole_range_of_a_function_that_begins_anywhere
 def test_an_angle_of_the_formula_in_degrees_is_remarked_on() -> None:
     ends = {"input": (97, 187), "output": (60, 150), "mechanism": "four-bar"}
     told = "; x is in radians in sin(x), and 90 are 14.3 turns"
+    hundredth = lw.Task.function("sin(x*0.01)", x=(0, 90), **ends).solve()
+    assert "radians" not in hundredth.message
     assert lw.Task.function("sin(x)", x=(0, 90), **ends).solve().message.endswith(told)
     for of, x in (("sin(x)", (0, 1.5)), ("x^2", (0, 90))):
         assert "radians" not in lw.Task.function(of, x=x, **ends).solve().message
@@ -603,7 +605,14 @@ def test_a_slider_crank_that_would_grow_without_end_is_bounded_by_its_output() -
     pairs = [(0, 0), (30, 12), (40, 18.3), (50, 24.5), (60, 32), (70, 40)]
     found = lw.Task.function(pairs, mechanism="slider-crank", fit="minimax").solve()
     assert max(design.size for design in found.designs) == pytest.approx(800.0, rel=1e-3)
-    assert "20 times the shortest and the range of the output" in found.message
+    assert "20 times the shortest and the size of the output" in found.message
     bounds = {"lengths": {"most": 1200}}
     wide = lw.Task.function(pairs, mechanism="slider-crank", fit="minimax", wanted=bounds).solve()
     assert max(design.size for design in wide.designs) == pytest.approx(1200.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("fit", ["least squares", "minimax"])
+def test_a_slider_that_begins_far_from_the_crank_is_reached(fit: str) -> None:
+    task = {"x": (0, 1), "input": (20, 110), "output": (300, 310), "mechanism": "slider-crank"}
+    (best,) = lw.Task.function("x^2", fit=fit, **task).solve().delivered
+    assert best.error < 5.3

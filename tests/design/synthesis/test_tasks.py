@@ -195,12 +195,12 @@ def test_a_task_of_points_and_poses_is_that_of_its_file() -> None:
 
 
 @pytest.mark.parametrize("size", [1e-13, 1e-200])
-@pytest.mark.parametrize("key", ["positions", "given", "clear_of", "fixed_pivots"])
+@pytest.mark.parametrize("key", ["positions", "lengths", "clear_of", "fixed_pivots"])
 def test_sizes_beyond_floating_point_are_refused(key: str, size: float) -> None:
     points = [(0.0, 0.0), (1.0, 1.0), (3.0, 0.0)]
     every: dict[str, dict[str, Any]] = {
         "positions": {},
-        "given": {"given": {"lengths": {"A B": size}}},
+        "lengths": {"given": {"lengths": {"A B": size}}},
         "clear_of": {"wanted": {"clear_of": [[0, 0, size]]}},
         "fixed_pivots": {"wanted": {"fixed_pivots": {"inside": [[0, 0], [size, 0], [0, size]]}}},
     }
@@ -324,6 +324,11 @@ def test_wishes_that_some_design_has_are_not_refused() -> None:
         lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": bow}})
     around = [[0, 0], [0, -50], [50, -50], [20, -20], [50, 0]]
     lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": around}})
+    # the fourth corner is on the first side
+    touching = [[-7, 2.6], [1, 10.6], [-15, 26.6], [-4.6, 5.0], [-23, 18.6]]
+    lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": touching}})
+    # rounding of a pivot at the origin is no size
+    lw.Task.motion(poses, given={"fixed_pivots": [[6e-17, 0]]})
     with pytest.raises(lw.MechanismError, match="encloses no area"):
         lw.Task.motion(poses, wanted={"fixed_pivots": {"inside": [[0, 0], [1, 1], [3, 3]]}})
 

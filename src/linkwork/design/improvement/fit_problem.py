@@ -17,7 +17,6 @@ from linkwork.design.improvement.trade_off import Objectives, TradeOff
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
-from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.foundation.sharing import cores, share_out
 from linkwork.mechanism.varied_number import VariedNumber
@@ -76,7 +75,9 @@ def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
     table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
     away = at[:, None] - table
     if model.equations.inputs[0].kind == Kind.ANGLE.value:
-        away = np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN
+        # of rows whole turns apart the nearest: geared links differ there
+        away = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
+        away += EQUAL_ROWS * np.abs(at[:, None] - table)
     return np.where(motion.found, np.abs(away), np.inf)
 
 
@@ -118,10 +119,12 @@ class FitProblem:
         Of the misses, for the largest one, see :mod:`~linkwork.design.improvement.largest_miss`.
     trade : TradeOff, optional
         Weights and limits of objectives; ``None``: the sum of all.
+    moved, missed : (K,)
+        How much numbers change each goal, and how far it is missed, as far as is known; else NaN.
     """
 
     def __init__(self, given: Fitting, lanes: int) -> None:
-        model, motion, path = given.model, given.motion, given.path
+        self.given, model, motion, path = given, given.model, given.motion, given.path
         self.model, self.motion = model, motion
         self.box, self.path, self.lanes = given.box, path, lanes
         self.x = np.array([float(q.of(model.description)) for q in given.numbers])
@@ -149,8 +152,7 @@ class FitProblem:
         )
         self.work = LaneWork(sum(len(solved.rows_at) for solved in self._solvers))
         self._reached = np.zeros(lanes, dtype=bool)
-        # how much numbers change each goal, where it is not known to be at all
-        self._moved = np.full(len(self.goals), np.nan)
+        self.moved, self.missed = np.full((2, len(self.goals)), np.nan)
 
     @property
     def has_bounds(self) -> bool:
@@ -234,22 +236,6 @@ class FitProblem:
         total = self._lead(begin, fit.x, fit.t, lanes, count)
         self._reached[lanes] = True
         return total
-
-    def check_moved(self) -> None:
-        """Refuse goals with wanted values that no number has changed at any design so far.
-
-        Raises
-        ------
-        MechanismError
-        """
-        found = []
-        for k, misses in enumerate(self.goals):
-            if not misses.is_bound and self._moved[k] == 0.0:
-                told = f'"{misses.goal.of}" changes with no number that varies, at any start: '
-                told += "vary numbers that it depends on, or leave this goal out"
-                found.append(Problem(key=("goals", k, "of"), message=told))
-        if found:
-            raise MechanismError(found, "the improvement")
 
     def move(self, fit: LaneFit, lanes: IndexArray, x: Array) -> None:
         """Lanes that were at a design of another lane, led to other numbers (D, P)."""
@@ -336,8 +322,9 @@ class FitProblem:
         for k, misses in enumerate(self.goals):
             own, slopes, new = misses.of(positions[misses.at.tobytes()], self.shifts[k][:, lanes])
             self.new_shifts[k][:, lanes] = new
-            if not self._moved[k] > 0.0 and (there := np.isfinite(own)).any():
-                self._moved[k] = float(np.abs(slopes[there]).max())
+            if not self.moved[k] > 0.0 and (there := np.isfinite(own)).any():
+                self.moved[k] = float(np.abs(slopes[there]).max())
+                self.missed[k] = float(np.abs(own[there]).max())
             shared.append(own)
             shared_by_x.append(slopes)
         result = Residuals(

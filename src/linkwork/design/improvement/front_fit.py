@@ -19,6 +19,7 @@ from itertools import combinations, product
 import numpy as np
 
 from linkwork.design.improvement.fit_problem import APPROACH, FitProblem, FittedNumbers, Fitting
+from linkwork.design.improvement.moved_goals import check_moved
 from linkwork.design.improvement.pareto_front import objective_spans, undominated
 from linkwork.design.improvement.trade_off import TradeOff
 from linkwork.foundation.arrays import Array, IndexArray
@@ -76,7 +77,7 @@ class _Front:
         self.alone = np.arange(alone)
         fit = self.problem.reached(self.problem.begun(np.tile(starts, (self.size, 1))), self.alone)
         if not fit.interrupted:
-            self.problem.check_moved()
+            check_moved(self.problem)
         # lanes that are not used yet
         self.fit = fit.take(np.minimum(np.arange(lanes), alone - 1))
         self.trade = self._trade(lanes)

@@ -106,7 +106,12 @@ def improved_designs(
     if locked and kept_off and not search.interrupted:
         search.begin, search.share = _FIRST, 1.0 - _FIRST
         known = [own for own in designs if own[1].sound or own[0] not in locked]
-        led = search.proved(search.fits([*others, *kept_off], starts[locked]), locked, known)
+        led = known
+        try:
+            fits = search.fits([*others, *kept_off], starts[locked])
+            led = search.proved(fits, locked, known)
+        except KeyboardInterrupt:
+            search.interrupted = True
         # starts that cannot be kept off, or are not led again, keep their designs
         again = {k for k, _ in led}
         designs = led + [own for own in designs if own not in known and own[0] not in again]
@@ -192,7 +197,7 @@ class _Search:
         """Known designs and different ones of fits from starts with these numbers, the best first,
         each with the number of its start.
         """
-        designs, sound = [*known], 0
+        designs, sound = [*known], sum(self.is_sound(own) for _, own in known)
         minimax = self.settings.fit == "minimax"
         best = sorted(
             (float((found.largest if minimax else found.total)[k]), part, int(k))
@@ -202,7 +207,7 @@ class _Search:
         try:
             for done, (_, part, k) in enumerate(best):
                 self._tell_proofs(done / len(best))
-                if self.interrupted and sound == self.enough:
+                if self.interrupted and self.enough is not None and sound >= self.enough:
                     break
                 path, found = fits[part]
                 if not _is_known(found.x[k], [own for _, own in designs]):

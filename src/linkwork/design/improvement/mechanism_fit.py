@@ -9,6 +9,7 @@ import numpy as np
 from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, Fitting, inputs_away
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.largest_miss import POWERS
+from linkwork.design.improvement.moved_goals import check_moved
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
@@ -58,7 +59,7 @@ def fit_numbers(
         fit = problem.further(fit, keep, steps)
         if fit.interrupted:
             break
-        problem.check_moved()
+        check_moved(problem)
     return problem.result(fit, _ALL if fit.interrupted else None)
 
 

@@ -12,7 +12,7 @@ from linkwork.design.improvement.settings import Problems
 from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, CountArray
-from linkwork.foundation.rounding import EQUAL_ROWS
+from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 
 __all__ = ["length_contradictions", "outside_range", "place_contradictions", "unreached_places"]
 
@@ -132,7 +132,11 @@ def _away(place: Point, corners: Sequence[Point]) -> float:
 def _crossings(corners: Sequence[Point]) -> CountArray:
     """The sides of a polygon that cross another one: the first corners of both, (C, 2)."""
     z = np.array([complex(*corner) for corner in corners])
-    left = np.sign(((np.roll(z, -1) - z).conj()[:, None] * (z - z[:, None])).imag)
+    side = np.roll(z, -1) - z
+    area = (side.conj()[:, None] * (z - z[:, None])).imag
+    # a corner on a side to rounding does not cross it
+    rounding = 8.0 * EPSILON * np.abs(side)[:, None] * np.abs(z).max(initial=0.0)
+    left = np.where(np.abs(area) > rounding, np.sign(area), 0.0)
     parted = left * np.roll(left, -1, axis=1) < 0  # the ends of each side by each other one
     return np.argwhere(parted & parted.T)
 

@@ -144,7 +144,9 @@ def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) ->
     inputs = [position.input for position in task.positions if position.input is not None]
     if inputs:
         _, span = arc_in_order(np.array(inputs), task.angle.turn)
-        if span + _CLOSES * float(np.abs(np.diff(inputs)).max()) < task.angle.turn:
+        half = task.angle.turn / 2.0
+        gaps = np.abs((np.diff(inputs) + half) % task.angle.turn - half)
+        if span + _CLOSES * float(gaps.max()) < task.angle.turn:
             return False
     steps = np.abs(np.diff(points))
     return bool(abs(points[-1] - points[0]) <= _CLOSES * steps.max())

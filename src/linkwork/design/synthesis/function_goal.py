@@ -102,7 +102,7 @@ class FunctionGoal:
     def note(self) -> str:
         """What a summary adds: that trigonometric functions of more than a turn are of radians."""
         x = max(map(abs, self.x or (0.0,)))
-        if not self.of or x <= FULL_TURN or not re.search(r"\b(sin|cos|tan)\s*\(", self.of):
+        if x <= FULL_TURN or not re.search(r"\b(sin|cos|tan)\s*\(\s*x\s*\)", self.of):
             return ""
         return f"; x is in radians in {self.of}, and {x:g} are {x / FULL_TURN:.3g} turns"
 

@@ -234,7 +234,8 @@ def _fitted(
     size = float(np.ptp(v)) if slides else 1.0
     if usual := has_usual_ratio(task):
         # a slider-crank's lengths may grow without end, its output has a size of its own
-        longest = USUAL_RATIO * size if slides else math.inf
+        far = max(size, float(np.abs(v).max())) if goal.starts_fixed else size
+        longest = USUAL_RATIO * far if slides else math.inf
         wishes = replace(wishes, ratio=USUAL_RATIO, longest=longest)
     fits = fit_functions(
         u,
@@ -264,7 +265,7 @@ def _fitted(
     if not fits.closes.all():
         message += "; the loop of the best one hardly closes: it may be no local minimum"
     if usual:
-        of = "the shortest and the range of the output" if slides else "the shortest"
+        of = "the shortest and the size of the output" if slides else "the shortest"
         message += f"; lengths up to {USUAL_RATIO:g} times {of} unless [wanted] bounds them"
     return replace(found, message=message, starts=len(x))
 

@@ -201,6 +201,7 @@ def _family(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> 
     if pivots_given == 2 and count == 3:
         return _Family(dyads=DyadSet.joined(given), message="the one four-bar with these pivots")
     parallel = count > 2 and bool(np.abs(turns - turns[0]).max() < _PARALLEL)
+    parallel &= "four-bar" in task.mechanisms
     return _Family(
         dyads=DyadSet.joined([*given, *free]) if pivots_given < 2 else DyadSet.joined(given),
         leading=sum(map(len, given)) if pivots_given == 1 else 0,

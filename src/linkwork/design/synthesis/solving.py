@@ -161,7 +161,11 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     """Improved designs, sound ones by falling score."""
     designs, starts, interrupted = improve_mechanism(task, wishes_of(task, Drive.A0), progress)
     front = (task.improvement or Improvement()).front
-    ranked = _ranked_alone(task, designs, in_order=bool(front))
+    try:
+        ranked = _ranked_alone(task, designs, in_order=bool(front))
+    except KeyboardInterrupt:
+        # what is judged is kept; a further interruption ends the rest
+        interrupted, ranked = True, _ranked_alone(task, designs, in_order=bool(front))
     seed = (task.improvement or Improvement()).seed
     kind = (
         "a front of designs, each the best one in some goal or trade-off,"

@@ -47,6 +47,7 @@ _MOST_TIMED = 3  # poses at which the crank's angle may be given
 _MOST_CONDITIONS = 8  # that a four-bar's coupler point meets exactly
 _MOST_EXACT = 5  # poses: more leave no four-bar in general
 _SMALLEST = 1e-12  # of the largest coordinate [length]
+_ROUNDED_TURN = 1e-5  # relative: 6.2832 rad is a turn
 _SIDES = 4  # of the lengths that may be given: a four-bar's
 _FITTED = 3  # of the lengths that may be given: dimensions of mechanisms that are fitted
 
@@ -179,21 +180,18 @@ class Task:
 
     def _small_places(self) -> Problems:
         """Coordinates and lengths whose powers are below those of floating point."""
-        wanted, given = self.wanted, self.given
-        sides = tuple(given.lengths.values())
-        for key, places in (
-            (
-                ("positions",) if self.curve is None else ("curve", "file"),
-                [p.point for p in self.positions],
-            ),
-            (("given",), [*given.fixed_pivots, *given.moving_pivots, sides]),
-            (("wanted", "fixed_pivots"), wanted.region),
-            (("wanted", "clear_of"), wanted.obstacles),
+        given, key = self.given, ("positions",) if self.curve is None else ("curve", "file")
+        pivots = [*given.fixed_pivots, *given.moving_pivots]
+        for own, places in (
+            (key, [*(position.point for position in self.positions), *pivots]),
+            (("given", "lengths"), [tuple(given.lengths.values())]),
+            (("wanted", "fixed_pivots"), self.wanted.region),
+            (("wanted", "clear_of"), self.wanted.obstacles),
         ):
             largest = max((abs(x) for place in places for x in place), default=0.0)
             if 0.0 < largest < _SMALLEST:
                 told = f"has no number beyond ±{largest:.3g} {self.length}"
-                yield key, f"{told}: choose a unit in which it reaches {_SMALLEST:g}"
+                yield own, f"{told}: choose a unit in which it reaches {_SMALLEST:g}"
 
     def _mixed_problems(self) -> Problems:
         """Poses alone, and more conditions than a four-bar meets."""
@@ -290,7 +288,7 @@ class Task:
             self.mechanisms == ("four-bar",) if self.kind == "motion" else self.kind != "improve"
         )
         asked = abs(wanted.range[1] - wanted.range[0]) if wanted.range and cranks else 0.0
-        if asked > self.angle.turn * (1.0 + EQUAL_ROWS):
+        if asked > self.angle.turn * (1.0 + _ROUNDED_TURN):
             told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
             yield ("wanted", "input"), f'{told}: write input = "turns fully"'
         timed = [p.input for p in self.positions if p.input is not None]
