@@ -361,3 +361,16 @@ def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wi
     )
     found = lw.Task.load(task).solve()
     assert "the least transmission angle: without it 6 would be sound" in repr(found)
+
+
+def test_a_curve_is_not_replaced_by_the_table_of_designs(tmp_path: Path) -> None:
+    (tmp_path / "designs.csv").write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
+    (tmp_path / "task.toml").write_text(
+        'format = 1\ntask = "path"\nimprove = { starts = 2 }\ncurve = { file = "designs.csv" }\n'
+    )
+    found = lw.Task.load(tmp_path / "task.toml").solve()
+    with pytest.raises(lw.InputError, match="has the name of the table of designs"):
+        write_designs(found, tmp_path / "out", FolderOptions(csv=True))
+    assert not (tmp_path / "out").exists()
+    write_designs(found, tmp_path / "out", FolderOptions())
+    lw.Task.load(tmp_path / "out" / "task.toml")

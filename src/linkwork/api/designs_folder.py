@@ -32,6 +32,7 @@ __all__ = ["FolderOptions", "write_designs"]
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _LONGEST_STEM = 160  # bytes of a name: file systems take 255, temporary files add some
 _REFUSED = "refused"
+_TABLE = "designs.csv"
 _PICTURES = 24  # designs that a page shows
 _OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
 
@@ -125,7 +126,7 @@ def _write_tables(
             copy.parent.mkdir(parents=True, exist_ok=True)
             save_text(found.task.curve.text, copy)
     if options.csv:
-        save_text(csv_text(designs_table(found, files)), part / "designs.csv")
+        save_text(csv_text(designs_table(found, files)), part / _TABLE)
     front = _front_picture(found) if options.draw or options.html else b""
     if options.draw and front:
         save_bytes(front, part / "front.svg")
@@ -169,6 +170,11 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
         if it cannot be written.
     """
     curve = _curve_in(root, task)
+    if options.csv and curve == root / _TABLE:
+        raise InputError(
+            f'the task\'s curve "{_TABLE}" has the name of the table of designs: name its file '
+            "otherwise, or leave the table out"
+        )
     own_folders = {root, root / _REFUSED}
     if curve is not None:
         own_folders |= {place for place in curve.parents if place.is_relative_to(root)}
