@@ -181,6 +181,8 @@ def test_what_cannot_be_a_goal_says_why() -> None:
         ("2 * 3", "has no quantity"),
         ("B.x.jerk", "two derivatives"),
         ("rokcer", "rocker"),
+        ("max(rocker - 20)", '^"max" of one formula'),
+        ("1 + min(-rocker)", '^"min" of one formula'),
     ):
         with pytest.raises(InputError, match=message):
             bar.improve({"of": of, "target": 1.0}, starts=1)

@@ -32,7 +32,7 @@ th,td{padding:.2rem .8rem .2rem 0;text-align:left;white-space:nowrap;vertical-al
 td:last-child{white-space:normal;min-width:16rem}
 th button{font:inherit;font-weight:600;border:0;background:none;color:inherit;padding:0;
 cursor:pointer}tr.refused{color:color-mix(in srgb,CanvasText 60%,Canvas)}
-dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;margin:0}dd{margin:0}
+dl{display:grid;grid-template-columns:fit-content(36%) 1fr;gap:.1rem 1rem;margin:0}dd{margin:0}
 """.replace("\n", "")
 _SORT = """
 document.querySelectorAll("th button").forEach((button,column)=>{let up=false;

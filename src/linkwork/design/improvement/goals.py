@@ -36,7 +36,9 @@ __all__ = ["Misses", "PathGoal", "goal_of"]
 _WORDS = "|".join(quantity.word for quantity in MOTION_QUANTITIES)
 _CALL = re.compile(rf"\b(?:{_WORDS})\s*\([^()]*\)")
 _OF_ROWS = re.compile(r"(?:max|min)\s*\([^,]*,")  # the larger or smaller of several in each row
-_OF_FORMULA = re.compile(r"\b(max|min)\s*\((?:[^(),]|\([^()]*\))*\([^()]*\)[^(),]*\)")
+_OF_FORMULA = re.compile(
+    r"\b(max|min)\s*\((?:(?:[^(),]|\([^()]*\))*\([^()]*\)[^(),]*|[^(),]*[-+*/^][^(),]*)\)"
+)
 _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
