@@ -335,8 +335,8 @@ def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
     assert [kind.name for kind in found.defects] == ["RANGE"]
     assert found.costliest is None
     assert advice_of(found) == (
-        "The driven range is that of four-bar: [wanted] input = { from = …, to = … } drives "
-        "designs through less of it."
+        "The driven range is the table of four-bar: [wanted] input = { from = …, to = … } "
+        "narrows it."
     )
     task["wanted"] = {"input": "turns fully"}
     wished = lw.Task.improve("four-bar", starts=3, **task).solve()

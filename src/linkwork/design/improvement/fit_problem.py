@@ -73,12 +73,12 @@ def inputs_away(at: Array, motion: Motion, model: Model) -> Array:
     """The distances of inputs (N,) from those of rows (R,), infinite from lost ones, (N, R)."""
     lead = next(iter(motion.inputs))
     table = np.asarray(motion.inputs[lead]) * float(model.input_scale[0])
-    away = at[:, None] - table
+    away = np.abs(at[:, None] - table)
     if model.equations.inputs[0].kind == Kind.ANGLE.value:
+        turned = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
         # of rows whole turns apart the nearest: geared links differ there
-        away = np.abs(np.mod(away + 0.5 * FULL_TURN, FULL_TURN) - 0.5 * FULL_TURN)
-        away += EQUAL_ROWS * np.abs(at[:, None] - table)
-    return np.where(motion.found, np.abs(away), np.inf)
+        away = turned + EQUAL_ROWS * away
+    return np.where(motion.found, away, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

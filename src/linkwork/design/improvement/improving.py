@@ -39,8 +39,6 @@ from linkwork.numerics.lane_bounds import Box
 from linkwork.results.motion import Motion
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 
-_Fit = tuple[PathGoal | None, FittedNumbers]
-
 __all__ = [
     "FACTOR",
     "STARTS",
@@ -61,6 +59,8 @@ _OFF = math.radians(0.25)  # dead points: starts that lead to one are led again,
 # all steps would fail that move it by its effect alone
 _LEAST_EFFECT = 0.3
 _EQUAL_NUMBERS = 1e-6  # relative difference of numbers of equal designs
+
+_Fit = tuple[PathGoal | None, FittedNumbers]
 
 
 def improved_designs(

@@ -92,8 +92,8 @@ def advice_of(found: Synthesis) -> str:
         if not found.designs:
             return _of_goals(found)
         told = (
-            f"The driven range is that of {found.task.mechanisms[0]}: [wanted] input = "
-            "{ from = …, to = … } drives designs through less of it."
+            f"The driven range is the table of {found.task.mechanisms[0]}: [wanted] input = "
+            "{ from = …, to = … } narrows it."
         )
         return told if DefectKind.RANGE in found.defects else ""
     if found.designs and not found.defects.keys() & {*_MOVING}:

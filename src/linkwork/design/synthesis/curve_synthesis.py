@@ -81,7 +81,7 @@ def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | 
         proved=count,
         completeness=Completeness.SAMPLED,
         message=_message(goal, fitted, settings.seed)
-        + "".join(f"; no {name}s: {why}" for name, why in task.left_out.items() if name in asked)
+        + "".join(f"; no {name}: {why}" for name, why in task.left_out.items() if name in asked)
         + f"; lengths up to {usual:.4g} {task.length} unless [wanted] bounds them"
         * math.isfinite(usual)
         + ("" if task.curve is None else task.curve.note),

@@ -334,9 +334,9 @@ class Task:
     def left_out(self) -> dict[str, str]:
         """Kinds of mechanisms that a fit of points leaves out, and what given they lack."""
         if self.kind == "path" and len(self.given.fixed_pivots) > 1:
-            return {"slider-crank": "two fixed pivots are given, of which it has one"}
+            return {"slider-crank": "two fixed pivots are given, and it has one"}
         if self.kind == "path" and "B0 B" in self.given.lengths:
-            return {"slider-crank": 'the length "B0 B" is given, which it does not have'}
+            return {"slider-crank": 'the length "B0 B" is given, and it has none'}
         return {}
 
     @property

@@ -80,7 +80,7 @@ def travel_of(
         decided &= order_decided
     else:
         in_order = np.ones_like(in_order)
-    first, last, unreached, range_decided = _driven_range(loops, place, free, wanted, beyond)
+    first, last, unreached = _driven_range(loops, place, free, wanted, beyond)
     return Travel(
         place=place,
         first=first,
@@ -89,7 +89,7 @@ def travel_of(
         branch=branch,
         out_of_order=~in_order,
         unreached=unreached,
-        decided=decided & range_decided & np.isfinite(loops.input_error),
+        decided=decided & np.isfinite(loops.input_error),
     )
 
 
@@ -146,21 +146,20 @@ def _driven_range(
     free: BoolArray,
     wanted: Range | None,
     beyond: float,
-) -> tuple[Array, Array, IndexArray, BoolArray]:
-    """The ends of the driven range, the position that is not reached, and whether it is certain."""
+) -> tuple[Array, Array, IndexArray]:
+    """The ends of the driven range, and the position that is not reached."""
     count = place.shape[1]
-    sure = np.ones(len(place), dtype=bool)
     low, high = place.min(axis=1), place.max(axis=1)
     forward = place[:, -1] >= place[:, 0]
     needed = np.stack([low - beyond, high + beyond], axis=1)
     if wanted is None:
         leaves = ~free & (beyond > 0.0) & _leaves(loops, needed[:, 0], needed[:, 1])
         first, last = np.where(forward, needed.T, needed.T[::-1])
-        return first, last, np.where(leaves, count, NOWHERE), sure
+        return first, last, np.where(leaves, count, NOWHERE)
     if wanted.turn:
         first = place[:, 0]
         last = first + np.where(forward, FULL_TURN, -FULL_TURN)
-        return first, last, np.where(free & loops.turns, NOWHERE, count), sure
+        return first, last, np.where(free & loops.turns, NOWHERE, count)
     first = wanted.start - loops.origin
     last = first + (wanted.stop - wanted.start)
     if loops.turns:
@@ -175,7 +174,7 @@ def _driven_range(
     unreached = np.where(outside.any(axis=1), outside.argmax(axis=1), NOWHERE)
     unreached = np.where((unreached == NOWHERE) & short, count + 1, unreached)
     unreached = np.where(leaves, count, unreached)
-    return first, last, unreached, sure
+    return first, last, unreached
 
 
 def _leaves(loops: DrivenLoops, begin: Array, end: Array) -> BoolArray:
