@@ -12,6 +12,8 @@ import linkwork as lw
 from linkwork.design.improvement import (
     curve_starts,
     fit_problem,
+    front_designs,
+    front_fit,
     improving,
     lane_work,
     mechanism_fit,
@@ -77,6 +79,71 @@ def test_a_front_is_begun_from_the_starts_that_are_reached(monkeypatch: pytest.M
     monkeypatch.setattr(fit_problem.FitProblem, "_reach", _stops(fit_problem.FitProblem._reach, 2))
     goals = [*_GOALS, {"of": "max(d)", "target": 60}]
     front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=30, front=4)
+    assert front
+    assert all(design.message.startswith("interrupted: the best so far") for design in front)
+
+
+@pytest.mark.parametrize("proofs", [1, 3])
+def test_an_interruption_of_the_proofs_of_a_front_keeps_the_designs_that_are_proved(
+    monkeypatch: pytest.MonkeyPatch, proofs: int
+) -> None:
+    goals = [*_GOALS, {"of": "max(d)", "target": 60}]
+    given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 5}
+    every = lw.loads(CRANK).improve(goals, **given)
+    assert len(every) == 5
+    stops = _stops(proved_design.fitted_design, proofs + 1)
+    monkeypatch.setattr(front_designs, "fitted_design", stops)
+    some = lw.loads(CRANK).improve(goals, **given)
+    assert [design.numbers for design in some] == [design.numbers for design in every[:proofs]]
+    assert all(design.sound for design in some)
+    assert all(design.message.startswith("interrupted: the best so far") for design in some)
+    monkeypatch.setattr(front_designs, "fitted_design", _stops(lambda: None, 1))
+    with pytest.raises(KeyboardInterrupt):
+        lw.loads(CRANK).improve(goals, **given)
+
+
+def test_refused_designs_of_a_front_are_kept_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    goals = [*_GOALS, {"of": "max(d)", "target": 60}]
+    task = lw.Task.improve(
+        "slider-crank",
+        goals=goals,
+        vary=["O2 A"],
+        starts=1,
+        front=5,
+        wanted={"clear_of": [[5, 0, 3]]},
+    )
+    assert len(task.solve().designs) > 2
+    stops = _stops(proved_design.fitted_design, 3)
+    monkeypatch.setattr(front_designs, "fitted_design", stops)
+    found = task.solve()
+    assert found.interrupted
+    assert len(found.designs) == 2
+    assert not found.delivered
+
+
+def test_the_proofs_of_a_front_are_counted_and_finish_when_their_progress_is_interrupted() -> None:
+    goals = [*_GOALS, {"of": "max(d)", "target": 60}]
+    given: dict[str, Any] = {"vary": ["O2 A"], "starts": 1, "front": 5}
+    told: list[float] = []
+    lw.loads(CRANK).improve(goals, **given, progress=told.append)
+    assert told == sorted(told)
+    assert [share for share in told if share >= 0.9] == pytest.approx([0.9, 0.92, 0.94, 0.96, 0.98])
+
+    def stop(fraction: float) -> None:
+        if fraction > 0.93:
+            raise KeyboardInterrupt
+
+    front = lw.loads(CRANK).improve(goals, **given, progress=stop)
+    assert len(front) == 5
+    assert all(design.message.startswith("interrupted: the best so far") for design in front)
+
+
+def test_a_front_is_kept_when_the_choice_of_its_next_lanes_is_interrupted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    goals = [*_GOALS, {"of": "max(d)", "target": 60}]
+    monkeypatch.setattr(front_fit, "objective_spans", _stops(lambda: None, 1))
+    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=5)
     assert front
     assert all(design.message.startswith("interrupted: the best so far") for design in front)
 

@@ -11,8 +11,8 @@ from linkwork.design.improvement.fit_problem import FitProblem, FittedNumbers, F
 from linkwork.design.improvement.front_fit import BROKEN
 from linkwork.design.improvement.goals import PathGoal
 from linkwork.design.improvement.improved_design import ImprovedDesign
-from linkwork.design.improvement.pareto_front import spread, undominated
-from linkwork.design.improvement.proved_design import fitted_design
+from linkwork.design.improvement.pareto_front import alike, objective_spans, spread, undominated
+from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
 from linkwork.design.improvement.settings import Goal
 from linkwork.foundation.arrays import Array
 from linkwork.mechanism.varied_number import VariedNumber
@@ -33,11 +33,13 @@ def front_designs(
     fits: Fits,
     count: int,
     is_sound: Callable[[ImprovedDesign], bool],
+    tell: Callable[[float], None],
 ) -> tuple[ImprovedDesign, ...]:
     """The front by rising first goal, then the designs that are not sound.
 
     Goals are measured anew on the motion that proves a design. A design that is not sound makes
-    room for those that only it dominates.
+    room for those that only it dominates. An interruption ends the proofs: the front is that of the
+    designs proved by then.
 
     Parameters
     ----------
@@ -48,6 +50,13 @@ def front_designs(
         The largest number of designs of the front.
     is_sound : callable
         Whether a proved design keeps every wish.
+    tell : callable
+        Told before each proof which fraction of the proofs is done.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no design was proved before it.
     """
     lanes = [
         (path, found, k)
@@ -63,24 +72,40 @@ def front_designs(
         kept[broken.argmin()] = True
     values = np.where(kept[:, None], values, np.inf)
     proved: dict[int, ImprovedDesign] = {}
-    refused: list[ImprovedDesign] = []
+    told, stopped = 0.0, False
     while True:
         front = undominated(values)
-        chosen = front[spread(values[front], count)]
-        new = [int(k) for k in chosen if int(k) not in proved]
-        for k in new:
-            path, found, lane = lanes[k]
-            design = fitted_design(model, numbers, path, found, lane)
-            proved[k] = design = _measured(design, numbers, box, path, goals, found.t[lane])
-            if broken[k] > BROKEN:
-                told = f"{design.message}; no design keeps the bounds of all goals"
-                proved[k] = design = replace(design, sound=False, message=told)
-            values[k] = list(design.goals.values())
-            if not is_sound(design):
-                values[k] = np.inf
-                refused.append(design)
+        chosen = [int(k) for k in front[spread(values[front], count)]]
+        new = [k for k in chosen if k not in proved]
         if not new:
-            return (*(proved[int(k)] for k in chosen), *refused)
+            break
+        spans = objective_spans(values[front])
+        every = len(proved) + len(new)
+        try:
+            for k in new:
+                told = max(told, len(proved) / every)
+                tell(told)
+                path, found, lane = lanes[k]
+                design = fitted_design(model, numbers, path, found, lane)
+                design = _measured(design, numbers, box, path, goals, found.t[lane])
+                if broken[k] > BROKEN:
+                    message = f"{design.message}; no design keeps the bounds of all goals"
+                    design = replace(design, sound=False, message=message)
+                if is_sound(design):
+                    # equal designs would take its place by rounding
+                    values[alike(values, k, spans)] = np.inf
+                    values[k] = list(design.goals.values())
+                else:
+                    values[k] = np.inf
+                proved[k] = design
+        except KeyboardInterrupt:
+            stopped = True
+            values[[k not in proved for k in range(len(lanes))]] = np.inf
+    if stopped and not proved:
+        raise KeyboardInterrupt
+    refused = [own for k, own in proved.items() if not np.isfinite(values[k]).all()]
+    designs = (*(proved[k] for k in chosen), *refused)
+    return tuple(map(interrupted_design, designs)) if stopped else designs
 
 
 def _measured(

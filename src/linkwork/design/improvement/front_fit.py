@@ -45,10 +45,14 @@ def fit_front(
 ) -> FittedNumbers:
     """All designs on the way to a front of ``count`` designs, from starts (D, P)."""
     front = _Front(given, starts, count, progress)
-    for stage in (front.minimise_each, front.weigh, front.limit):
-        stage()
-        if front.problem.work.stopped:
-            break
+    try:
+        for stage in (front.minimise_each, front.weigh, front.limit):
+            stage()
+            if front.problem.work.stopped:
+                break
+    except KeyboardInterrupt:
+        # between the steps of lanes
+        front.fit = replace(front.fit, interrupted=True)
     return front.result()
 
 

@@ -76,7 +76,8 @@ def improved_designs(
     and the designs found on the way to it that are not sound.
 
     ``is_sound``: what a design of a front has to be, besides undominated. ``enough``: so many sound
-    designs end the proofs of an interrupted search. An interruption of the proofs keeps those done.
+    designs end the proofs of an interrupted search without a front. An interruption of the proofs
+    keeps those done.
 
     Raises
     ------
@@ -100,7 +101,9 @@ def improved_designs(
     except NotElementwise:
         raise InputError(_unfollowed(model, numbers)) from None
     if settings.front:
-        return front_designs(model, numbers, box, others, fits, settings.front, is_sound)
+        given = (model, numbers, box, others, fits, settings.front, is_sound)
+        front = front_designs(*given, search.tell_proofs)
+        return tuple(map(interrupted_design, front)) if search.interrupted else front
     designs = search.proved(fits, range(len(starts)), [])
     locked = [k for k, own in designs if _locks(own)]
     if locked and kept_off and not search.interrupted:
@@ -206,7 +209,7 @@ class _Search:
         )
         try:
             for done, (_, part, k) in enumerate(best):
-                self._tell_proofs(done / len(best))
+                self.tell_proofs(done / len(best))
                 if self.interrupted and self.enough is not None and sound >= self.enough:
                     break
                 path, found = fits[part]
@@ -218,8 +221,8 @@ class _Search:
             self.interrupted = True
         return designs
 
-    def _tell_proofs(self, fraction: float) -> None:
-        """A first interruption ends the proofs when enough designs are sound."""
+    def tell_proofs(self, fraction: float) -> None:
+        """A fraction of the proofs is done; an interruption of the telling does not end them."""
         if not self.interrupted:
             try:
                 self.tell(_SEARCH + (1.0 - _SEARCH) * fraction)

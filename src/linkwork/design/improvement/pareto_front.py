@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.foundation.arrays import Array, IndexArray
 
-__all__ = ["objective_spans", "spread", "undominated"]
+__all__ = ["alike", "objective_spans", "spread", "undominated"]
 
 _ALIKE = 1e-6  # of the span of an objective: what fits agree to
 
@@ -26,6 +26,11 @@ def objective_spans(values: Array, every: Array | None = None) -> Array:
     largest = np.abs(values if every is None else every).max(axis=0, initial=0.0)
     flat = spans <= _ALIKE * largest
     return np.where(flat, np.where(largest > 0.0, largest, 1.0), spans)
+
+
+def alike(values: Array, k: int, spans: Array) -> IndexArray:
+    """The designs whose objectives (D, K) are those of one, to what fits agree to."""
+    return np.flatnonzero((np.abs(values - values[k]) <= _ALIKE * spans).all(axis=1))
 
 
 def undominated(values: Array) -> IndexArray:
