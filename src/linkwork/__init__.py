@@ -34,21 +34,21 @@ if TYPE_CHECKING:
     from linkwork.batch.limits import (
         FamilyLimits as FamilyLimits,
     )
-    from linkwork.design.improvement.improved_design import (
-        ImprovedDesign as ImprovedDesign,
-    )
-    from linkwork.design.synthesis.defect_messages import (
+    from linkwork.design.defects.defect_messages import (
         Defect as Defect,
     )
-    from linkwork.design.synthesis.judged_design import (
+    from linkwork.design.defects.judged_design import (
         JudgedDesign as JudgedDesign,
+    )
+    from linkwork.design.defects.verdicts import (
+        DefectKind as DefectKind,
+    )
+    from linkwork.design.improvement.improved_design import (
+        ImprovedDesign as ImprovedDesign,
     )
     from linkwork.design.synthesis.result import (
         Dyad as Dyad,
         SynthesizedDesign as SynthesizedDesign,
-    )
-    from linkwork.design.synthesis.verdicts import (
-        DefectKind as DefectKind,
     )
     from linkwork.drawing.scene import (
         Scene as Scene,

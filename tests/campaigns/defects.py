@@ -7,12 +7,12 @@ from collections import Counter
 import numpy as np
 
 from linkwork.api import Mechanism
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import PrecisionPosition
-from linkwork.design.synthesis.verdicts import DefectKind, judge
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.defects.verdicts import DefectKind, judge
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.poses.guiding_linkage import Design, linkage_of
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import PrecisionPosition
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from tests.campaigns.library_defects import branches_at
 

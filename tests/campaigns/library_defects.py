@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 import linkwork as lw
-from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.circuit_end import CircuitEnd
 from linkwork.results.circuits import Circuit, Circuits

@@ -6,8 +6,8 @@ from collections import Counter
 
 import numpy as np
 
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
-from linkwork.design.synthesis.dyads import solve_five_poses
+from linkwork.design.poses.dyad_set import DyadSet, PoseSet
+from linkwork.design.poses.dyads import solve_five_poses
 from linkwork.foundation.arrays import Array, ComplexArray
 from tests.oracles.burmester import crank_turns
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.design.suggestion import suggesting
 from linkwork.design.suggestion.suggested_design import Origin
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.errors import InputError
 
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
+from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.designs_table import designs_table, front_of
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.drawing import SceneOptions, render
 from linkwork.drawing.charts.front_chart import front_chart
 from linkwork.drawing.inline_svg import FixedInks, inline_svg

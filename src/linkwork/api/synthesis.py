@@ -11,11 +11,12 @@ import numpy as np
 
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.api.mechanism import Mechanism
-from linkwork.design.synthesis import result, task, task_file
-from linkwork.design.synthesis.by_circuits import defects_by_circuits
-from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.defects.by_circuits import defects_by_circuits
+from linkwork.design.defects.defect_messages import Defect
+from linkwork.design.synthesis import result
 from linkwork.design.synthesis.designs_table import designs_table
 from linkwork.design.synthesis.solving import solve_task
+from linkwork.design.tasks import task, task_file
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.foundation.plain_numbers import finite_number
 from linkwork.results.table import Table

@@ -12,7 +12,7 @@ from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.output_file import check_outputs
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
-from linkwork.design.synthesis.curve_file import read_curve
+from linkwork.design.tasks.curve_file import read_curve
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.written_folder import check_place, written_folder

@@ -6,7 +6,7 @@ import click
 
 from linkwork.batch.study.plan_keys import PLAN
 from linkwork.cli.options import debug_option
-from linkwork.design.synthesis.task_keys import TASK
+from linkwork.design.tasks.task_keys import TASK
 from linkwork.foundation.errors import InputError
 from linkwork.textfile.schema import schema_of, schema_text
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from linkwork.cli.terminal import bad, fields, good, sentence, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.design.synthesis.designs_table import front_of, goal_misses
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.synthesis.verdicts import DefectKind
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import significant
 

@@ -24,7 +24,7 @@ from linkwork.viewer.live.server import LiveServer
 if TYPE_CHECKING:
     from linkwork.design.suggestion.suggested_design import Suggesting
     from linkwork.design.synthesis.result import Synthesis
-    from linkwork.design.synthesis.task import Task
+    from linkwork.design.tasks.task import Task
 
 __all__ = ["view"]
 

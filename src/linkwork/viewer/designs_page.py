@@ -6,9 +6,9 @@ import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 
+from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.design.synthesis.designs_table import goal_misses
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.drawing.embedded_svg import embedded_svg
 from linkwork.drawing.inline_svg import Inks, inline_svg

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.poses.pose_families import spread_pivots
 from linkwork.design.precision.polygon_points import points_in_polygon
 from linkwork.design.precision.sampling import positions_with_samples
-from linkwork.design.synthesis.pose_families import spread_pivots
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wishes import Wishes
 
 # an L, a triangle without level sides, a narrow diagonal strip, two prongs
 _POLYGONS = [

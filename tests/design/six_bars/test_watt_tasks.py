@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.loops.travel import Range
 from linkwork.design.six_bars import watt_six_bars
-from linkwork.design.synthesis.travel import Range
 from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.design.synthesis.watt_linkage import driven_range
 from linkwork.design.synthesis.watt_synthesis import _nine_pairs

@@ -16,8 +16,8 @@ from linkwork.design.improvement.coupler_curves import (
 )
 from linkwork.design.improvement.curve_constraints import ANGLE_MARGIN, CurveConstraints
 from linkwork.design.improvement.curve_goal import CurveGoal
+from linkwork.design.loops.candidates import Drive
 from linkwork.design.synthesis.advice import remarks_on
-from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.curve_synthesis import curve_goal_of
 from linkwork.design.synthesis.solving import wishes_of
 from linkwork.foundation.errors import MechanismError, MechanismFileError

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
-from linkwork.design.synthesis.dyads import Refusal, solve_five_poses
+from linkwork.design.poses.dyad_set import DyadSet, PoseSet
+from linkwork.design.poses.dyads import Refusal, solve_five_poses
 from linkwork.foundation.arrays import Array, ComplexArray
 from tests.campaigns.poses import pose_campaign, random_poses
 from tests.oracles.burmester import crank_turns

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis.burmester import centre_points, sampled_dyads, sliding_dyad
-from linkwork.design.synthesis.guiding_linkage import linkage_of
+from linkwork.design.poses.burmester import centre_points, sampled_dyads, sliding_dyad
+from linkwork.design.poses.guiding_linkage import linkage_of
 from linkwork.design.synthesis.result import SynthesizedDesign
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.textfile.writer import write_text

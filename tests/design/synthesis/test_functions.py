@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import least_squares, minimize
 
 import linkwork as lw
+from linkwork.design.loops.travel import Range
 from linkwork.design.synthesis.advice import remarks_on
 from linkwork.design.synthesis.function_synthesis import freudenstein
 from linkwork.design.synthesis.function_wishes import FunctionWishes
@@ -16,8 +17,7 @@ from linkwork.design.synthesis.structural_error import (
     rocker_errors,
     slider_errors,
 )
-from linkwork.design.synthesis.travel import Range
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
 

@@ -12,11 +12,11 @@ import pytest
 import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, write_designs
 from linkwork.cli.synthesis_page import synthesis_lines
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.loops.candidates import Drive
 from linkwork.design.synthesis import improvement_synthesis
 from linkwork.design.synthesis.advice import advice_of
-from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.solving import wishes_of
 from linkwork.foundation.errors import MechanismFileError
 from linkwork.mechanism.linkage import Linkage

@@ -10,9 +10,9 @@ import jsonschema
 import pytest
 
 import linkwork as lw
-from linkwork.design.synthesis import by_circuits
-from linkwork.design.synthesis.task_file import read_task_text
-from linkwork.design.synthesis.task_keys import TASK
+from linkwork.design.defects import by_circuits
+from linkwork.design.tasks.task_file import read_task_text
+from linkwork.design.tasks.task_keys import TASK
 from linkwork.textfile.schema import schema_of
 from linkwork.textfile.toml_text import data_of
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import driven_loops
-from linkwork.design.synthesis.loop_limits import cross
-from linkwork.design.synthesis.loop_positions import pivots_at
-from linkwork.design.synthesis.travel import NOWHERE, Range
-from linkwork.design.synthesis.verdicts import DefectKind, judge
-from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.design.defects.verdicts import DefectKind, judge
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.driven_loop import driven_loops
+from linkwork.design.loops.loop_limits import cross
+from linkwork.design.loops.loop_positions import pivots_at
+from linkwork.design.loops.travel import NOWHERE, Range
+from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from tests.campaigns.defects import defect_campaign, random_designs
 
 _POSSIBLE = [

@@ -15,7 +15,7 @@ import linkwork as lw
 from linkwork.design.suggestion import suggesting
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.solving import solve_task
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.answers import Hurry
 from linkwork.viewer.live.bench import Bench

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.loops.candidates import GUIDED
 from linkwork.design.six_bars import watt_six_bars
-from linkwork.design.synthesis.candidates import GUIDED
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.synthesis.solving import solve_task
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wanted_mechanisms import MECHANISMS
 from linkwork.foundation.errors import InputError
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.answers import GivenUpError, Hurry

@@ -11,9 +11,9 @@ import numpy as np
 
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import Point
-from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import Point
+from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.mechanism.description import Description
 
 __all__ = ["Origin", "SuggestedDesign", "Suggesting"]

@@ -13,13 +13,13 @@ from linkwork.design.atlas.placed_mechanism import placed_on_curve
 from linkwork.design.improvement.improving import numbers_to_vary, point_named
 from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.improvement.settings import Improvement
+from linkwork.design.loops.candidates import Drive
 from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign
-from linkwork.design.synthesis.candidates import Drive
 from linkwork.design.synthesis.improvement_synthesis import improve_description, mechanism_of
 from linkwork.design.synthesis.solving import wishes_of
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import SAME_GIVEN, Point
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import SAME_GIVEN, Point
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.mechanism.description import Description

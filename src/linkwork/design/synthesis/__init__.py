@@ -1,1 +1,1 @@
-"""From tasks to mechanisms: all dyads and loops through precision positions, and their defects."""
+"""From tasks to mechanisms that do them: all solutions, ranked, each with its defects."""

@@ -6,14 +6,14 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.design.synthesis.curve_synthesis import usual_longest
 from linkwork.design.synthesis.function_synthesis import USUAL_RATIO, has_usual_ratio
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind
-from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wanted_mechanisms import MECHANISMS
 
 __all__ = ["advice_of", "remark_on", "remarks_on"]
 

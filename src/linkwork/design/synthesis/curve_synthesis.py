@@ -15,12 +15,12 @@ from linkwork.design.improvement.coupler_curves import (
 from linkwork.design.improvement.curve_fit import FittedCurves, fit_curve
 from linkwork.design.improvement.curve_goal import INPUT, CurveGoal
 from linkwork.design.improvement.settings import Improvement
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.curve_file import FEWEST
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.found import Found
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import LENGTHS
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.curve_file import FEWEST
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import LENGTHS
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN, arc_in_order
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness

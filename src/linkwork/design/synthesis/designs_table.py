@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.foundation.arrays import AnyArray
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE

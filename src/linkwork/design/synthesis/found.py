@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwork.design.synthesis.candidates import Candidates, Drive
-from linkwork.design.synthesis.dyad_set import DyadSet
+from linkwork.design.loops.candidates import Candidates, Drive
+from linkwork.design.poses.dyad_set import DyadSet
 from linkwork.foundation.completeness import Completeness
 
 __all__ = ["Found"]

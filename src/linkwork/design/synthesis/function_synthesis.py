@@ -10,17 +10,17 @@ from itertools import product
 
 import numpy as np
 
-from linkwork.design.synthesis.burmester import sampled_dyads
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.closed_forms import solve_with_bound
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
-from linkwork.design.synthesis.dyads import solve_five_poses
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.closed_forms import solve_with_bound
+from linkwork.design.loops.loop_limits import cross
+from linkwork.design.poses.burmester import sampled_dyads
+from linkwork.design.poses.dyad_set import DyadSet, PoseSet
+from linkwork.design.poses.dyads import solve_five_poses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_fits import fit_functions
 from linkwork.design.synthesis.function_wishes import FunctionWishes
-from linkwork.design.synthesis.loop_limits import cross
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.completeness import Completeness

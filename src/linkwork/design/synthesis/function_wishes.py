@@ -7,7 +7,7 @@ import numpy as np
 from linkwork.design.improvement.coupler_curves import FourBarCurves, SliderCrankCurves
 from linkwork.design.improvement.curve_constraints import CurveConstraints
 from linkwork.design.improvement.curve_goal import CurveGoal
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
 

@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
+from linkwork.design.defects.defect_messages import Defect, tolerance_message
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.motion_bounds import least_in_rows
-from linkwork.design.synthesis.contradictions import outside_range
-from linkwork.design.synthesis.defect_messages import Defect, tolerance_message
-from linkwork.design.synthesis.judged_design import JudgedDesign
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import SAME_GIVEN
-from linkwork.design.synthesis.verdicts import DefectKind
-from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.design.tasks.contradictions import outside_range
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import SAME_GIVEN
+from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND

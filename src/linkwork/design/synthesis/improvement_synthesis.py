@@ -24,10 +24,10 @@ from linkwork.design.improvement.improving import (
 )
 from linkwork.design.improvement.reach import Reach
 from linkwork.design.improvement.settings import Goal, Improvement, Points, Problems
-from linkwork.design.synthesis.contradictions import outside_range
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.contradictions import outside_range
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.errors import InputError, MechanismError, choices
 from linkwork.foundation.names import GROUND
 from linkwork.foundation.paths import as_path

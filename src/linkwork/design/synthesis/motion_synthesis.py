@@ -7,18 +7,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.design.synthesis.burmester import (
+from linkwork.design.loops.candidates import GUIDED, Candidates, Drive
+from linkwork.design.poses.burmester import (
     CentrePoints,
     centre_points,
     dyads_with_pivots,
     sampled_dyads,
     sliding_dyad,
 )
-from linkwork.design.synthesis.candidates import GUIDED, Candidates, Drive
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet, pair_dyads, pair_guides
-from linkwork.design.synthesis.dyads import FIVE, Refusal, solve_five_poses
-from linkwork.design.synthesis.found import Found
-from linkwork.design.synthesis.pose_families import (
+from linkwork.design.poses.dyad_set import DyadSet, PoseSet, pair_dyads, pair_guides
+from linkwork.design.poses.dyads import FIVE, Refusal, solve_five_poses
+from linkwork.design.poses.pose_families import (
     inverted,
     on_lines,
     spread_pivots,
@@ -27,9 +26,10 @@ from linkwork.design.synthesis.pose_families import (
     through_moving,
     timed_dyads,
 )
-from linkwork.design.synthesis.pose_tolerance import near_tasks, with_misses
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.poses.pose_tolerance import near_tasks, with_misses
+from linkwork.design.synthesis.found import Found
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import MechanismError, Problem

@@ -9,6 +9,8 @@ from itertools import islice
 
 import numpy as np
 
+from linkwork.design.loops.candidates import Candidates, LoopKind
+from linkwork.design.poses.pose_tolerance import drawn_within, is_tolerant
 from linkwork.design.precision import (
     FourBarPositions,
     GivenLength,
@@ -19,11 +21,9 @@ from linkwork.design.precision import (
     own_member,
     positions_with_samples,
 )
-from linkwork.design.synthesis.candidates import Candidates, LoopKind
 from linkwork.design.synthesis.found import Found
-from linkwork.design.synthesis.pose_tolerance import drawn_within, is_tolerant
-from linkwork.design.synthesis.task import MECHANISMS, Task
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.task import MECHANISMS, Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.completeness import Completeness
 

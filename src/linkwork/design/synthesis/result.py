@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive
-from linkwork.design.synthesis.defect_messages import Defect, defects_of
-from linkwork.design.synthesis.guiding_linkage import Design, linkage_of
-from linkwork.design.synthesis.judged_design import JudgedDesign
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind, Verdicts, judge
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.defects.defect_messages import Defect, defects_of
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.defects.verdicts import DefectKind, Verdicts, judge
+from linkwork.design.loops.candidates import Candidates, Drive
+from linkwork.design.poses.guiding_linkage import Design, linkage_of
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage

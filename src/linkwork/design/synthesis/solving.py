@@ -14,25 +14,25 @@ from typing import TypeVar
 
 import numpy as np
 
+from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.defects.verdicts import judge
 from linkwork.design.improvement.settings import FITS, Improvement
-from linkwork.design.synthesis.candidates import Candidates, Drive
+from linkwork.design.loops.candidates import Candidates, Drive
+from linkwork.design.loops.travel import Range
+from linkwork.design.poses.dyads import Refusal
 from linkwork.design.synthesis.curve_synthesis import solve_curve
-from linkwork.design.synthesis.dyads import Refusal
 from linkwork.design.synthesis.found import Found
-from linkwork.design.synthesis.function_goal import FunctionGoal
 from linkwork.design.synthesis.function_synthesis import solve_function
 from linkwork.design.synthesis.improved_mechanism import SweptDesign, wishes_in_motion
 from linkwork.design.synthesis.improvement_synthesis import improve_mechanism
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.design.synthesis.motion_synthesis import solve_motion
 from linkwork.design.synthesis.path_synthesis import solve_path
 from linkwork.design.synthesis.result import Dyad, JudgedDesigns, Synthesis, SynthesizedDesign
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import Wanted
-from linkwork.design.synthesis.travel import Range
-from linkwork.design.synthesis.verdicts import judge
 from linkwork.design.synthesis.watt_synthesis import solve_watt
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.function_goal import FunctionGoal
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import Wanted
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import MechanismError

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from linkwork.design.synthesis.loop_limits import dot
+from linkwork.design.loops.loop_limits import dot
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
 

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Drive
-from linkwork.design.synthesis.defect_messages import Defect
+from linkwork.design.defects.defect_messages import Defect
+from linkwork.design.defects.verdicts import DefectKind
+from linkwork.design.loops.candidates import Drive
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, SweptDesign
-from linkwork.design.synthesis.verdicts import DefectKind
-from linkwork.design.synthesis.wanted_mechanisms import WATT_II
 from linkwork.design.synthesis.watt_group import WattGroup
 from linkwork.design.synthesis.watt_linkage import (
     ERROR,
@@ -23,7 +22,8 @@ from linkwork.design.synthesis.watt_linkage import (
     swept_mechanism,
     watt_linkage,
 )
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wanted_mechanisms import WATT_II
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
 

@@ -8,13 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
+from linkwork.design.defects.defect_messages import Defect
+from linkwork.design.defects.verdicts import DefectKind
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.driven_loop import driven_loops
+from linkwork.design.loops.travel import NOWHERE, Travel, travel_of
 from linkwork.design.six_bars.watt_six_bars import WattSixBars
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.driven_loop import driven_loops
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.travel import NOWHERE, Travel, travel_of
-from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 

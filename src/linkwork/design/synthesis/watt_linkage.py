@@ -8,7 +8,7 @@ from itertools import combinations
 from linkwork.design.improvement.proved_design import proved_design
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.watt_group import WattGroup
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from linkwork.design.six_bars.watt_six_bars import PAIRS, WattSixBars, watt_six_bars
-from linkwork.design.synthesis.task import Task
 from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.design.synthesis.watt_group import watt_group
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.foundation.completeness import Completeness

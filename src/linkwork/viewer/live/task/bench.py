@@ -8,7 +8,7 @@ from functools import singledispatchmethod
 from pathlib import Path
 
 from linkwork.design.suggestion.suggested_design import Suggesting
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.errors import InputError, MechanismError
 from linkwork.textfile.text_edits import TextEdits
 from linkwork.textfile.toml_text import data_of

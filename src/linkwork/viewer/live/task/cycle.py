@@ -10,10 +10,10 @@ from typing import Protocol
 
 import numpy as np
 
-from linkwork.design.synthesis.judged_design import JudgedDesign
+from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_file import located_task_error, read_task_text
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_file import located_task_error, read_task_text
 from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError, MechanismError, Problem, key_text
 from linkwork.textfile.toml_text import data_of

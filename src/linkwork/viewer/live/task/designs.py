@@ -6,15 +6,15 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.loop_positions import pivots_at
+from linkwork.design.poses.burmester import CentrePoints, centre_points
 from linkwork.design.precision.cognates import cognates
 from linkwork.design.synthesis.advice import advice_of
-from linkwork.design.synthesis.burmester import CentrePoints, centre_points
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
 from linkwork.design.synthesis.improved_mechanism import SweptDesign
-from linkwork.design.synthesis.loop_positions import pivots_at
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.viewer.live import events as tell
 from linkwork.viewer.live.file_state import Point

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.advice import remark_on
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.judged_design import JudgedDesign
 from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.mechanism.figures import Disc
 from linkwork.mechanism.skeleton import Skeleton

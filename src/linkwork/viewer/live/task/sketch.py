@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.viewer.live.events import TaskState
 from linkwork.viewer.live.file_state import Point, ProblemShown
 from linkwork.viewer.live.history import History

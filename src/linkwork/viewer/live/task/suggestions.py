@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from linkwork.design.suggestion.suggested_design import Origin, SuggestedDesign, Suggesting
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
-from linkwork.design.synthesis.task import Task
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.mechanism.description import Description
 from linkwork.viewer.live import events as tell

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.settings import Goal, Improvement
-from linkwork.design.synthesis.curve_file import Curve, read_curve
-from linkwork.design.synthesis.function_goal import LOOP_PAIRS, FunctionGoal
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.task_conditions import Given, PrecisionPosition, Ranking, Wanted
-from linkwork.design.synthesis.task_keys import TASK, TURNS_FULLY
-from linkwork.design.synthesis.wanted_mechanisms import MECHANISMS, WATT_II, WATT_PAIRS
+from linkwork.design.tasks.curve_file import Curve, read_curve
+from linkwork.design.tasks.function_goal import LOOP_PAIRS, FunctionGoal
+from linkwork.design.tasks.task import Task
+from linkwork.design.tasks.task_conditions import Given, PrecisionPosition, Ranking, Wanted
+from linkwork.design.tasks.task_keys import TASK, TURNS_FULLY
+from linkwork.design.tasks.wanted_mechanisms import MECHANISMS, WATT_II, WATT_PAIRS
 from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
 from linkwork.foundation.paths import as_path

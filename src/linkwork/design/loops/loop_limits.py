@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates
+from linkwork.design.loops.candidates import Candidates
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF

@@ -12,23 +12,23 @@ from pathlib import Path
 import numpy as np
 
 from linkwork.design.improvement.settings import Improvement, Problems
-from linkwork.design.synthesis.candidates import GUIDED
-from linkwork.design.synthesis.contradictions import (
+from linkwork.design.loops.candidates import GUIDED
+from linkwork.design.tasks.contradictions import (
     length_contradictions,
     place_contradictions,
     unreached_places,
 )
-from linkwork.design.synthesis.curve_file import Curve
-from linkwork.design.synthesis.function_goal import FunctionGoal
-from linkwork.design.synthesis.task_conditions import (
+from linkwork.design.tasks.curve_file import Curve
+from linkwork.design.tasks.function_goal import FunctionGoal
+from linkwork.design.tasks.task_conditions import (
     LENGTHS,
     Given,
     PrecisionPosition,
     Ranking,
     Wanted,
 )
-from linkwork.design.synthesis.task_keys import KINDS
-from linkwork.design.synthesis.wanted_mechanisms import (
+from linkwork.design.tasks.task_keys import KINDS
+from linkwork.design.tasks.wanted_mechanisms import (
     MECHANISMS,
     WATT_II,
     mechanism_problems,

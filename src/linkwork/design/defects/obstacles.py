@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guide_loops import guide_speeds, meeting
-from linkwork.design.synthesis.loop_limits import DrivenLoops, cross
-from linkwork.design.synthesis.loop_positions import pivots_at
-from linkwork.design.synthesis.travel import Travel
-from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.guide_loops import guide_speeds, meeting
+from linkwork.design.loops.loop_limits import DrivenLoops, cross
+from linkwork.design.loops.loop_positions import pivots_at
+from linkwork.design.loops.travel import Travel
+from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray
 
 __all__ = ["meets_obstacle"]

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.dyads import KINDS, Dyads, Refusal
-from linkwork.design.synthesis.loop_limits import cross, dot
+from linkwork.design.loops.candidates import Candidates, LoopKind
+from linkwork.design.loops.loop_limits import cross, dot
+from linkwork.design.poses.dyads import KINDS, Dyads, Refusal
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, IndexArray, StatusArray
 
 __all__ = ["DyadSet", "PoseSet", "pair_dyads", "pair_guides"]
@@ -42,7 +42,7 @@ class DyadSet:
     task : (K,)
         The task of each dyad.
     kind : (K,)
-        The place of its kind in :data:`~linkwork.design.synthesis.dyads.KINDS`.
+        The place of its kind in :data:`~linkwork.design.poses.dyads.KINDS`.
     moving : (K,) complex
         The moving pivot in the body's frame; of an RP dyad a point of its line [length].
     fixed : (K,) complex

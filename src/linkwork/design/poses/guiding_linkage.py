@@ -8,10 +8,10 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guide_loops import meeting
-from linkwork.design.synthesis.loop_limits import cross, dot
-from linkwork.design.synthesis.task import Task
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.guide_loops import meeting
+from linkwork.design.loops.loop_limits import cross, dot
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.names import GROUND

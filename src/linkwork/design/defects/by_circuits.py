@@ -8,8 +8,8 @@ from itertools import combinations, product
 
 import numpy as np
 
-from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.defects.defect_messages import Defect
+from linkwork.design.defects.verdicts import DefectKind
 from linkwork.foundation.angles import within_half_a_turn
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness

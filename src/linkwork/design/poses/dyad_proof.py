@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from linkwork.design.synthesis.dyad_equations import (
+from linkwork.design.poses.dyad_equations import (
     COORDINATES,
     CURVATURE,
     NormalPoses,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkwork.design.loops.closed_forms import circumcentres, solve_with_bound
+from linkwork.design.poses.dyad_set import DyadSet
 from linkwork.design.precision.polygon_points import points_in_polygon
-from linkwork.design.synthesis.closed_forms import circumcentres, solve_with_bound
-from linkwork.design.synthesis.dyad_set import DyadSet
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array, ComplexArray, CountArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, LoopKind
-from linkwork.design.synthesis.dyads import FIVE
-from linkwork.design.synthesis.guide_loops import meeting
-from linkwork.design.synthesis.loop_limits import cross
-from linkwork.design.synthesis.task import Task
+from linkwork.design.loops.candidates import Candidates, LoopKind
+from linkwork.design.loops.guide_loops import meeting
+from linkwork.design.loops.loop_limits import cross
+from linkwork.design.poses.dyads import FIVE
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.arrays import Array, ComplexArray, IndexArray
 
 __all__ = ["NearTasks", "drawn_within", "is_tolerant", "near_tasks", "with_misses"]

@@ -1,6 +1,6 @@
 """Loops without a crank: two dyads of which each has a slider.
 
-The limits of :mod:`~linkwork.design.synthesis.driven_loop` for them, eq. (144), with the input s or
+The limits of :mod:`~linkwork.design.loops.driven_loop` for them, eq. (144), with the input s or
 φ measured from its origin:
 
 | loop | q | low, high | the side of the loop: sign of |
@@ -19,8 +19,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.loop_limits import (
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.loop_limits import (
     PRODUCT,
     DrivenLoops,
     angle_error,
@@ -176,7 +176,7 @@ def _crossing(given: Candidates) -> Array:
 def guide_pivots_at(
     given: Candidates, drive: Drive, loops: DrivenLoops, place: Array
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """A, B and P at places (D, K), as :func:`~linkwork.design.synthesis.loop_positions.pivots_at`
+    """A, B and P at places (D, K), as :func:`~linkwork.design.loops.loop_positions.pivots_at`
     computes them.
     """
     swapped = drive is Drive.SLIDER or (given.kind is LoopKind.OLDHAM and drive is Drive.B0)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guide_loops import guide_pivots_at
-from linkwork.design.synthesis.loop_limits import DrivenLoops, cross, dot
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.guide_loops import guide_pivots_at
+from linkwork.design.loops.loop_limits import DrivenLoops, cross, dot
 from linkwork.foundation.arrays import Array, ComplexArray
 
 __all__ = ["pivots_at"]

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.synthesis.defect_messages import Defect
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind
+from linkwork.design.defects.defect_messages import Defect
+from linkwork.design.defects.verdicts import DefectKind
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.internal import internal
 from linkwork.mechanism.description import Description
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive
-from linkwork.design.synthesis.task import Task
-from linkwork.design.synthesis.verdicts import DefectKind, Verdicts
+from linkwork.design.defects.verdicts import DefectKind, Verdicts
+from linkwork.design.loops.candidates import Candidates, Drive
+from linkwork.design.tasks.task import Task
 from linkwork.foundation.arrays import Array
 
 __all__ = ["Defect", "defects_of", "tolerance_message"]

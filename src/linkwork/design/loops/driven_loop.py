@@ -23,9 +23,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.guide_loops import guide_loops
-from linkwork.design.synthesis.loop_limits import (
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.guide_loops import guide_loops
+from linkwork.design.loops.loop_limits import (
     PRODUCT,
     DrivenLoops,
     angle_error,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from linkwork.design.synthesis.candidates import GUIDED
-from linkwork.design.synthesis.function_goal import ExactPairs, FunctionGoal
-from linkwork.design.synthesis.task_keys import KINDS
+from linkwork.design.loops.candidates import GUIDED
+from linkwork.design.tasks.function_goal import ExactPairs, FunctionGoal
+from linkwork.design.tasks.task_keys import KINDS
 from linkwork.foundation.plain_numbers import as_told
 
 __all__ = ["MECHANISMS", "WATT_II", "WATT_PAIRS", "mechanism_problems", "watt_pivot_problems"]

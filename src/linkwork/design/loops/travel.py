@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwork.design.synthesis.loop_limits import DrivenLoops
+from linkwork.design.loops.loop_limits import DrivenLoops
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, BoolArray, IndexArray
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkwork.design.synthesis.travel import Range
+from linkwork.design.loops.travel import Range
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 

@@ -7,9 +7,9 @@ from functools import cache
 
 import numpy as np
 
-from linkwork.design.synthesis.conic_pair import common_points
-from linkwork.design.synthesis.dyad_equations import COORDINATES, NormalPoses, quadric_gradients
-from linkwork.design.synthesis.dyad_proof import DyadProofs, prove_dyads
+from linkwork.design.poses.conic_pair import common_points
+from linkwork.design.poses.dyad_equations import COORDINATES, NormalPoses, quadric_gradients
+from linkwork.design.poses.dyad_proof import DyadProofs, prove_dyads
 from linkwork.foundation.arrays import (
     AnyArray,
     Array,
@@ -66,7 +66,7 @@ class Dyads:
     Parameters
     ----------
     x : (N, 4, 8) complex
-        Solutions in the coordinates of :mod:`~linkwork.design.synthesis.dyad_equations`, real where
+        Solutions in the coordinates of :mod:`~linkwork.design.poses.dyad_equations`, real where
         ``is_real``, for ``poses``.
     is_real : (N, 4)
         Whether the solution is a real dyad.

@@ -9,8 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from linkwork.design.improvement.settings import Problems
-from linkwork.design.synthesis.task_conditions import Given, Point, PrecisionPosition, Wanted
-from linkwork.design.synthesis.wishes import Wishes, distances_to_segments
+from linkwork.design.tasks.task_conditions import Given, Point, PrecisionPosition, Wanted
+from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 

@@ -7,12 +7,12 @@ from enum import Enum
 
 import numpy as np
 
-from linkwork.design.synthesis.candidates import Candidates, Drive, LoopKind
-from linkwork.design.synthesis.driven_loop import driven_loops
-from linkwork.design.synthesis.loop_limits import DrivenLoops
-from linkwork.design.synthesis.obstacles import meets_obstacle
-from linkwork.design.synthesis.travel import NOWHERE, Travel, travel_of
-from linkwork.design.synthesis.wishes import Wishes
+from linkwork.design.defects.obstacles import meets_obstacle
+from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
+from linkwork.design.loops.driven_loop import driven_loops
+from linkwork.design.loops.loop_limits import DrivenLoops
+from linkwork.design.loops.travel import NOWHERE, Travel, travel_of
+from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array, BoolArray
 
 __all__ = ["DefectKind", "Verdicts", "judge"]

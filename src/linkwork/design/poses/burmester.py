@@ -20,9 +20,9 @@ from itertools import permutations
 
 import numpy as np
 
-from linkwork.design.synthesis.dyad_equations import NormalPoses
-from linkwork.design.synthesis.dyad_set import DyadSet, PoseSet
-from linkwork.design.synthesis.dyads import Refusal, solve_on_lines
+from linkwork.design.poses.dyad_equations import NormalPoses
+from linkwork.design.poses.dyad_set import DyadSet, PoseSet
+from linkwork.design.poses.dyads import Refusal, solve_on_lines
 from linkwork.foundation.arrays import Array, BoolArray, ComplexArray
 from linkwork.foundation.rounding import RANK_TOLERANCE, UNIT_ROUNDOFF
 

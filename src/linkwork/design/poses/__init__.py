@@ -1,0 +1,1 @@
+"""Dyads and linkages that carry a body through poses."""
