@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 
 import linkwork as lw
-from linkwork.design.differentiable_numbers import chosen_numbers
-from linkwork.design.differentiated_forces import LoadedRows
+from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
+from linkwork.design.derivatives.differentiated_forces import LoadedRows
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.errors import InputError, LinkworkError
 from linkwork.mechanism.linkage import Linkage

@@ -9,10 +9,10 @@ import pytest
 
 import linkwork as lw
 from linkwork.batch.building import write_equations
+from linkwork.design.derivatives.recorded_tape import RecordedTape
+from linkwork.design.derivatives.tape import Tape, TapedNumber
 from linkwork.design.improvement.improving import numbers_to_vary
 from linkwork.design.improvement.written_designs import DesignWriter
-from linkwork.design.recorded_tape import RecordedTape
-from linkwork.design.tape import Tape, TapedNumber
 from linkwork.equations.model import LoopEquations
 from linkwork.foundation.arrays import Array, BoolArray
 from linkwork.foundation.elementwise import choose, finite, leader_value, snap

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import linkwork as lw
-from linkwork.design.differentiable_numbers import chosen_numbers
-from linkwork.design.differentiated_forces import LoadedRows
-from linkwork.design.tape import Tape, TapedNumber
+from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
+from linkwork.design.derivatives.differentiated_forces import LoadedRows
+from linkwork.design.derivatives.tape import Tape, TapedNumber
 from linkwork.foundation.errors import InputError, UnknownNameError
 from tests.campaigns.gradients import gradient_campaign
 from tests.design.extrapolated import changed_by, extrapolated

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.differentiable_numbers import chosen_numbers, groups_of
-from linkwork.design.differentiated_folds import DifferentiatedFolds
-from linkwork.design.differentiated_forces import LoadedRows
-from linkwork.design.differentiated_rows import DifferentiatedRows
-from linkwork.design.regular_rows import RegularRows, row_of, rows_of
+from linkwork.design.derivatives.differentiable_numbers import chosen_numbers, groups_of
+from linkwork.design.derivatives.differentiated_folds import DifferentiatedFolds
+from linkwork.design.derivatives.differentiated_forces import LoadedRows
+from linkwork.design.derivatives.differentiated_rows import DifferentiatedRows
+from linkwork.design.derivatives.regular_rows import RegularRows, row_of, rows_of
 from linkwork.foundation.arrays import AnyArray, Array
 from linkwork.foundation.errors import InputError, UnknownNameError
 from linkwork.mechanism.varied_number import VariedNumber

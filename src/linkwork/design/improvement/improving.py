@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.fit_problem import FittedNumbers, Fitting
 from linkwork.design.improvement.free_timing import freely_timed
 from linkwork.design.improvement.front_designs import front_designs

@@ -12,9 +12,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from linkwork.design.differentiated_rows import DifferentiatedRows
+from linkwork.design.derivatives.differentiated_rows import DifferentiatedRows
+from linkwork.design.derivatives.tape import Tape, TapedNumber
 from linkwork.design.improvement.written_designs import WrittenDesigns
-from linkwork.design.tape import Tape, TapedNumber
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import AnyArray, Array
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from linkwork.batch.building import write_equations
-from linkwork.design.differentiated_rows import taped_speed
-from linkwork.design.recorded_tape import RecordedTape
-from linkwork.design.tape import TapedNumber
+from linkwork.design.derivatives.differentiated_rows import taped_speed
+from linkwork.design.derivatives.recorded_tape import RecordedTape
+from linkwork.design.derivatives.tape import TapedNumber
 from linkwork.equations.compiling import phasor_rows
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from linkwork.design.differentiable_numbers import chosen_numbers
+from linkwork.design.derivatives.differentiable_numbers import chosen_numbers
 from linkwork.design.improvement.curve_constraints import ANGLE_MARGIN
 from linkwork.design.improvement.goals import goal_of
 from linkwork.design.improvement.improved_design import ImprovedDesign

@@ -17,7 +17,7 @@ from typing import Any, Self
 import numpy as np
 
 from linkwork.batch.building import write_equations
-from linkwork.design.tape import Tape
+from linkwork.design.derivatives.tape import Tape
 from linkwork.equations.model import LawEquation, LoopEquations, Term
 from linkwork.expression.jets import Jet, evaluate
 from linkwork.expression.tree import names_in

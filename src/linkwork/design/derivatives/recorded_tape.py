@@ -14,8 +14,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from linkwork.design.derivative_rules import QUESTIONS, RULES
-from linkwork.design.tape import Tape, TapedNumber, is_still
+from linkwork.design.derivatives.derivative_rules import QUESTIONS, RULES
+from linkwork.design.derivatives.tape import Tape, TapedNumber, is_still
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.lanes import Truths
 from linkwork.foundation.operand import NotElementwise

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.differentiated_rows import DifferentiatedRows
-from linkwork.design.tape import Tape
+from linkwork.design.derivatives.differentiated_rows import DifferentiatedRows
+from linkwork.design.derivatives.tape import Tape
 from linkwork.expression.jets import Jet
 from linkwork.forces.applied import AppliedLoads
 from linkwork.forces.build_bodies import (

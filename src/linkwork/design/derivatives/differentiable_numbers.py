@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from linkwork.batch.building import write_equations
-from linkwork.design.tape import Tape
+from linkwork.design.derivatives.tape import Tape
 from linkwork.equations.compiling import Compiled
 from linkwork.foundation.errors import InputError, LinkworkError, key_text
 from linkwork.foundation.operand import NotElementwise

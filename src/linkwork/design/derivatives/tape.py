@@ -22,7 +22,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from linkwork.design.derivative_rules import PLAIN, RULES, Partial, carried, one_sided
+from linkwork.design.derivatives.derivative_rules import PLAIN, RULES, Partial, carried, one_sided
 from linkwork.expression.lane_functions import least, most
 from linkwork.foundation.arrays import AnyArray, Array, BoolArray
 from linkwork.foundation.lanes import Consensus, Lanes, Truths

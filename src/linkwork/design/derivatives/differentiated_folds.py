@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.design.differentiated_rows import DifferentiatedRows
+from linkwork.design.derivatives.differentiated_rows import DifferentiatedRows
 from linkwork.expression.jets import Jet
 from linkwork.foundation.arrays import Array
 
