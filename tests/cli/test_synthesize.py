@@ -120,29 +120,75 @@ def test_files_keep_the_letters_of_the_task(name: str, stem: str, tmp_path: Path
     assert f"refused/{stem}-01.toml" in named
 
 
-@pytest.mark.parametrize("place", ["inside", "outside"])
-def test_a_curve_in_another_folder_is_copied_only_into_that_of_the_designs(
-    tmp_path: Path, place: str
+@pytest.mark.parametrize(
+    ("place", "copied"),
+    [
+        ("data/foot.csv", "data/foot.csv"),
+        ("../foot.csv", "curve/foot.csv"),
+        ("{}/foot.csv", "curve/foot.csv"),
+        ("designs.csv", "curve/designs.csv"),
+        ("refused/foot.csv", "curve/foot.csv"),
+    ],
+)
+def test_the_curve_of_a_task_is_copied_into_the_folder_of_its_designs(
+    tmp_path: Path, place: str, copied: str
 ) -> None:
-    curve = "data/foot.csv" if place == "inside" else str(tmp_path / "data" / "foot.csv")
-    (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "foot.csv").write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
+    home = tmp_path / "home"
+    home.mkdir()
+    file = home / place.format(tmp_path)
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
     text = (
-        f'format = 1\ntask = "path"\nimprove = {{ starts = 2 }}\ncurve = {{ file = "{curve}" }}\n'
+        'format = 1\ntask = "path"\nimprove = { starts = 2 }\n'
+        f'curve = {{ file = "{place.format(tmp_path)}" }} # mine\n'
     )
-    (tmp_path / "task.toml").write_text(text)
-    before = (tmp_path / "data" / "foot.csv").stat().st_mtime_ns
-    lw.Task.load(tmp_path / "task.toml").solve().save(tmp_path / "out")
-    assert (tmp_path / "out" / "data" / "foot.csv").exists() == (place == "inside")
-    assert (tmp_path / "data" / "foot.csv").stat().st_mtime_ns == before
-    lw.Task.load(tmp_path / "out" / "task.toml")
-    again = lw.Task.load(tmp_path / "task.toml").solve()
-    again.save(tmp_path / "out", fresh=True)
-    (tmp_path / "out" / "data").mkdir(exist_ok=True)
-    (tmp_path / "out" / "data" / "mine.csv").write_text("1,2\n")
-    with pytest.raises(lw.InputError, match="mine.csv" if place == "inside" else '"data"'):
-        again.save(tmp_path / "out", fresh=True)
-    assert (tmp_path / "out" / "data" / "mine.csv").exists()
+    (home / "task.toml").write_text(text)
+    before = file.stat().st_mtime_ns
+    out = tmp_path / "other" / "out"
+    shown = _run(str(home / "task.toml"), "-o", str(out), "--csv")
+    assert f"task.toml and {copied} in" in " ".join(shown.split())
+    assert file.stat().st_mtime_ns == before
+    saved = (out / "task.toml").read_text()
+    assert saved == text.replace(place.format(tmp_path), copied)
+    moved = out.rename(tmp_path / "moved")
+    file.unlink()
+    again = lw.Task.load(moved / "task.toml").solve()
+    again.save(moved, fresh=True)
+    mine = moved / Path(copied).parent / "mine.csv"
+    mine.write_text("1,2\n")
+    with pytest.raises(lw.InputError, match=r"mine\.csv"):
+        again.save(moved, fresh=True)
+    assert mine.exists()
+
+
+@pytest.mark.parametrize(
+    ("place", "copied"),
+    [
+        ("bar.toml", "bar.toml"),
+        ("../bar.toml", "mechanism/bar.toml"),
+        ("task-01.toml", "mechanism/task-01.toml"),
+    ],
+)
+def test_the_mechanism_of_a_task_is_copied_into_the_folder_of_its_designs(
+    tmp_path: Path, place: str, copied: str
+) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    (home / place).write_text(lw.example_text("slider-crank"))
+    text = (
+        f'format = 1\ntask = "improve"\nmechanism = "{place}"\n[improve]\nstarts = 1\n'
+        'goals = [{ of = "stroke(d)", target = 70 }]\n'
+    )
+    (home / "task.toml").write_text(text)
+    shown = _run(str(home / "task.toml"), "-o", str(home / "out"))
+    assert f"1 design, task.toml and {copied} in" in " ".join(shown.split())
+    moved = (home / "out").rename(tmp_path / "moved")
+    (home / place).unlink()
+    assert (moved / copied).read_text() == lw.example_text("slider-crank")
+    assert (moved / "task-01.toml").read_text() != lw.example_text("slider-crank")
+    assert lw.Task.load(moved / "task.toml").solve().delivered
+    again = _run(str(moved / "task.toml"), "-o", str(tmp_path / "again"))
+    assert f"task.toml and {copied} in" in " ".join(again.split())
 
 
 def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -363,14 +409,27 @@ def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wi
     assert "the least transmission angle: without it 6 would be sound" in repr(found)
 
 
-def test_a_curve_is_not_replaced_by_the_table_of_designs(tmp_path: Path) -> None:
-    (tmp_path / "designs.csv").write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
-    (tmp_path / "task.toml").write_text(
-        'format = 1\ntask = "path"\nimprove = { starts = 2 }\ncurve = { file = "designs.csv" }\n'
-    )
-    found = lw.Task.load(tmp_path / "task.toml").solve()
-    with pytest.raises(lw.InputError, match="has the name of the table of designs"):
-        write_designs(found, tmp_path / "out", FolderOptions(csv=True))
-    assert not (tmp_path / "out").exists()
-    write_designs(found, tmp_path / "out", FolderOptions())
-    lw.Task.load(tmp_path / "out" / "task.toml")
+@pytest.mark.parametrize("link", [False, True])
+@pytest.mark.parametrize("name", ["designs.csv", "task-01.toml"])
+def test_files_that_a_task_names_are_not_replaced_by_designs(
+    tmp_path: Path, name: str, link: bool
+) -> None:
+    if name == "designs.csv":
+        kept = "0,0\n4,1\n6,4\n3,7\n-1,4\n"
+        text = 'task = "path"\nimprove = { starts = 2 }\ncurve = { file = "designs.csv" }\n'
+    else:
+        kept = lw.example_text("slider-crank")
+        goals = '[{ of = "stroke(d)", target = 70 }]'
+        text = f'task = "improve"\nmechanism = "{name}"\nimprove = {{ goals = {goals} }}\n'
+    home = tmp_path / "home"
+    home.mkdir()
+    (home / name).write_text(kept)
+    (home / "task.toml").write_text(f"format = 1\n{text}")
+    out = tmp_path / "linked" if link else home
+    if link:
+        out.symlink_to(home)
+    shown = _run(str(home / "task.toml"), "-o", str(out), "--fresh", "--csv", code=2)
+    assert shown == ""
+    with pytest.raises(lw.InputError, match=f'holds "{name}", which the task names'):
+        lw.Task.load(home / "task.toml").solve().save(out, fresh=True)
+    assert (home / name).read_text() == kept

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
+from linkwork.api.task_copy import OWN_FILES, REFUSED, task_copy
 from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.designs_table import designs_table, front_of
 from linkwork.design.synthesis.result import Synthesis
@@ -31,10 +32,8 @@ __all__ = ["FolderOptions", "write_designs"]
 
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _LONGEST_STEM = 160  # bytes of a name: file systems take 255, temporary files add some
-_REFUSED = "refused"
 _TABLE = "designs.csv"
 _PICTURES = 24  # designs that a page shows
-_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +78,7 @@ def write_designs(
     interrupted = False
     with written_folder(root) as part:
         if options.refused:
-            (part / _REFUSED).mkdir()
+            (part / REFUSED).mkdir()
         for done, (k, design) in enumerate(chosen):
             name = _file_name(found, design)
             try:
@@ -102,7 +101,7 @@ def write_designs(
     for path in earlier:
         if path not in new:
             path.unlink(missing_ok=True)
-    emptied = root / _REFUSED
+    emptied = root / REFUSED
     if options.fresh and not options.refused and emptied.is_dir() and not any(emptied.iterdir()):
         emptied.rmdir()
     return {k: str(root / name) for k, name in names.items()}
@@ -118,13 +117,12 @@ def _write_design(design: JudgedDesign, path: Path, draw: bool) -> None:
 def _write_tables(
     found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
-    """The task with its curve, the table, the front and the page."""
-    save_text(found.task.text, part / "task.toml")
-    if found.task.curve is not None:
-        copy = _curve_in(part, found.task)
-        if copy is not None:
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            save_text(found.task.curve.text, copy)
+    """The task with the files that it names, the table, the front and the page."""
+    copy = task_copy(found.task)
+    save_text(copy.text, part / "task.toml")
+    for place, text in copy.files.items():
+        (part / place).parent.mkdir(parents=True, exist_ok=True)
+        save_text(text, part / place)
     if options.csv:
         save_text(csv_text(designs_table(found, files)), part / _TABLE)
     front = _front_picture(found) if options.draw or options.html else b""
@@ -169,15 +167,11 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
         If the folder holds files, and these are not to be replaced or are none of a synthesis, or
         if it cannot be written.
     """
-    curve = _curve_in(root, task)
-    if options.csv and curve == root / _TABLE:
-        raise InputError(
-            f'the task\'s curve "{_TABLE}" has the name of the table of designs: name its file '
-            "otherwise, or leave the table out"
-        )
-    own_folders = {root, root / _REFUSED}
-    if curve is not None:
-        own_folders |= {place for place in curve.parents if place.is_relative_to(root)}
+    copy_of_task = task_copy(task)
+    copies = [root / place for place in copy_of_task.files]
+    own_folders = {root, root / REFUSED}
+    for copy in copies:
+        own_folders |= {place for place in copy.parents if place.is_relative_to(root)}
     try:
         there = [
             path
@@ -188,7 +182,11 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
     except OSError as error:
         raise unwritten(root, error) from None
     for path in there:
-        own = _OWN.fullmatch(path.name) or path == curve
+        if path.resolve() in copy_of_task.moved:
+            raise InputError(
+                f'the folder "{root}" holds "{path.name}", which the task names: name a new folder'
+            )
+        own = OWN_FILES.fullmatch(path.name) or path in copies
         if not (options.fresh and path.is_file() and own):
             raise InputError(
                 f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
@@ -196,15 +194,6 @@ def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
             )
     check_place(root)
     return there
-
-
-def _curve_in(root: Path, task: Task) -> Path | None:
-    """The place in a folder that the task names for its curve; none if the curve is elsewhere."""
-    if task.curve is None:
-        return None
-    place = root / task.curve.file
-    inside = place.is_relative_to(root) and ".." not in place.relative_to(root).parts
-    return place if inside else None
 
 
 def _file_name(found: Synthesis, design: JudgedDesign) -> str:
@@ -216,4 +205,4 @@ def _file_name(found: Synthesis, design: JudgedDesign) -> str:
     stem = re.sub("-+", "-", "".join(kept)).encode()[:_LONGEST_STEM].decode(errors="ignore")
     stem = stem.strip("-") or "design"
     name = f"{stem}-{design.number:02}.toml"
-    return f"{_REFUSED}/{name}" if design.kinds else name
+    return f"{REFUSED}/{name}" if design.kinds else name

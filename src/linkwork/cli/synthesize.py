@@ -6,6 +6,7 @@ import click
 
 from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
 from linkwork.api.synthesis import Task
+from linkwork.api.task_copy import task_copy
 from linkwork.cli.interrupts import answer_interrupt
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.synthesis_page import synthesis_lines
@@ -77,7 +78,9 @@ def synthesize(
         lines = synthesis_lines(found)
         if output is not None:
             count = f"{len(files)} design{'' if len(files) == 1 else 's'}"
-            lines += ["", *wrapped(f"Wrote {count} and task.toml in {output}.")]
+            written = [count, "task.toml", *map(str, task_copy(found.task).files)]
+            told = f"Wrote {', '.join(written[:-1])} and {written[-1]} in {output}."
+            lines += ["", *wrapped(told)]
         print_lines(lines)
     if not found.delivered:
         context.exit(1)

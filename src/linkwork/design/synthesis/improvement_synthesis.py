@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -30,7 +31,6 @@ from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.errors import InputError, MechanismError, choices
 from linkwork.foundation.names import GROUND
-from linkwork.foundation.paths import as_path
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
@@ -40,7 +40,6 @@ from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.quantity import Kind
 from linkwork.textfile.library import example_text, examples
 from linkwork.textfile.reader import read_text
-from linkwork.textfile.toml_text import bytes_of, text_of
 
 __all__ = ["improve_description", "improve_mechanism", "mechanism_of"]
 
@@ -139,12 +138,12 @@ def _mechanism(task: Task) -> Description:
     name = task.mechanisms[0]
     if name in examples():
         return read_text(example_text(name), f"{name}.toml").description
-    path = as_path(name) if task.folder is None else task.folder / as_path(name)
-    if not path.is_file():
+    if task.mechanism_text is None:
         known = choices("examples", examples(), name)
         told = f'"{name}" is no file in the folder of the task and no example {known}'
         task.refuse([(("mechanism",), told)])
-    return read_text(text_of(bytes_of(path, str(path)), str(path)), str(path)).description
+    assert task.mechanism_text is not None  # refused
+    return read_text(task.mechanism_text, str((task.folder or Path()) / name)).description
 
 
 def _driven(description: Description, task: Task) -> Description:

@@ -80,6 +80,9 @@ class Task:
         How dimensions are improved; of a path task, that points are met approximately.
     folder : Path, optional
         Where files are that the task names.
+    mechanism_text : str, optional
+        Of the file of the mechanism that is improved; none of the library's, and of files that are
+        not there.
     text : str
         The text of the file that the task was read from.
 
@@ -102,6 +105,7 @@ class Task:
     curve: Curve | None = None
     improvement: Improvement | None = None
     folder: Path | None = None
+    mechanism_text: str | None = None
     text: str = ""
 
     def __post_init__(self) -> None:

@@ -23,6 +23,7 @@ from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
+from linkwork.textfile.library import examples
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import check_format, located_error
 from linkwork.textfile.structure import Structure
@@ -113,18 +114,27 @@ def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
         raise MechanismError([problem], "the task") from None
 
 
+def _own_mechanism(names: tuple[str, ...], folder: Path | None) -> str | None:
+    """The text of the user's mechanism that a task improves, if there is its file."""
+    if len(names) != 1 or names[0] in examples():
+        return None
+    path = (folder or Path()) / names[0]
+    return text_of(bytes_of(path, str(path)), str(path)) if path.is_file() else None
+
+
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
     angle = AngleUnit(content.get("angle", "deg"))
     curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
+    mechanisms = (mechanism,) if isinstance(mechanism, str) else tuple(mechanism)
     return Task(
         kind=content["task"],
         name=content.get("name", stem),
         length=content.get("length", Task.length),
         angle=angle,
-        mechanisms=(mechanism,) if isinstance(mechanism, str) else tuple(mechanism),
+        mechanisms=mechanisms,
         positions=tuple(map(_position, content.get("positions", ()))),
         given=_given(content.get("given", {})),
         function=_function(content["function"], mechanism) if "function" in content else None,
@@ -133,6 +143,7 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         curve=curve,
         improvement=_improvement(content["improve"]) if "improve" in content else None,
         folder=folder,
+        mechanism_text=_own_mechanism(mechanisms, folder) if content["task"] == "improve" else None,
         text=text,
     )
 

@@ -1,0 +1,59 @@
+"""The task of a folder of designs, with copies of the files that it names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwork.design.tasks.task import Task
+from linkwork.textfile.text_edits import TextEdits
+
+__all__ = ["OWN_FILES", "REFUSED", "TaskCopy", "task_copy"]
+
+REFUSED = "refused"
+#: Names of files of a synthesis.
+OWN_FILES = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskCopy:
+    """A task that is at home in the folder of its designs.
+
+    ``text``: that of the task's file; ``files``: the texts of the files that it names, by their
+    places in the folder; ``moved``: the files whose copies have other places.
+    """
+
+    text: str
+    files: Mapping[Path, str]
+    moved: Collection[Path]
+
+
+def task_copy(task: Task) -> TaskCopy:
+    """The copy of a task for a folder of its designs.
+
+    Files that lie in the folder of the task keep their places. Others, and those with names of
+    designs, lie in a folder named like the key that names them: ``curve/foot.csv``.
+    """
+    files: dict[Path, str] = {}
+    moved: list[Path] = []
+    edits = TextEdits(task.text)
+    for key, name, text in _named_files(task):
+        place = Path(name)
+        first = place.parts[0]
+        own = first == REFUSED or (place == Path(first) and OWN_FILES.fullmatch(first))
+        if place.is_absolute() or ".." in place.parts or own:
+            moved.append(((task.folder or Path()) / place).resolve())
+            place = Path(key[0], place.name)
+            edits.put(key, place.as_posix())
+        files[place] = text
+    return TaskCopy(text=edits.text if moved else task.text, files=files, moved=moved)
+
+
+def _named_files(task: Task) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """The files that a task names: their keys, names and texts."""
+    if task.curve is not None:
+        yield ("curve", "file"), task.curve.file, task.curve.text
+    if task.mechanism_text is not None:
+        yield ("mechanism",), task.mechanisms[0], task.mechanism_text
