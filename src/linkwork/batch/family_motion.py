@@ -27,12 +27,12 @@ from linkwork.foundation.arrays import Array, BoolArray, ComplexArray, StatusArr
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.errors import (
     InputError,
-    MissingPackageError,
     UnknownNameError,
     choices,
 )
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import find_spelling
+from linkwork.foundation.optional_packages import installed_with
 from linkwork.foundation.status import Status
 from linkwork.motion.leading_input import leading_input
 from linkwork.results.quantities.asked import Asked, Group
@@ -344,12 +344,8 @@ class FamilyMotion:
         InputError
             If the arrays do not fit into memory.
         """
-        try:
+        with installed_with("tables", "labelled arrays need xarray"):
             import xarray
-        except ImportError:
-            raise MissingPackageError(
-                'labelled arrays need xarray: pip install "linkwork[tables]"'
-            ) from None
         self.check_names(names)
         model = self.designs.base
         lead = model.equations.inputs[0].name

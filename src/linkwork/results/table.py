@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwork.foundation.arrays import AnyArray
-from linkwork.foundation.errors import MissingPackageError
+from linkwork.foundation.optional_packages import installed_with
 
 __all__ = ["Column", "Table"]
 
@@ -58,24 +58,16 @@ class Table:
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with the input as index; units in ``attrs["units"]``."""
-        try:
+        with installed_with("tables", "data frames need pandas"):
             import pandas
-        except ImportError:
-            raise MissingPackageError(
-                'data frames need pandas: pip install "linkwork[tables]"'
-            ) from None
         frame = pandas.DataFrame(dict(self.columns)).set_index(self.index)
         frame.attrs["units"] = dict(self.units)
         return frame
 
     def to_xarray(self) -> Any:
         """An xarray Dataset over the input; every variable has ``attrs["units"]``."""
-        try:
+        with installed_with("tables", "labelled arrays need xarray"):
             import xarray
-        except ImportError:
-            raise MissingPackageError(
-                'labelled arrays need xarray: pip install "linkwork[tables]"'
-            ) from None
         axis = self.columns[self.index]
         variables = {
             name: (self.index, column, {"units": self.units[name]})

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from linkwork.foundation.arrays import AnyArray
 from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.optional_packages import installed_with
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -130,12 +131,8 @@ def _film_of_ffmpeg(pictures: Iterable[AnyArray], fps: float) -> bytes:
 
 
 def _pillow() -> ModuleType:
-    try:
+    with installed_with("plot", "GIF, APNG and WebP need Pillow"):
         from PIL import Image
-    except ImportError:
-        raise MissingPackageError(
-            'GIF, APNG and WebP need Pillow: pip install "linkwork[plot]"'
-        ) from None
     return Image
 
 

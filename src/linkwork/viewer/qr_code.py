@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.optional_packages import installed_with
 
 if TYPE_CHECKING:
     from segno import QRCode
@@ -41,10 +42,8 @@ def _saved(link: str, kind: str, scale: int, **options: bool) -> bytes:
 
 
 def _code(link: str) -> QRCode:
-    try:
+    with installed_with("qr", "QR codes need segno"):
         import segno
-    except ImportError:
-        raise MissingPackageError('QR codes need segno: pip install "linkwork[qr]"') from None
     size = len(link.encode())
     if size > _MOST:
         raise InputError(

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from linkwork.foundation.errors import MissingPackageError, choices
+from linkwork.foundation.errors import choices
+from linkwork.foundation.optional_packages import installed_with
 from linkwork.results.force import Force
 from linkwork.results.motion import Motion
 from linkwork.viewer.notebook_html import motion_html
@@ -74,13 +75,9 @@ def motions_widget(
 @lru_cache
 def _widget_class() -> Any:
     """The class of the widget, created at its first use, when anywidget is imported."""
-    try:
+    with installed_with("notebook", "widgets need anywidget"):
         import anywidget
         import traitlets
-    except ImportError:
-        raise MissingPackageError(
-            'widgets need anywidget: pip install "linkwork[notebook]"'
-        ) from None
     script = resources.files("linkwork.viewer") / "static" / "widget.js"
 
     # No types from here on: the type checker may run without anywidget and traitlets.

@@ -12,7 +12,8 @@ from uuid import uuid4
 
 from linkwork.batch.study.job import Job, Part, compute_part
 from linkwork.batch.study.workers import Task, Values, pump_parts
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.optional_packages import installed_with
 
 __all__ = ["cluster_crew"]
 
@@ -30,12 +31,8 @@ def cluster_crew(job: Job, tasks: Iterable[Task], scheduler: str) -> Iterator[tu
     InputError
         If no scheduler answers, it has no workers, or these reject the job.
     """
-    try:
+    with installed_with("cluster", "studies on a cluster need dask.distributed"):
         import distributed
-    except ImportError:
-        raise MissingPackageError(
-            'studies on a cluster need dask.distributed: pip install "linkwork[cluster]"'
-        ) from None
     try:
         client = distributed.Client(scheduler, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from linkwork.foundation.errors import MissingPackageError
+from linkwork.foundation.optional_packages import installed_with
 
 __all__ = ["build123d", "ezdxf", "shapely"]
 
@@ -34,9 +34,5 @@ def build123d() -> Any:
 
 
 def _loaded(package: str, extra: str) -> Any:
-    try:
+    with installed_with(extra, f"plates need {package}"):
         return import_module(package)
-    except ImportError:
-        raise MissingPackageError(
-            f'plates need {package}: pip install "linkwork[{extra}]"'
-        ) from None

@@ -22,7 +22,7 @@ from linkwork.export.report.document import (
 )
 from linkwork.export.report.equation_terms import office_terms
 from linkwork.export.report.figure_files import FigureFile, figure_files
-from linkwork.foundation.errors import MissingPackageError
+from linkwork.foundation.optional_packages import installed_with
 
 __all__ = ["docx_bytes", "docx_package"]
 
@@ -43,12 +43,8 @@ def docx_package() -> Any:
     MissingPackageError
         If it is not installed.
     """
-    try:
+    with installed_with("report", "Word reports need python-docx"):
         import docx
-    except ImportError:
-        raise MissingPackageError(
-            'Word reports need python-docx: pip install "linkwork[report]"'
-        ) from None
     return docx
 
 

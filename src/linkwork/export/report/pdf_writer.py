@@ -22,7 +22,7 @@ from linkwork.export.report.document import (
 )
 from linkwork.export.report.equation_terms import typst_terms
 from linkwork.export.report.figure_files import figure_files
-from linkwork.foundation.errors import MissingPackageError
+from linkwork.foundation.optional_packages import installed_with
 
 __all__ = ["pdf_bytes", "typst_package", "typst_text"]
 
@@ -62,12 +62,8 @@ def typst_package() -> Any:
     MissingPackageError
         If it is not installed.
     """
-    try:
+    with installed_with("report", "PDF reports need Typst"):
         import typst
-    except ImportError:
-        raise MissingPackageError(
-            'PDF reports need Typst: pip install "linkwork[report]"'
-        ) from None
     return typst
 
 

@@ -36,7 +36,8 @@ from linkwork.export.workbook.newton_page import planned_newton, write_newton
 from linkwork.export.workbook.page_layout import set_up_page
 from linkwork.export.workbook.partial_page import PARTIALS, write_partials
 from linkwork.export.workbook.velocity_page import planned_velocities, write_velocities
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.optional_packages import installed_with
 from linkwork.motion.model import Model
 from linkwork.motion.own_motion import check_own_motion
 from linkwork.results.motion import Motion
@@ -157,12 +158,8 @@ def check_xlsxwriter() -> None:
     MissingPackageError
         If it is not.
     """
-    try:
+    with installed_with("tables", "workbooks need XlsxWriter"):
         import xlsxwriter  # noqa: F401  # loaded as it will be for the workbook
-    except ImportError:
-        raise MissingPackageError(
-            'workbooks need XlsxWriter: pip install "linkwork[tables]"'
-        ) from None
 
 
 def _new(buffer: io.BytesIO) -> tuple[Any, type]:

@@ -11,7 +11,8 @@ from collections.abc import Awaitable, Callable, Iterator, MutableMapping
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from linkwork.foundation.errors import InputError, MissingPackageError
+from linkwork.foundation.errors import InputError
+from linkwork.foundation.optional_packages import installed_with
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.events import Event, Refused
 from linkwork.viewer.live.guard import SUBPROTOCOL, Guard
@@ -224,13 +225,9 @@ def _listening(port: int) -> socket.socket:
 
 def _uvicorn(app: Callable[..., Any]) -> Any:
     """A uvicorn server without logs, which could contain the token."""
-    try:
+    with installed_with("view", "the live page needs uvicorn and websockets"):
         import uvicorn
         import websockets  # noqa: F401 - uvicorn's way to hold the connection
-    except ImportError:
-        raise MissingPackageError(
-            'the live page needs uvicorn and websockets: pip install "linkwork[view]"'
-        ) from None
     from linkwork.viewer.live.short_connections import ShortConnection
 
     config = uvicorn.Config(
