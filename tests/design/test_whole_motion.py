@@ -12,6 +12,7 @@ from linkwork.design.improvement import whole_motion
 from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.names import GROUND
+from linkwork.motion.model import model_of
 from linkwork.motion.motion_boxes import motions_of_points
 from tests.campaigns import whole_motions as campaign
 from tests.library_mechanisms import driven_examples, read_example
@@ -40,6 +41,27 @@ def test_the_least_transmission_angle_is_found_between_rows() -> None:
     # the bounds are drawn together until a wanted angle is decided
     close = _whole("slider-crank", 40.0).least_transmission(np.radians(60.0 - 1e-9))
     assert close.low >= np.radians(60.0 - 1e-9)
+
+
+def test_the_least_angle_is_found_where_many_rows_lie_near_a_dead_point() -> None:
+    """A leg, a dyad of which stays near its dead point for ten rows: a quarter of a degree."""
+    lengths = {
+        "O A": 15.907775626002605, "A B": 51.03469313221023, "P B": 39.358517768202624,
+        "A C": 55.73301826609086, "P C": 37.55925084780406, "B D": 68.83997435266795,
+        "P D": 38.14007411176997, "D E": 42.44365257810582, "C E": 42.99332279872897,
+        "E F": 41.08127583435382, "C F": 55.79005714393648,
+    }  # fmt: skip
+    tables = {"lengths": lengths, "points": dict(lw.example("jansen-leg").description.points)}
+    tables["points"]["O"] = (-1.4346927020143332, 2.3413926983668953)
+    tables["points"]["P"] = (-40.47784426107378, -4.263913083408191)
+    leg = lw.api.Mechanism(lw.example("jansen-leg").description.with_tables(tables))
+    whole = WholeMotion.of(model_of(leg.description), leg.sweep())
+    assert whole is not None
+    found = whole.least_transmission(0.0)
+    near = leg.sweep(start=192, stop=194, step=1e-3)["E.transmission"]
+    least = np.minimum(near, 180.0 - near).min()
+    assert np.degrees(found.low) == pytest.approx(least, abs=6e-5)
+    assert np.degrees(found.low) < least < np.degrees(found.high) + 1e-6
 
 
 def test_a_thin_obstacle_between_two_rows_is_met() -> None:

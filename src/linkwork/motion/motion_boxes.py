@@ -31,7 +31,8 @@ from linkwork.results.motion import Motion
 __all__ = ["Boxes", "PointMotions", "boxes_of", "motions_of_points", "refined", "variables_of"]
 
 _SLACK = 1.0 + 1e-9  # covers the rounding of sums of a few dozen terms
-_MOST = 4000  # positions solved in between to prove the ways into halves of boxes
+_MOST = 4000  # positions solved in between to prove the ways into halves of boxes,
+_MOST_EACH = 1000  # and at least this many for each: 500 are needed 0.25° from a dead point
 _HALVINGS = 24  # of a box, at most
 
 
@@ -289,7 +290,8 @@ def _connected(solver: BlockSolver, path: InputPath, old: SolvedRows, new: Solve
         pair = SolvedRows.concatenate([old.take(np.array([k])), new.take(np.array([k]))])
         pairs.append(pair if old.t[k] < new.t[k] else pair.take(np.array([1, 0])))
     if pairs:
-        proofs = prove_paths(solver, path, pairs, anchors=[0] * len(pairs), most=_MOST)
+        most = max(_MOST, _MOST_EACH * len(pairs))
+        proofs = prove_paths(solver, path, pairs, anchors=[0] * len(pairs), most=most)
         found[:] = [bool(proof.connected.all()) for proof in proofs]
     return found
 

@@ -31,6 +31,7 @@ from linkwork.results.motion import Motion
 __all__ = ["WholeMotion"]
 
 _MOST_BOXES = 20_000  # that a proof may take, besides those of the rows
+_MOST_OF_ANGLES = 60_000  # the same, for dyads that stay near a dead point
 _CLOSE = 1e-6  # rad: between the bounds of the least angle, unless a wanted one is between them
 _ROUNDING = 1e-12  # rad: of angles in proved positions
 
@@ -71,10 +72,6 @@ class WholeMotion:
     def _unit(self) -> float:
         return float(self.model.input_scale[self.boxes.lead])
 
-    @property
-    def _most(self) -> int:
-        return len(self.boxes) + _MOST_BOXES
-
     @cached_property
     def dyads(self) -> tuple[Dyad, ...]:
         """The dyads with a transmission angle, one for each pin."""
@@ -105,7 +102,8 @@ class WholeMotion:
             lowest = min(lowest, float(low[decided].min(initial=np.inf)))
             return np.asarray(decided)
 
-        left = refined(self.model, self.boxes, decide, most=self._most)
+        most = len(self.boxes) + _MOST_OF_ANGLES
+        left = refined(self.model, self.boxes, decide, most=most)
         lowest = min(lowest, float(self._angles(left)[1].min(initial=np.inf)))
         return LeastAngle(low=lowest, high=best, at=place / self._unit)
 
@@ -166,7 +164,7 @@ class WholeMotion:
                     clear &= (low > radius).all(axis=1)
             return None if met else clear
 
-        left = refined(self.model, self.boxes, decide, most=self._most)
+        left = refined(self.model, self.boxes, decide, most=len(self.boxes) + _MOST_BOXES)
         if met:
             _, side, place = min(met)
             return Contact(met=(side, place / self._unit), open=None)

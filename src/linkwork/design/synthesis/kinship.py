@@ -11,7 +11,7 @@ from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 
 __all__ = ["alike_among"]
 
-_ALIKE = 0.01  # of the longest link: fits of one minimum, reached from several starts
+_ALIKE = 0.01  # of the longest link of the smaller design: fits of one minimum, reached from several starts
 _EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
 
 _LEGS = ("A", "A0", "B", "B0")
@@ -47,7 +47,7 @@ def _cognates(loops: Sequence[SynthesizedDesign]) -> Iterator[_Pair]:
         own = np.array(cognates(linkages[k : k + 1]))[:, None]
         away = np.abs(own - wanted).max(axis=3).min(axis=(0, 1))
         away = np.maximum(away, np.abs(places[rest, 4] - places[k, 4]))
-        near = away <= _ALIKE * np.maximum(sizes[rest], sizes[k])
+        near = away <= _ALIKE * np.minimum(sizes[rest], sizes[k])
         yield from ((one, loops[k + 1 + int(i)]) for i in np.flatnonzero(near))
 
 
