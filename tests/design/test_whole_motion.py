@@ -12,6 +12,7 @@ from linkwork.design.improvement import whole_motion
 from linkwork.design.improvement.between_rows import BetweenRows
 from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.names import GROUND
+from linkwork.mechanism.draft import Draft
 from linkwork.motion.model import model_of
 from linkwork.motion.motion_boxes import motions_of_points
 from tests.campaigns import whole_motions as campaign
@@ -51,10 +52,14 @@ def test_the_least_angle_is_found_where_many_rows_lie_near_a_dead_point() -> Non
         "P D": 38.14007411176997, "D E": 42.44365257810582, "C E": 42.99332279872897,
         "E F": 41.08127583435382, "C F": 55.79005714393648,
     }  # fmt: skip
-    tables = {"lengths": lengths, "points": dict(lw.example("jansen-leg").description.points)}
-    tables["points"]["O"] = (-1.4346927020143332, 2.3413926983668953)
-    tables["points"]["P"] = (-40.47784426107378, -4.263913083408191)
-    leg = lw.api.Mechanism(lw.example("jansen-leg").description.with_tables(tables))
+    pivots = {
+        "O": (-1.4346927020143332, 2.3413926983668953),
+        "P": (-40.47784426107378, -4.263913083408191),
+    }
+    description = lw.example("jansen-leg").description
+    assert isinstance(description, Draft)
+    tables = {"lengths": lengths, "points": {**description.points, **pivots}}
+    leg = lw.api.Mechanism(description.with_tables(tables))
     whole = WholeMotion.of(model_of(leg.description), leg.sweep())
     assert whole is not None
     found = whole.least_transmission(0.0)

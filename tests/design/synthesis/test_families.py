@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from linkwork.design.poses.burmester import centre_points, sampled_dyads, slidin
 from linkwork.design.poses.guiding_linkage import linkage_of
 from linkwork.design.synthesis.result import SynthesizedDesign
 from linkwork.foundation.arrays import Array, ComplexArray
-from linkwork.textfile.writer import write_text
+from linkwork.textfile.writer import write_tables, write_text
 
 _POSES = [(0, 0, 0), (200, 100, 15), (320, 260, 40), (300, 420, 75)]
 
@@ -279,6 +281,35 @@ def test_tolerances_give_designs_within_them_and_more_than_five_poses() -> None:
         for value, wanted in zip(design.inputs, points, strict=True):
             x, y = mechanism.solve(at=value).points["P"]
             assert abs(x + 1j * y - wanted) <= design.error + 1e-6
+
+
+_SIX = [(0, 0, 0), (60, 40, 15), (120, 60, 30), (190, 60, 50), (250, 40, 70), (300, 0, 95)]
+
+
+def test_six_poses_are_missed_less_within_a_tolerance_of_their_angles() -> None:
+    errors = {}
+    for swing in (0.0, 3.0):
+        poses = [
+            {"point": [x, y], "angle": g, "tolerance": 8.0, "angle_tolerance": swing * (g > 0)}
+            for x, y, g in _SIX
+        ]
+        tables = {"format": 1, "task": "motion", "mechanism": "four-bar", "positions": poses}
+        found = lw.Task.loads(write_tables(tables)).solve()
+        sound = [design for design in found.designs if not design.kinds]
+        errors[swing] = min((d.error for d in sound), default=math.inf), len(sound)
+        for design in sound[:8]:
+            mechanism = lw.api.Mechanism(design.linkage)
+            turns = []
+            for value, (x, y, g) in zip(design.inputs, _SIX, strict=True):
+                at = mechanism.solve(at=value).points
+                assert abs(complex(*at["P"]) - complex(x, y)) <= design.error + 1e-6 <= 8.0 + 1e-6
+                arm = complex(*at["P"]) - complex(*at["A"])
+                turns.append(np.degrees(np.angle(arm * np.exp(-1j * np.radians(g)))))
+            off = (np.array(turns) - turns[0] + 180.0) % 360.0 - 180.0
+            assert np.abs(off).max() <= swing + 1e-6
+            assert swing == 0.0 or np.abs(off).max() > 1e-3
+    assert errors[3.0][0] < 0.9 * errors[0.0][0]
+    assert errors[3.0][1] > errors[0.0][1]
 
 
 def test_a_pivot_on_the_line_of_a_slider_is_one_point_of_its_file() -> None:

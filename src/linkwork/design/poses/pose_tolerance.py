@@ -17,6 +17,9 @@ __all__ = ["NearTasks", "drawn_within", "is_tolerant", "near_tasks", "with_misse
 
 _SAMPLES = 400
 _SEED = 1
+# angles within their tolerances where points are missed least: of so many, then by Gauss-Newton
+_PARTS, _STEPS = 5, 6
+_SLIGHT = 1e-6  # rad: for slopes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,16 +40,20 @@ def near_tasks(task: Task, points: ComplexArray, angles: Array) -> NearTasks:
     if count == FIVE and not is_tolerant(task):
         return NearTasks(points=points[None], angles=angles[None], is_exact=True)
     rng = np.random.default_rng(_SEED)
-    shift, turn = drawn_within(task, _SAMPLES, rng)
-    exact = [p.tolerance == 0 and p.angle_tolerance == 0 for p in task.positions]
-    index = _choices(rng, np.array(exact), count)
-    rows = np.arange(_SAMPLES)[:, None]
-    if count > FIVE:
-        # the others are compared at the wanted angle of the first
-        turn[:] = 0.0
+    exact = np.array([p.tolerance == 0 and p.angle_tolerance == 0 for p in task.positions])
+    rows, found = np.arange(_SAMPLES)[:, None], []
+    # five of more also at their own angles: few of those turned meet the others
+    turned = any(p.angle_tolerance for p in task.positions)
+    for part in ((0.0, 1.0) if turned else (0.0,)) if count > FIVE else (1.0,):
+        shift, turn = drawn_within(task, _SAMPLES, rng)
+        if count > FIVE:
+            # the others are compared from the angle of the first
+            turn[:, 0] = 0.0
+        index = _choices(rng, exact, count)
+        found.append(((points + shift)[rows, index], (angles + part * turn)[rows, index]))
     return NearTasks(
-        points=(points + shift)[rows, index],
-        angles=(angles + turn)[rows, index],
+        points=np.concatenate([own for own, _ in found]),
+        angles=np.concatenate([own for _, own in found]),
         is_exact=False,
     )
 
@@ -83,11 +90,11 @@ def with_misses(
 ) -> Candidates | None:
     """Designs at all wanted poses, and how far their points miss them; none beyond tolerance.
 
-    Designs of five poses of more are placed at the wanted angles of the others: there the misses of
-    their points are compared, for the better of both positions that have this angle.
+    Designs of five poses of more are placed at the angles of all poses, within their tolerances
+    where points are missed least: for the better of both positions that have this angle.
     """
     if len(points) > FIVE:
-        given = _at_all(given, points, angles)
+        given = _at_all(task, given, points, angles)
     if not len(given):
         return None
     missed = np.abs(given.guided - points)
@@ -98,9 +105,38 @@ def with_misses(
     return kept if len(kept) else None
 
 
-def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidates:
+def _at_all(task: Task, given: Candidates, points: ComplexArray, angles: Array) -> Candidates:
     """Designs whose first position is the first pose, at the angles of all poses."""
-    turns = np.exp(1j * (angles - angles[0]))
+    swing = np.array([position.angle_tolerance for position in task.positions])
+    swing = swing * task.angle.radians * (np.arange(len(points)) > 0)
+    wanted = angles - angles[0]
+
+    def misses(turn: Array) -> tuple[Array, ComplexArray, tuple[ComplexArray, ...]]:
+        a, coupler, arm = _placed(given, points, np.exp(1j * (wanted + turn)))
+        away = a + arm - points
+        return np.nan_to_num(np.abs(away), nan=np.inf), away, (a, a + coupler, a + arm)
+
+    turn = np.zeros((len(given), len(points)))
+    if swing.any():
+        tried = [swing * part + turn for part in np.linspace(-1.0, 1.0, _PARTS)]
+        turn = np.choose(np.argmin([misses(own)[0] for own in tried], axis=0), tried)
+        least, away, _ = misses(turn)
+        for _ in range(_STEPS):
+            slope = (misses(turn + _SLIGHT)[1] - misses(turn - _SLIGHT)[1]) / (2.0 * _SLIGHT)
+            with np.errstate(all="ignore"):
+                step = (away * slope.conj()).real / np.abs(slope) ** 2
+            new = np.clip(turn - np.nan_to_num(step), -swing, swing)
+            own, there, _ = misses(new)
+            better = own < least
+            turn, least = np.where(better, new, turn), np.where(better, own, least)
+            away = np.where(better, there, away)
+    return _moved_to(given, *misses(turn)[2])
+
+
+def _placed(
+    given: Candidates, points: ComplexArray, turns: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """A, B from A and P from A of designs whose bodies are turned (D, N) from the first pose."""
     coupler = (given.moving_b[:, :1] - given.moving_a[:, :1]) * turns
     arm = (given.guided[:, :1] - given.moving_a[:, :1]) * turns
     crank = np.abs(given.moving_a[:, :1] - given.fixed_a[:, None])
@@ -114,7 +150,7 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
             line_b = given.lines[:, :1] * turns
         with np.errstate(all="ignore"):
             a = meeting(given.fixed_a[:, None], line_a, given.fixed_b[:, None] - coupler, line_b)
-        return _moved_to(given, a, a + coupler, a + arm)
+        return a, coupler, arm
     # A is on its circle, and B on its circle or line moved back by the coupler
     centre = given.fixed_b[:, None] - coupler
     with np.errstate(invalid="ignore"):
@@ -137,8 +173,7 @@ def _at_all(given: Candidates, points: ComplexArray, angles: Array) -> Candidate
             ways = [(s * reach + 1j * away.imag) * u for s in (1.0, -1.0)]
     pivots = [given.fixed_a[:, None] + way for way in ways]
     misses = [np.nan_to_num(np.abs(a + arm - points), nan=np.inf) for a in pivots]
-    a = np.where(misses[0] <= misses[1], *pivots)
-    return _moved_to(given, a, a + coupler, a + arm)
+    return np.where(misses[0] <= misses[1], *pivots), coupler, arm
 
 
 def _moved_to(

@@ -11,7 +11,7 @@ from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 
 __all__ = ["alike_among"]
 
-_ALIKE = 0.01  # of the longest link of the smaller design: fits of one minimum, reached from several starts
+_ALIKE = 0.01  # of the longest link of the smaller one: fits of one minimum from several starts
 _EQUAL_NUMBERS = 1e-3  # relative: numbers of mirror images
 
 _LEGS = ("A", "A0", "B", "B0")
