@@ -40,6 +40,14 @@ def test_of_problem_3_of_wampler_morgan_and_sommese_one_curve_is_viable() -> Non
     assert remarks_on(found)[-1].startswith("Cognates draw one curve with different links: desig")
 
 
+def test_a_large_design_is_no_cognate_of_small_ones() -> None:
+    """Of the sample through three points one has links 1,000 times as long as others."""
+    found = lw.Task.path([(0, 0), (10, 0), (20, 0)]).solve()
+    sizes = [design.size for design in found.delivered]
+    assert max(sizes) > 1e3 * min(sizes)
+    assert not any(told.startswith("Cognates") for told in remarks_on(found))
+
+
 def test_five_points_with_given_pivots_are_solved_and_judged() -> None:
     found = lw.Task.path(_ON_A_LINE, given={"fixed_pivots": [(0, 0), (1, 0)]}).solve()
     assert found.real == found.proved == 15
