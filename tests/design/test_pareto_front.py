@@ -221,3 +221,20 @@ def test_fronts_without_a_meaning_are_refused() -> None:
         own: dict[str, Any] = given
         with pytest.raises(MechanismError, match=message):
             bar.improve(goals, **own)
+
+
+def test_a_front_that_no_start_leads_to_is_empty() -> None:
+    goals = [{"of": "stroke(d)", "target": 90}, {"of": "max(d)", "target": 60}]
+    given: dict[str, Any] = {"vary": ["O2 A", "B A"], "starts": 2, "front": 4}
+    never = {"O2 A": (100, 120), "B A": (10, 20)}
+    assert lw.loads(CRANK).improve(goals, bounds=never, **given) == ()
+    found = lw.Task.improve("slider-crank", goals=goals, bounds=never, **given).solve()
+    assert not found.designs
+
+
+@pytest.mark.parametrize("target", [math.inf, -math.inf, math.nan, 1e200])
+@pytest.mark.parametrize("front", [0, 4])
+def test_targets_beyond_floating_point_are_refused(target: float, front: int) -> None:
+    goals = [{"of": "stroke(d)", "target": target}, {"of": "max(d)", "target": 60}]
+    with pytest.raises(MechanismError, match=r"goals\[1\].target  must be within ±1e\+12"):
+        lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=front)

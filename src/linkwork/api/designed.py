@@ -150,7 +150,7 @@ class DesignedMechanism(DynamicMechanism):
         Returns
         -------
         tuple of ImprovedDesign
-            Different local minima: those with all rows proved first, then by their misses. Of a
+            Different fits: those with all rows proved first, then by their misses. Of a
             front its designs by rising miss of the first goal, then those that are not proved.
             Ctrl-C keeps the best so far.
 

@@ -36,7 +36,7 @@ def _counts(found: Synthesis) -> Iterator[tuple[str, str]]:
     if found.starts:
         yield "starts", str(found.starts)
         if not (found.task.improvement and found.task.improvement.front):
-            yield found.outcome, f"{found.real}, different ones"
+            yield "fits", f"{found.real}, different ones"
     else:
         yield "complex", f"{found.complex} solution{'' if found.complex == 1 else 's'}"
         yield "real", str(found.real)

@@ -350,7 +350,7 @@ def test_a_fit_that_ends_where_its_loop_hardly_closes_may_be_no_local_minimum(fi
     found = lw.Task.function("x^2", fit=fit, input=(0, 90), **_SQUARE).solve()
     (design,) = found.designs
     assert "the loop of the best one hardly closes: it may be no local minimum" in found.message
-    assert (found.starts, found.outcome) == (75, "fits")
+    assert "fits from 75 starts" in repr(found)
     assert design.transmission < 1.0
 
 

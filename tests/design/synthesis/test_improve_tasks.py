@@ -15,7 +15,8 @@ from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.loops.candidates import Drive
 from linkwork.design.synthesis import improvement_synthesis
-from linkwork.design.synthesis.advice import advice_of
+from linkwork.design.synthesis.advice import advice_of, remarks_on
+from linkwork.design.synthesis.designs_table import relative_misses
 from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism
 from linkwork.design.synthesis.solving import wishes_of
 from linkwork.foundation.errors import MechanismFileError
@@ -376,3 +377,30 @@ def test_scores_of_goals_do_not_depend_on_the_unit_of_length(tmp_path: Path) -> 
         scores.append([design.score for design in task.solve().designs])
     assert scores[1] == pytest.approx(scores[0], rel=1e-6)
     assert 0.1 < min(scores[0]) < 0.9
+
+
+def test_misses_of_goals_of_different_units_count_by_what_is_wanted() -> None:
+    """A ratio that is missed by a fifth is worse than a stroke that is missed by a hundredth."""
+    goals = [{"of": "stroke(d)", "target": 80}, {"of": "time_ratio(d)", "target": 1.3}]
+    task = lw.Task.improve(
+        "slider-crank", goals=goals, vary=["O2 A", "O2.y"], starts=3, bounds={"O2.y": (-45, 45)},
+        spread=0.5, rank={"by": {"error": 1}},
+    )  # fmt: skip
+    found = task.solve()
+    assert found.designs
+    for design in found.designs:
+        stroke, ratio = design.goals.values()
+        assert relative_misses(design) == {"stroke(d)": stroke / 80, "time_ratio(d)": ratio / 1.3}
+        assert design.score == pytest.approx(1.0 / (1.0 + max(stroke / 80, ratio / 1.3)))
+
+
+def test_a_goal_that_no_design_meets_is_named() -> None:
+    task = lw.Task.improve(
+        "slider-crank", goals=[{"of": "stroke(d)", "target": 5000}], vary=["O2 A"], starts=1
+    )
+    (told,) = [text for text in remarks_on(task.solve()) if "misses" in text]
+    assert told.startswith("Every delivered design misses stroke(d) by 4")
+    met = lw.Task.improve(
+        "slider-crank", goals=[{"of": "stroke(d)", "target": 75}], vary=["O2 A"], starts=1
+    )
+    assert not [text for text in remarks_on(met.solve()) if "misses" in text]

@@ -64,7 +64,8 @@ def front_designs(
         for k in range(len(found.x))
         if np.isfinite(found.total[k])
     ]
-    values = np.array([found.objectives[k] for _, found, k in lanes]).reshape(len(lanes), -1)
+    values = np.array([found.objectives[k] for _, found, k in lanes])
+    values = values.reshape(len(lanes), len(fits[0][1].names))
     broken = np.array([found.broken[k] for _, found, k in lanes])
     kept = broken <= BROKEN
     if len(lanes) and not kept.any():

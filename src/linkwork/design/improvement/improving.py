@@ -72,7 +72,7 @@ def improved_designs(
     is_sound: Callable[[ImprovedDesign], bool] = lambda design: design.sound,
     enough: int | None = None,
 ) -> tuple[ImprovedDesign, ...]:
-    """Different local minima, sound ones first, then by their misses; or a front, in its order,
+    """Different fits, sound ones first, then by their misses; or a front, in its order,
     and the designs found on the way to it that are not sound.
 
     ``is_sound``: what a design of a front has to be, besides undominated. ``enough``: so many sound

@@ -14,6 +14,8 @@ __all__ = ["FITS", "Goal", "Improvement", "Points", "read_goal"]
 #: How misses count.
 FITS = ("least squares", "minimax")
 
+_LARGEST = 1e12  # of goals: squares of misses stay far from overflow
+
 Problems = Iterator[tuple[tuple[str | int, ...], str]]
 
 
@@ -49,6 +51,11 @@ class Goal:
     def problems(self) -> Problems:
         """What contradicts itself."""
         bounds = self.least, self.most
+        wanted = {"target": (self.target,), "least": (self.least,), "most": (self.most,)}
+        for key, numbers in {**wanted, "values": self.values}.items():
+            for number in numbers:
+                if number is not None and not abs(number) <= _LARGEST:
+                    yield (key,), f"must be within ±{_LARGEST:g}, got {number:g}"
         if self.values:
             if len(self.values) != len(self.at):
                 told = f"{len(self.values)} values for {len(self.at)} inputs: give as many"

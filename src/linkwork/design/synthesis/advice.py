@@ -9,6 +9,7 @@ from typing import NamedTuple
 from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.defects.verdicts import DefectKind
 from linkwork.design.synthesis.curve_synthesis import usual_longest
+from linkwork.design.synthesis.designs_table import goal_misses, relative_misses
 from linkwork.design.synthesis.function_synthesis import USUAL_RATIO, has_usual_ratio
 from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
@@ -19,6 +20,7 @@ __all__ = ["advice_of", "remark_on", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
+_MISSED = 0.01  # of what is wanted: a goal that is not met
 _AT_BOUND = 0.999  # of the longest link
 _MOVING = (DefectKind.CIRCUIT, DefectKind.BRANCH, DefectKind.ORDER)
 
@@ -34,7 +36,16 @@ def remarks_on(found: Synthesis) -> tuple[str, ...]:
         for count, doubt in counts
         if count
     )
-    return (*doubts, *alike_among(found))
+    return (*doubts, *_missed_goals(found), *alike_among(found))
+
+
+def _missed_goals(found: Synthesis) -> Iterator[str]:
+    """The goals that no delivered design comes near, with the smallest miss."""
+    shares = [relative_misses(design) for design in found.delivered]
+    for name, misses in goal_misses(found.delivered).items():
+        share = min((own.get(name, 0.0) for own in shares), default=0.0)
+        if share > _MISSED:
+            yield f"Every delivered design misses {name} by {min(misses):.4g} or more."
 
 
 def remark_on(design: JudgedDesign) -> str:

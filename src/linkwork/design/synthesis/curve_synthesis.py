@@ -46,7 +46,7 @@ _BOUNDED = {
 
 
 def solve_curve(task: Task, wishes: Wishes, progress: Callable[[float], None] | None) -> Found:
-    """The best four-bars and slider-cranks of a sample of starts; each a local minimum.
+    """The best four-bars and slider-cranks of a sample of starts: different fits.
 
     Raises
     ------
@@ -198,7 +198,7 @@ def _message(goal: CurveGoal, fitted: list[FittedCurves], seed: int) -> str:
     starts = sum(part.starts for part in fitted)
     kind = "a closed curve" if goal.closed else "a part of a curve"
     timing = "given timing" if goal.inputs is not None else "free timing"
-    told = f"a sample: different local minima from {starts} starts with seed {seed}"
+    told = f"a sample: different fits from {starts} starts with seed {seed}"
     if not all(part.finished for part in fitted):
         told = f"interrupted: the best so far of {starts} starts with seed {seed}"
     return f"{told}; {kind}, {timing}"

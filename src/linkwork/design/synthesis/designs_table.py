@@ -12,7 +12,7 @@ from linkwork.foundation.arrays import AnyArray
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.results.table import Table
 
-__all__ = ["designs_table", "front_of", "goal_misses"]
+__all__ = ["designs_table", "front_of", "goal_misses", "relative_misses"]
 
 _POINTS = ("A0", "B0", "C0", "S", "T", "U", "V", "A", "B", "C", "D", "K", "P")
 
@@ -62,3 +62,14 @@ def goal_misses(designs: Sequence[JudgedDesign]) -> dict[str, list[float]]:
     """The misses of every goal that improved designs have, in their order."""
     names = dict.fromkeys(name for design in designs for name in design.goals)
     return {name: [design.goals.get(name, np.nan) for design in designs] for name in names}
+
+
+def relative_misses(design: JudgedDesign) -> dict[str, float]:
+    """The misses of the goals of an improved design, each relative to the largest value wanted."""
+    improvement = design.task.improvement
+    goals = [] if improvement is None else [own for own in improvement.goals if not own.is_bound]
+    sizes = [max(map(abs, (*own.values, own.target or 0.0))) for own in goals]
+    usual = max(sizes, default=0.0) or 1.0
+    # points are the first of all misses, and no goal
+    misses = list(design.goals.items())[-len(goals) :] if goals else []
+    return {name: x / (size or usual) for (name, x), size in zip(misses, sizes, strict=False)}

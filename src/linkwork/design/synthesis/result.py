@@ -303,11 +303,6 @@ class Synthesis:
         return tuple(design for design in self.designs if design.kinds)
 
     @property
-    def outcome(self) -> str:
-        """What starts lead to, in words. A fit of a function may be no local minimum."""
-        return "local minima" if self.task.function is None else "fits"
-
-    @property
     def sound(self) -> int:
         """The number of designs without defects, delivered or not."""
         return len(self.designs) - len(self.refused)
@@ -360,7 +355,7 @@ class Synthesis:
     def __repr__(self) -> str:
         solutions = f"{self.complex}: {self.real} real, {self.proved} proved"
         if self.starts:
-            solutions = f"{self.real} local minima from {self.starts} starts"
+            solutions = f"{self.real} fits from {self.starts} starts"
         rows = [
             ("solutions", solutions),
             ("designs", f"{len(self.designs)} of {self.linkages} mechanisms"),

@@ -21,6 +21,7 @@ from linkwork.design.loops.candidates import Candidates, Drive
 from linkwork.design.loops.travel import Range
 from linkwork.design.poses.dyads import Refusal
 from linkwork.design.synthesis.curve_synthesis import solve_curve
+from linkwork.design.synthesis.designs_table import relative_misses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
 from linkwork.design.synthesis.improved_mechanism import SweptDesign, wishes_in_motion
@@ -170,7 +171,7 @@ def _improved(task: Task, progress: Callable[[float], None] | None) -> Synthesis
     kind = (
         "a front of designs, each the best one in some goal or trade-off,"
         if front
-        else "different local minima"
+        else "different fits"
     )
     told = f"a sample: {kind} from {starts} starts with seed {seed}"
     told += _of_motion(task, ranked)
@@ -229,7 +230,13 @@ def _ranked_alone(
     # an angle in radians, as those of four-bars are
     unit = {task.angle.value: task.angle.radians}
     measured = [
-        (task.in_radians(d.transmission), d.size, d.error * unit.get(d.error_unit, 1.0))
+        (
+            task.in_radians(d.transmission),
+            d.size,
+            max(relative_misses(d).values(), default=math.inf)
+            if task.has_goals_alone
+            else d.error * unit.get(d.error_unit, 1.0),
+        )
         for d in designs
     ]
     scores = _scores(task, *np.array(measured, dtype=float).reshape(-1, 3).T)
@@ -344,13 +351,12 @@ def _scores(task: Task, transmission: Array, sizes: Array, miss: Array) -> Array
 
 def _task_sizes(task: Task, sizes: Array) -> tuple[float, float]:
     """A length of the task's size, or the median size of designs (D,) for goals alone, and what
-    misses are compared with, of their own unit.
+    misses are compared with, of their own unit; those of goals alone are relative.
     """
     goal = task.function
-    if task.improvement is not None and task.improvement.goals and not task.positions:
-        goals, known = task.improvement.goals, sizes[np.isfinite(sizes)]
-        wanted = [one.weight * abs(x) for one in goals for x in (*one.values, one.target or 0.0)]
-        return float(np.median(known)) if len(known) else 1.0, max(wanted) or 1.0
+    if task.has_goals_alone:
+        known = sizes[np.isfinite(sizes)]
+        return float(np.median(known)) if len(known) else 1.0, 1.0
     if goal is not None and "slider-crank" not in task.mechanisms:
         return task.given.ground, 1.0
     points = np.array([complex(*position.point) for position in task.positions] or [0.0])

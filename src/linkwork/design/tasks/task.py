@@ -116,6 +116,11 @@ class Task:
             object.__setattr__(self, "positions", tuple(_curve_positions(self.curve)))
         self.refuse(self._problems())
 
+    @property
+    def has_goals_alone(self) -> bool:
+        """Whether a mechanism is improved for goals, without points."""
+        return self.improvement is not None and bool(self.improvement.goals) and not self.positions
+
     def refuse(self, problems: Iterable[tuple[tuple[str | int, ...], str]]) -> None:
         """Raise what is wrong, if anything is: keys with their messages."""
         found = [Problem(key=key, message=message) for key, message in problems]

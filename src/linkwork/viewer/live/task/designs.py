@@ -57,7 +57,7 @@ def task_solved(
     wish, costs = (None if live or found.sound else found.costliest) or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
     if found.starts:
-        solutions = f"{found.real} {found.outcome} from {found.starts} starts"
+        solutions = f"{found.real} fits from {found.starts} starts"
     return tell.TaskSolved(
         live=live,
         solutions=solutions,
