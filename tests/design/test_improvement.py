@@ -138,12 +138,38 @@ def test_goals_without_a_meaning_are_refused() -> None:
         bar.improve({"of": "rocker", "taget": 1.0})
     with pytest.raises(InputError, match="mixes numbers of the motion"):
         bar.improve({"of": "stroke(rocker) - rocker", "target": 1.0})
-    with pytest.raises(InputError, match=r'cannot vary .*"A P".* of "Chebyshev'):
-        lw.example("chebyshev").improve({"of": "max(P.y)", "target": 5.0})
     slot = lw.example("curved-slot")
     with pytest.raises(InputError, match=r'a fit cannot vary "O4\.x" of'):
         slot.improve({"of": "max(A.y)", "least": 0.0}, vary=["O4.x", "O2 A"], starts=1)
     assert slot.improve({"of": "max(A.y)", "least": 0.0}, vary=["O2 A"], starts=1)
+
+
+@pytest.mark.parametrize(
+    ("name", "of", "varied", "left_out"),
+    [
+        ("chebyshev", "stroke(P.x)", "A P", ""),
+        ("garage-door", "stroke(M.y)", "L M", "G.x"),
+        ("curved-slot", "stroke(A.y)", "O2 A", "O4.x"),
+    ],
+)
+def test_numbers_that_a_fit_cannot_follow_do_not_vary_by_default(
+    name: str, of: str, varied: str, left_out: str
+) -> None:
+    mechanism = lw.example(name)
+    target = 1.01 * mechanism.sweep().value(of)
+    best = mechanism.improve({"of": of, "target": target}, starts=2)[0]
+    assert best.sound
+    assert best.total < 1e-9 * target**2
+    assert varied in best.numbers
+    assert left_out not in best.numbers
+    if left_out:
+        with pytest.raises(InputError, match=f'a fit cannot vary "{left_out}"'):
+            mechanism.improve({"of": of, "target": target}, vary=[left_out])
+
+
+def test_a_mechanism_that_no_other_number_fits_is_not_improved() -> None:
+    with pytest.raises(InputError, match="has no number that can vary alone"):
+        lw.example("parallel-cranks").improve({"of": "stroke(A1.x)", "target": 1.0})
 
 
 def test_starts_spread_numbers_that_are_zero_by_the_size_of_the_mechanism(

@@ -92,8 +92,11 @@ class _Placing:
                 if length is not None:
                     self.z[point] = self.z[vertex] + rect(length, direction)
                     return True
-            # two circles around placed points determine a point up to its side
             centres = [q for q in self.z if frozenset((q, point)) in self.distances]
+            if seen is not None and centres:
+                self.z[point] = self.on_ray(point, *seen, centres[0])
+                return True
+            # two circles around placed points determine a point up to its side
             if len(centres) + measure < 2:
                 continue
             others = [q for q in self.points if q in self.z and q not in centres]
@@ -101,6 +104,24 @@ class _Placing:
             self.z[point] = self.trilaterated(point, first, second)
             return True
         return False
+
+    def on_ray(self, point: str, vertex: str, direction: float, centre: str) -> complex:
+        """Where a ray from a vertex meets a circle, at the distance nearest to the sketched one."""
+        radius = self.distance(centre, point, measure=False)
+        assert radius is not None
+        seen = (self.z[centre] - self.z[vertex]) * rect(1.0, -direction)
+        square = radius * radius - seen.imag * seen.imag
+        if square < -_AGREE * radius * radius:
+            raise ShapeError(
+                f"no triangle has |{centre}{point}| = {radius:.12g} and this angle at {vertex}, "
+                f"{abs(seen):.12g} away from {centre}"
+            )
+        # a ray that touches the circle: rounding must not part the two places
+        half = sqrt(choose(square > 1e-14 * radius * radius, square, 0.0))
+        near, far = seen.real - half, seen.real + half
+        sketched = abs(self.sketch[point] - self.sketch[vertex])
+        length = choose(abs(near - sketched) < abs(far - sketched), near, far)
+        return self.z[vertex] + rect(length, direction)
 
     def trilaterated(self, point: str, first: str, second: str) -> complex:
         """The intersection of two circles, on the side of the sketch."""

@@ -279,7 +279,9 @@ def _check(settings: Improvement, goals: Sequence[Goal | Points]) -> None:
 
 
 def numbers_to_vary(model: Model, names: Sequence[str]) -> tuple[VariedNumber, ...]:
-    """The numbers asked for, or all lengths, angles, offsets, dimensions and fixed pivots."""
+    """The numbers asked for, or all lengths, angles, offsets, dimensions and fixed pivots whose
+    changes a fit follows.
+    """
     numbers, _ = chosen_numbers(model, names or None)
     if names:
         return numbers
@@ -289,13 +291,25 @@ def numbers_to_vary(model: Model, names: Sequence[str]) -> tuple[VariedNumber, .
     lengths = description.lengths if isinstance(description, Draft) else ()
     given = [set(name.split()) for name in lengths]
     held = set().union(*(ends for ends in given if ends <= fixed))
-    return tuple(
+    usual = tuple(
         q
         for q in numbers
         if (q.table == "points" and q.key in fixed - held)
         or (q.table == "lengths" and not set(q.key.split()) <= fixed)
         or q.table in ("angles", "sliders", "dimensions")
     )
+    if _is_followed(model, usual):
+        return usual
+    return tuple(q for q in usual if _is_followed(model, [q]))
+
+
+def _is_followed(model: Model, numbers: Sequence[VariedNumber]) -> bool:
+    """Whether designs with other numbers have equations of the same form."""
+    try:
+        DesignWriter(model, numbers)
+    except NotElementwise:
+        return False
+    return True
 
 
 def box_of(model: Model, numbers: Sequence[VariedNumber], settings: Improvement) -> Box:
@@ -354,12 +368,7 @@ def _paths(model: Model, motion: Motion, goal: Points) -> tuple[PathGoal, ...]:
 
 def _unfollowed(model: Model, numbers: Sequence[VariedNumber]) -> str:
     """Which numbers a fit cannot vary, in words."""
-    names = []
-    for number in numbers:
-        try:
-            DesignWriter(model, [number])
-        except NotElementwise:
-            names.append(f'"{number.name}"')
+    names = [f'"{number.name}"' for number in numbers if not _is_followed(model, [number])]
     own = f'of "{model.description.name}"'
     if not names:
         return f"a fit cannot vary all these numbers {own} together: vary fewer"

@@ -1,0 +1,59 @@
+"""Shapes of links from their dimensions: points on rays and circles."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import linkwork as lw
+from linkwork.design.improvement.written_designs import DesignWriter
+from linkwork.mechanism.draft import Draft
+from linkwork.mechanism.link_dimension import Distance, VertexAngle
+from linkwork.mechanism.link_shape import ShapeError, place
+from linkwork.mechanism.varied_number import number_named, with_numbers
+from linkwork.motion.model import model_of
+
+
+@pytest.mark.parametrize("sketched", [0.7, 3.0])
+@pytest.mark.parametrize("turn", [1.0, -1.0])
+def test_an_angle_and_the_side_across_have_the_triangle_of_the_sketch(
+    sketched: float, turn: float
+) -> None:
+    """|AP| = 3, 40° at P, |AB| = 2: the law of cosines has two triangles."""
+    angle = math.radians(40.0) * turn
+    sketch = {"A": 0j, "P": 3 + 0j, "B": 3 + sketched * np.exp(1j * (math.pi + angle))}
+    given = [Distance("A", "P", 3.0), Distance("A", "B", 2.0)]
+    shape = place(("A", "P", "B"), sketch, given, [VertexAngle("A", "P", "B", angle)])
+    half = math.sqrt(4.0 - (3.0 * math.sin(angle)) ** 2)
+    length = 3.0 * math.cos(angle) + math.copysign(half, sketched - 2.0)
+    assert shape.local["B"] == pytest.approx(3.0 - length * np.exp(1j * angle))
+    assert not shape.measured
+
+
+def test_a_side_that_is_too_short_for_the_angle_is_refused() -> None:
+    given = [Distance("A", "P", 3.0), Distance("A", "B", 1.9)]
+    sketch = {"A": 0j, "P": 3 + 0j, "B": 2 + 2j}
+    with pytest.raises(ShapeError, match=r"no triangle has \|AB\| = 1.9 and this angle at P, 3 aw"):
+        place(("A", "P", "B"), sketch, given, [VertexAngle("A", "P", "B", -math.radians(40.0))])
+
+
+@pytest.mark.parametrize(
+    ("name", "varied"),
+    [("chebyshev", "A B"), ("watt-linkage", "A P B"), ("rapier-drive-links", "B C D")],
+)
+def test_designs_follow_the_side_across_an_angle(name: str, varied: str) -> None:
+    model = lw.example(name).model
+    number = number_named(model.description, varied)
+    x = np.linspace(0.97, 1.03, 5)[:, None] * float(number.of(model.description))
+    written = DesignWriter(model, [number]).written(x)
+    assert written.fine.all()
+    description = model.description
+    assert isinstance(description, Draft)
+    for k, value in enumerate(x[:, 0]):
+        alone = model_of(with_numbers(description, {number: float(value)}))
+        others = DesignWriter(alone, [number])
+        own = others.written(x[k : k + 1])
+        for node, (values, _) in written.known.items():
+            assert values[k] == pytest.approx(own.known[node][0][0], rel=1e-12, abs=1e-12)
