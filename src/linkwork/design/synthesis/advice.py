@@ -122,10 +122,10 @@ def _of_goals(found: Synthesis) -> str:
     if not names:
         return "Start nearer to the positions."
     shown = ", ".join(f'"{name}"' for name in names)
-    return (
-        "No start has a value of every goal; the time ratio of a constant angle has none. "
-        f"linkwork sweep {found.task.mechanisms[0]} --columns shows the values of {shown}."
-    )
+    why = "No start has a value of every goal; the time ratio of a constant angle has none."
+    if settings is not None and settings.bounds:
+        why = "No start within the bounds closes and has a value of every goal."
+    return f"{why} linkwork sweep {found.task.mechanisms[0]} --columns shows the values of {shown}."
 
 
 def _changes(found: Synthesis) -> Iterator[str]:

@@ -27,31 +27,40 @@ __all__ = ["TIME_RATIO"]
 
 _HALVINGS = 52
 
+_Extremes = tuple[tuple[Array, Array, Array], ...]
+
 
 def _ratio(rows: MotionRows, _: tuple[float, ...]) -> Array:
     up = rows.ascending()
     if up is None or not up.turn or len(up.input) < 3:
         return np.full(rows.value.shape[:-1], np.nan)
-    highest, lowest = (up.input[at] + step * part for at, step, part in _extremes(up))
-    part = np.mod(highest - lowest, up.turn)
-    ratio = np.maximum(part, up.turn - part) / np.minimum(part, up.turn - part)  # eq. (63)
+    slow, quick = _strokes(up, _extremes(up))
+    ratio = np.maximum(slow, quick) / np.minimum(slow, quick)  # eq. (63)
     found: Array = np.where(up.cycle & up.moves, ratio, np.nan)
     return found
+
+
+def _strokes(rows: MotionRows, extremes: _Extremes) -> tuple[Array, Array]:
+    """The parts of the turn from the smallest value to the largest one, and back."""
+    highest, lowest = (rows.input[at] + step * part for at, step, part in extremes)
+    part = np.mod(highest - lowest, rows.turn)
+    return part, rows.turn - part
 
 
 def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     """The derivatives of eq. (63): the extremes move as zeros of the derivative do."""
     up, count = rows.ascending(), rows.value.shape[-1]
     value, first, second = np.zeros(count), np.zeros(count), np.zeros(count)
-    if up is None or not np.isfinite(_ratio(rows, ())):
+    if up is None or not up.turn or len(up.input) < 3 or not (up.cycle & up.moves):
         return RowSlopes(value=np.full(count, np.nan))
-    places = [up.input[at] + step * part for at, step, part in _extremes(up)]
-    slow = np.mod(places[0] - places[1], up.turn)
-    quick = up.turn - slow
+    extremes = _extremes(up)
+    slow, quick = _strokes(up, extremes)
+    if not (slow and quick and np.isfinite(slow)):
+        return RowSlopes(value=np.full(count, np.nan))
     # of two equal strokes either may be the slow one after a change
     by_part = np.nan if slow == quick else (
         up.turn / quick**2 if slow > quick else -up.turn / slow**2)  # fmt: skip
-    for side, (at, step, part) in zip((1.0, -1.0), _extremes(up), strict=True):
+    for side, (at, step, part) in zip((1.0, -1.0), extremes, strict=True):
         pair = [int(at), (int(at) + 1) % (count - 1)]
         ends, bends = cubic_weights(float(part))
         # eq. (127): du = -dq'/q'', on the cubic of q' whose slope is that of its weights
@@ -66,7 +75,7 @@ def _slopes(rows: MotionRows, _: tuple[float, ...]) -> RowSlopes:
     return RowSlopes(value=value, first=first, second=second).in_order_of(rows)
 
 
-def _extremes(rows: MotionRows) -> tuple[tuple[Array, Array, Array], ...]:
+def _extremes(rows: MotionRows) -> _Extremes:
     """Row, step and part of the step of the largest and the smallest value, (…,) each."""
     # argmax takes NaN for the largest value; such motions are left out
     filled = np.where(np.isfinite(rows.value), rows.value, 0.0)
@@ -84,11 +93,11 @@ def _turning(rows: MotionRows, row: Array, side: float) -> tuple[Array, Array, A
     row = np.asarray(row)
     begin = np.where(side * at(rows.first, row) > 0.0, row, row - 1)
     step = np.diff(rows.input)[np.mod(begin, last)]
+    ends = at(rows.first, begin), at(rows.first, begin + 1)
+    slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
     low, high = np.zeros(row.shape), np.ones(row.shape)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        ends = at(rows.first, begin), at(rows.first, begin + 1)
-        slopes = step * at(rows.second, begin), step * at(rows.second, begin + 1)
         ahead = side * cubic(middle, ends, slopes) > 0.0
         low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
     return np.mod(begin, last), step, high
