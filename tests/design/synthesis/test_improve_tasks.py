@@ -336,8 +336,8 @@ def test_a_driven_range_that_no_wish_names_costs_no_designs() -> None:
     assert [kind.name for kind in found.defects] == ["RANGE"]
     assert found.costliest is None
     assert advice_of(found) == (
-        "The driven range is the table of four-bar: [wanted] input = { from = …, to = … } "
-        "narrows it."
+        "The driven range is the table of four-bar. Try more starts, wider bounds, targets nearer "
+        "to its own values, or a part of it: [wanted] input = { from = …, to = … }."
     )
     task["wanted"] = {"input": "turns fully"}
     wished = lw.Task.improve("four-bar", starts=3, **task).solve()

@@ -102,9 +102,11 @@ def advice_of(found: Synthesis) -> str:
     if found.task.kind == "improve":
         if not found.designs:
             return _of_goals(found)
+        settings = found.task.improvement
+        wider = ", wider bounds" if settings is not None and settings.bounds else ""
         told = (
-            f"The driven range is the table of {found.task.mechanisms[0]}: [wanted] input = "
-            "{ from = …, to = … } narrows it."
+            f"The driven range is the table of {found.task.mechanisms[0]}. Try more starts{wider}, "
+            "targets nearer to its own values, or a part of it: [wanted] input = { from = …, to = … }."
         )
         return told if DefectKind.RANGE in found.defects else ""
     if found.designs and not found.defects.keys() & {*_MOVING}:
