@@ -106,7 +106,8 @@ def advice_of(found: Synthesis) -> str:
         wider = ", wider bounds" if settings is not None and settings.bounds else ""
         told = (
             f"The driven range is the table of {found.task.mechanisms[0]}. Try more starts{wider}, "
-            "targets nearer to its own values, or a part of it: [wanted] input = { from = …, to = … }."
+            "targets nearer to its own values, or a part of it: "
+            "[wanted] input = { from = …, to = … }."
         )
         return told if DefectKind.RANGE in found.defects else ""
     if found.designs and not found.defects.keys() & {*_MOVING}:
