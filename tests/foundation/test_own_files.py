@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
@@ -14,13 +13,15 @@ from linkwork.foundation.own_files import OwnFiles
 _OWN = OwnFiles(
     run="search",
     option="--fresh",
-    numbered=re.compile(r"near-\d+\.toml"),
+    numbered=re.compile(r"(refused/)?near-\d+\.toml", re.IGNORECASE),
     named={"curve/foot.csv": b"foot", "table.csv": None},
-    folders=("refused",),
+    folders=(".", "refused"),
 )
 _FIRST = {"near-1.toml": "one", "near-2.toml": "two", "refused/near-3.toml": "three"}
-_NO_RUN = "which no earlier search wrote; this one could write over it"
-_REMEDY = "rename or move it, or name a new folder"
+_TOLD = (
+    "which this search could write over and which is yours, changed or read by it: "
+    "rename or move it, or name a new folder"
+)
 
 
 def _write(root: Path, files: dict[str, str], fresh: bool = True) -> None:
@@ -38,7 +39,8 @@ def _files(root: Path) -> dict[str, str]:
 def test_own_unchanged_files_are_replaced_and_all_others_stay(tmp_path: Path) -> None:
     root = tmp_path / "near"
     _write(root, _FIRST)
-    assert set(json.loads((root / ".linkwork-search.json").read_text())) == set(_FIRST)
+    listed = (root / ".linkwork-search.sha256").read_text().splitlines()
+    assert [line[64:] for line in listed] == [f"  {name}" for name in sorted(_FIRST)]
     mine = {"far-1.toml": "mine", "data/near-4.toml": "mine", "near-1.svg": "mine"}
     (root / "data").mkdir()
     for name, text in mine.items():
@@ -49,32 +51,32 @@ def test_own_unchanged_files_are_replaced_and_all_others_stay(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "told"),
+    ("name", "text", "met"),
     [
-        ("near-7.toml", "mine", f'"near-7.toml", {_NO_RUN}: {_REMEDY}'),
-        ("refused/near-7.toml", "mine", f'"refused/near-7.toml", {_NO_RUN}: {_REMEDY}'),
-        ("table.csv", "mine", f'"table.csv", {_NO_RUN}: {_REMEDY}'),
-        ("curve/foot.csv", "mine", f'"curve/foot.csv", {_NO_RUN}: {_REMEDY}'),
-        ("curve", "mine", f'"curve", which is a link or a file: {_REMEDY}'),
-        (
-            "near-2.toml",
-            "mine",
-            '"near-2.toml", which was changed since an earlier search wrote it; this one could '
-            f"write over it: {_REMEDY}",
-        ),
+        ("near-7.toml", "mine", "near-7.toml"),
+        ("NEAR-7.TOML", "mine", "NEAR-7.TOML"),
+        ("near-2.toml", "changed", "near-2.toml"),
+        ("refused/near-7.toml", "mine", "refused/near-7.toml"),
+        ("table.csv", "mine", "table.csv"),
+        ("table.csv/mine.txt", "mine", "table.csv"),
+        ("curve/foot.csv", "mine", "curve/foot.csv"),
+        ("curve", "mine", "curve"),
         ("curve/foot.csv", "foot", ""),
         ("curve/other.csv", "mine", ""),
+        ("curve/near-7.toml", "mine", ""),
     ],
 )
 def test_a_file_that_could_be_written_over_is_named_before_the_work(
-    tmp_path: Path, name: str, text: str, told: str
+    tmp_path: Path, name: str, text: str, met: str
 ) -> None:
     _write(tmp_path, _FIRST)
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text(text)
-    if told:
-        with pytest.raises(InputError, match=f'^the folder "{tmp_path}" holds {re.escape(told)}$'):
+    if met:
+        told = f'the folder "{tmp_path}" holds "{met}", {_TOLD}'
+        with pytest.raises(InputError, match=f"^{re.escape(told)}$"):
             _OWN.check(tmp_path, fresh=True)
+        assert (tmp_path / name).read_text() == text
     else:
         _write(tmp_path, {"near-1.toml": "new", "curve/foot.csv": "foot"})
         assert _files(tmp_path)[name] == text
@@ -107,13 +109,13 @@ def test_links_in_the_folder_are_neither_followed_nor_replaced(tmp_path: Path) -
     _write(root, _FIRST)
     (root / "refused").rename(mine)
     (root / "refused").symlink_to(mine)
-    with pytest.raises(InputError, match=r'holds "refused", which is a link or a file: rename'):
+    with pytest.raises(InputError, match=r'holds "refused", which this search could'):
         _OWN.check(root, fresh=True)
     other = OwnFiles(run="search", option="--fresh", numbered=_OWN.numbered)
     assert other.check(root, fresh=True) == ["near-1.toml", "near-2.toml"]
     (root / "near-1.toml").rename(mine / "near-1.toml")
     (root / "near-1.toml").symlink_to(mine / "near-1.toml")
-    with pytest.raises(InputError, match=r'holds "near-1.toml", which was changed since an earl'):
+    with pytest.raises(InputError, match=r'holds "near-1.toml", which this search could'):
         other.check(root, fresh=True)
     assert _files(mine) == {"near-3.toml": "three", "near-1.toml": "one"}
 
@@ -123,13 +125,13 @@ def test_a_list_names_no_file_outside_its_folder(tmp_path: Path) -> None:
     _write(root, {"near-1.toml": "one"})
     outside = tmp_path / "outside.toml"
     outside.write_text("one")
-    file = root / ".linkwork-search.json"
-    (digest,) = json.loads(file.read_text()).values()
-    listed = dict.fromkeys(("../outside.toml", str(outside), "near-1.toml"), digest)
-    file.write_text(json.dumps(listed))
-    assert _OWN.check(root, fresh=True) == ["near-1.toml"]
-    for damaged in ("{", "[1]", '{"near-1.toml": 3}'):
-        file.write_text(damaged)
+    file = root / ".linkwork-search.sha256"
+    line = file.read_text()
+    for name in ("../outside.toml", str(outside)):
+        file.write_text(line + line.replace("near-1.toml", name))
+        assert _OWN.check(root, fresh=True) == ["near-1.toml"]
+    for damaged in ("", line[1:], line.replace("  ", " "), "\0\n\ud800"):
+        file.write_bytes(damaged.encode(errors="surrogatepass"))
         with pytest.raises(InputError, match=r'holds "near-1.toml", which'):
             _OWN.check(root, fresh=True)
 
@@ -140,7 +142,7 @@ def test_a_file_that_comes_while_a_run_writes_is_kept(tmp_path: Path) -> None:
             (part / "near-1.toml").write_text("new")
             (tmp_path / "near-1.toml").write_text("mine")
 
-    with pytest.raises(InputError, match=r'holds "near-1.toml", which no earlier search wrote'):
+    with pytest.raises(InputError, match=r'holds "near-1.toml", which this search could'):
         late()
     assert _files(tmp_path) == {"near-1.toml": "mine"}
 
@@ -153,5 +155,7 @@ def test_a_file_that_the_run_reads_is_not_removed(tmp_path: Path) -> None:
         numbered=_OWN.numbered,
         read=[(tmp_path / "near-2.toml").resolve()],
     )
-    with pytest.raises(InputError, match=r'holds "near-2.toml", which is read: name a new folder$'):
+    with pytest.raises(
+        InputError, match=r'holds "near-2.toml", which this search could write over'
+    ):
         reads.check(tmp_path, fresh=True)

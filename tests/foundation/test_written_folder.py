@@ -18,8 +18,8 @@ def test_a_place_where_no_folder_can_be_is_refused_and_nothing_is_left(tmp_path:
     (tmp_path / "file").write_text("")
     before = sorted(tmp_path.rglob("*"))
     for name, why in (
-        ("lost", 'lost" is a link that leads nowhere; name another folder'),
-        ("lost/inner", 'lost" is a link that leads nowhere; name another folder'),
+        ("lost", 'lost" is a link that leads to no folder; name another folder'),
+        ("lost/inner", 'lost" is a link that leads to no folder; name another folder'),
         ("file/inner", 'file" is not a folder; name another folder'),
         ("new/" + "x" * 256, "File name too long"),
         ("no\0", "embedded null byte"),

@@ -115,9 +115,7 @@ def _write_tables(
     found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
     """The task with the files that it names, the table, the front and the page."""
-    copy = task_copy(found.task)
-    save_text(copy.text, part / "task.toml")
-    for place, text in copy.files.items():
+    for place, text in task_copy(found.task).files.items():
         (part / place).parent.mkdir(parents=True, exist_ok=True)
         save_text(text, part / place)
     if options.csv:
@@ -173,18 +171,17 @@ def keeps_earlier(found: Synthesis, earlier: Collection[str]) -> bool:
 
 def _own_files(options: FolderOptions, task: Task) -> OwnFiles:
     copy = task_copy(task)
-    files = {"task.toml": copy.text}
-    files |= {place.as_posix(): text for place, text in copy.files.items()}
     further = {_TABLE: options.csv, _FRONT: options.draw, _PAGE: options.html}
     suffixes = "toml|svg" if options.draw else "toml"
+    design = rf"({REFUSED}/)?{re.escape(_stem(task))}-\d+\.({suffixes})"
     return OwnFiles(
         run="synthesis",
         option="--fresh (in Python fresh=True)",
         # file systems that do not tell letters apart have one file for both
-        numbered=re.compile(rf"{re.escape(_stem(task))}-\d+\.({suffixes})", re.IGNORECASE),
-        named={name: text.encode() for name, text in files.items()}
-        | {name: None for name, is_written in further.items() if is_written},
-        folders=(REFUSED,) if options.refused else (),
+        numbered=re.compile(design, re.IGNORECASE),
+        named={name: text.encode() for name, text in copy.files.items()}
+        | dict.fromkeys((name for name, is_written in further.items() if is_written)),
+        folders=(".", REFUSED) if options.refused else (".",),
         read=copy.sources,
     )
 

@@ -21,12 +21,11 @@ _OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index
 class TaskCopy:
     """A task that is at home in the folder of its designs.
 
-    ``text``: that of the task's file; ``files``: the texts of the files that it names, by their
-    places in the folder; ``sources``: these files themselves.
+    ``files``: the texts of the task's file and of those that it names, by their places in the
+    folder; ``sources``: the files that it names themselves.
     """
 
-    text: str
-    files: Mapping[Path, str]
+    files: Mapping[str, str]
     sources: Collection[Path]
 
 
@@ -36,9 +35,9 @@ def task_copy(task: Task) -> TaskCopy:
     Files that lie in the folder of the task keep their places. Others, and those with names of
     designs, lie in a folder named like the key that names them: ``curve/foot.csv``.
     """
-    files: dict[Path, str] = {}
+    files = {"task.toml": task.text}
     sources: list[Path] = []
-    edits, copied = TextEdits(task.text), task.text
+    edits = TextEdits(task.text)
     for key, name, text in _named_files(task):
         place = Path(name)
         sources.append(((task.folder or Path()) / place).resolve())
@@ -47,9 +46,9 @@ def task_copy(task: Task) -> TaskCopy:
         if place.is_absolute() or ".." in place.parts or own:
             place = Path(key[0], place.name)
             edits.put(key, place.as_posix())
-            copied = edits.text
-        files[place] = text
-    return TaskCopy(text=copied, files=files, sources=sources)
+            files["task.toml"] = edits.text
+        files[place.as_posix()] = text
+    return TaskCopy(files=files, sources=sources)
 
 
 def _named_files(task: Task) -> Iterator[tuple[tuple[str, ...], str, str]]:

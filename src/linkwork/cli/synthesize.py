@@ -78,7 +78,7 @@ def synthesize(
         lines = synthesis_lines(found)
         if output is not None:
             count = f"{len(files)} design{'' if len(files) == 1 else 's'}"
-            written = [count, "task.toml", *map(str, task_copy(found.task).files)]
+            written = [count, *task_copy(found.task).files]
             told = f"Wrote {', '.join(written[:-1])} and {written[-1]} in {output}."
             if keeps_earlier(found, earlier):
                 told = f"Wrote nothing: {output} keeps its earlier designs and their task."

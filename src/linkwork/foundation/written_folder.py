@@ -27,8 +27,7 @@ def check_place(out: Path) -> None:
     whole = out.absolute()
     there = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
     if not os.path.isdir(there):
-        is_lost = there.is_symlink() and not os.path.exists(there)
-        what = "a link that leads nowhere" if is_lost else "not a folder"
+        what = "a link that leads to no folder" if there.is_symlink() else "not a folder"
         raise InputError(f'cannot write "{out}": "{there}" is {what}; name another folder')
     trial = there / _part_name()
     try:
@@ -78,30 +77,26 @@ def _replace(whole: Path, part: Path, last: str, stale: Collection[str]) -> None
     for name in sorted(files, key=lambda name: name == Path(last)):
         (whole / name).parent.mkdir(parents=True, exist_ok=True)
         os.replace(part / name, whole / name)
-    old = {Path(name) for name in stale}.difference(files)
-    for name in old:
+    for name in {Path(name) for name in stale}.difference(files):
         (whole / name).unlink(missing_ok=True)
-    emptied = {folder for name in old for folder in name.parents} - {Path()}
-    for folder in sorted(emptied, reverse=True):  # inner ones first
         with suppress(OSError):
-            (whole / folder).rmdir()
+            os.removedirs((whole / name).parent)  # as far as ``whole``, which has ``part``
 
 
 @contextmanager
 def _uninterrupted(told: str) -> Iterator[None]:
     """Let an interruption (Ctrl-C) wait for the end of a block; ``told``: what it then says."""
-    before = signal.getsignal(signal.SIGINT)
-    if before is None or threading.current_thread() is not threading.main_thread():
-        yield  # interruptions come to others
+    before, came = signal.getsignal(signal.SIGINT), list[int]()
+    if not callable(before) or threading.current_thread() is not threading.main_thread():
+        yield  # nothing is interrupted here
         return
-    came: list[int] = []
     signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     try:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-    if came:
-        try:
-            signal.raise_signal(signal.SIGINT)
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(told) from None
+    try:
+        for number in came[:1]:
+            signal.raise_signal(number)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(told) from None
