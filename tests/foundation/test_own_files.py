@@ -13,7 +13,7 @@ from linkwork.foundation.own_files import OwnFiles
 _OWN = OwnFiles(
     run="search",
     option="--fresh",
-    numbered=re.compile(r"(refused/)?near-\d+\.toml", re.IGNORECASE),
+    numbered=re.compile(r"(refused/)?near-\d+\.toml"),
     named={"curve/foot.csv": b"foot", "table.csv": None},
     folders=(".", "refused"),
 )
@@ -54,7 +54,6 @@ def test_own_unchanged_files_are_replaced_and_all_others_stay(tmp_path: Path) ->
     ("name", "text", "met"),
     [
         ("near-7.toml", "mine", "near-7.toml"),
-        ("NEAR-7.TOML", "mine", "NEAR-7.TOML"),
         ("near-2.toml", "changed", "near-2.toml"),
         ("refused/near-7.toml", "mine", "refused/near-7.toml"),
         ("table.csv", "mine", "table.csv"),

@@ -253,6 +253,7 @@ def test_a_folder_that_cannot_be_written_is_named(folder: Path, tmp_path: Path) 
         (["page.txt", "--single"], "a page needs the suffix .html"),
         (["page.html"], "for one HTML file, add --single"),
         (["no/such/folder"], "there is no folder"),
+        (["x" * 256], "File name too long"),
     ],
 )
 def test_a_wrong_name_is_refused_before_anything_is_read(
