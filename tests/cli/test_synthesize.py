@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
 from linkwork.cli import interrupts
 from linkwork.cli.main import linkwork
 
@@ -101,7 +101,7 @@ def test_a_fresh_synthesis_replaces_its_own_files_alone(tmp_path: Path) -> None:
         (FolderOptions(fresh=True, draw=True), "tilt-a-box-02.svg"),
     ):
         with pytest.raises(lw.InputError, match=f'holds "{name}", which this synthesis could'):
-            write_designs(found, home, options)
+            check_folder(home, options, found.task)
         (home / name).rename(home / "elsewhere")
     found.save(home, fresh=True)
 
@@ -109,8 +109,9 @@ def test_a_fresh_synthesis_replaces_its_own_files_alone(tmp_path: Path) -> None:
 def test_a_synthesis_without_a_delivered_design_keeps_earlier_ones(tmp_path: Path) -> None:
     folder, task = tmp_path / "designs", tmp_path / "tilt.toml"
     task.write_text(_TASK.read_text().replace("least = 30", "least = 85"))
-    shown = _run(str(task), "-o", str(folder), "--all", code=1)
-    assert f"Wrote 12 designs and task.toml in {folder}" in " ".join(shown.split())
+    for fresh in ((), ("--fresh",)):  # refused designs alone are replaced
+        shown = _run(str(task), "-o", str(folder), "--all", *fresh, code=1)
+        assert f"Wrote 12 designs and task.toml in {folder}" in " ".join(shown.split())
     assert len(list(folder.rglob("*.toml"))) == 13
     _run(str(_TASK), "-o", str(folder), "--fresh")
     before = {path: path.read_bytes() for path in folder.iterdir()}

@@ -112,6 +112,9 @@ def test_links_in_the_folder_are_neither_followed_nor_replaced(tmp_path: Path) -
         _OWN.check(root, fresh=True)
     other = OwnFiles(run="search", option="--fresh", numbered=_OWN.numbered)
     assert other.check(root, fresh=True) == ["near-1.toml", "near-2.toml"]
+    # the folder itself may be a link
+    (tmp_path / "link").symlink_to(root)
+    assert other.check(tmp_path / "link", fresh=True) == ["near-1.toml", "near-2.toml"]
     (root / "near-1.toml").rename(mine / "near-1.toml")
     (root / "near-1.toml").symlink_to(mine / "near-1.toml")
     with pytest.raises(InputError, match=r'holds "near-1.toml", which this search could'):

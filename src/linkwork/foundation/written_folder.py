@@ -25,7 +25,7 @@ def check_place(out: Path) -> None:
     InputError
     """
     whole = out.absolute()
-    there = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
+    there = next(filter(os.path.lexists, (whole, *whole.parents)), whole)
     if not os.path.isdir(there):
         what = "a link that leads to no folder" if there.is_symlink() else "not a folder"
         raise InputError(f'cannot write "{out}": "{there}" is {what}; name another folder')
