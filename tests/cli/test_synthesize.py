@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import linkwork as lw
-from linkwork.api.designs_folder import FolderOptions, write_designs
+from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
 from linkwork.cli import interrupts
 from linkwork.cli.main import linkwork
 
@@ -67,33 +67,81 @@ def test_delivered_designs_are_files_that_pass_the_poses(tmp_path: Path) -> None
     assert (folder / "index.html").read_text().count("<figure>") == 2
 
 
-def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
-    other = tmp_path / "other"
-    other.mkdir()
-    (other / "notes.txt").write_text("mine")
-    done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "-o", str(other), "--fresh"])
-    assert done.exit_code == 2
-    assert "it holds" in done.output
-    assert [path.name for path in other.iterdir()] == ["notes.txt"]
-    folder = tmp_path / "designs"
-    _run(str(_TASK), "-o", str(folder))
-    done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "-o", str(folder)])
-    assert done.exit_code == 2
+def test_a_fresh_synthesis_replaces_its_own_files_alone(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    task = home / "task.toml"
+    task.write_text(_TASK.read_text())
+    mine = {"bracket-2.toml", "photo-2024.svg", "index.html", "tilt-a-box-01.csv", "sweep-01.svg"}
+    for name in mine:
+        (home / name).write_text("mine")
+    refused = CliRunner().invoke(linkwork, ["synthesize", str(task), "-o", str(home)])
+    assert refused.exit_code == 2
+    told = " ".join(refused.stderr.split())
+    assert told.endswith(
+        'is not empty: it holds "bracket-2.toml"; name a new folder, or add --fresh (in Python '
+        "fresh=True), which replaces the files of an earlier synthesis and keeps all others"
+    )
+    _run(str(task), "-o", str(home), "--fresh", "--csv")
+    task.write_text(_TASK.read_text().replace("deliver = 5", "deliver = 2"))
+    # the task in the folder is solved again, from there
+    _run(str(task), "-o", str(home), "--fresh")
+    designs = {"tilt-a-box-01.toml", "tilt-a-box-02.toml"}
+    shown = {path.name for path in home.iterdir()}
+    assert shown == mine | designs | {"task.toml", ".linkwork-synthesis.sha256"}
+    assert {(home / name).read_text() for name in mine} == {"mine"}
+    _run(str(_TASK), "-o", str(home), "--fresh", code=2)
+    for name in ("tilt-a-box-02.svg", "Tilt-A-Box-20.toml"):
+        (home / name).write_text("mine")
+    found = lw.Task.load(task).solve()
+    for options, name in (
+        # one file on systems that do not tell letters apart
+        (FolderOptions(fresh=True), "Tilt-A-Box-20.toml"),
+        (FolderOptions(fresh=True, html=True), "index.html"),
+        (FolderOptions(fresh=True, draw=True), "tilt-a-box-02.svg"),
+    ):
+        with pytest.raises(lw.InputError, match=f'holds "{name}", which this synthesis could'):
+            check_folder(home, options, found.task)
+        (home / name).rename(home / "elsewhere")
+    found.save(home, fresh=True)
+
+
+def test_a_synthesis_without_a_delivered_design_keeps_earlier_ones(tmp_path: Path) -> None:
+    folder, task = tmp_path / "designs", tmp_path / "tilt.toml"
+    task.write_text(_TASK.read_text().replace("least = 30", "least = 85"))
+    for fresh in ((), ("--fresh",)):  # refused designs alone are replaced
+        shown = _run(str(task), "-o", str(folder), "--all", *fresh, code=1)
+        assert f"Wrote 12 designs and task.toml in {folder}" in " ".join(shown.split())
+    assert len(list(folder.rglob("*.toml"))) == 13
     _run(str(_TASK), "-o", str(folder), "--fresh")
-    assert len(list(folder.glob("tilt-a-box-*.toml"))) == 5
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    assert len(before) == 7
+    for more in ((), ("--all",)):
+        shown = _run(str(task), "-o", str(folder), "--fresh", *more, code=1)
+        told = f"Wrote nothing: {folder} keeps its earlier designs and their task."
+        assert told in " ".join(shown.split())
+        assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
 def test_a_fresh_folder_has_no_empty_folder_of_refused_designs(tmp_path: Path) -> None:
     found, folder = lw.Task.load(_TASK).solve(), tmp_path / "designs"
     found.save(folder, refused=True)
-    with pytest.raises(
-        lw.InputError, match=r"replace earlier designs: --fresh, in Python fresh=True$"
-    ):
-        found.save(folder)
     found.save(folder, fresh=True, refused=True)
     assert (folder / "refused").is_dir()
     found.save(folder, fresh=True)
     assert not (folder / "refused").exists()
+
+
+def test_links_in_a_folder_of_designs_are_not_followed(tmp_path: Path) -> None:
+    found, folder, mine = lw.Task.load(_TASK).solve(), tmp_path / "designs", tmp_path / "mine"
+    found.save(folder, refused=True)
+    (folder / "refused").rename(mine)
+    (folder / "refused").symlink_to(mine)
+    before = sorted(mine.iterdir())
+    found.save(folder, fresh=True)
+    assert sorted(mine.iterdir()) == before
+    with pytest.raises(lw.InputError, match=r'holds "refused", which this synthesis could'):
+        found.save(folder, fresh=True, refused=True)
 
 
 @pytest.mark.parametrize(
@@ -156,8 +204,12 @@ def test_the_curve_of_a_task_is_copied_into_the_folder_of_its_designs(
     again.save(moved, fresh=True)
     mine = moved / Path(copied).parent / "mine.csv"
     mine.write_text("1,2\n")
-    with pytest.raises(lw.InputError, match=r"mine\.csv"):
-        again.save(moved, fresh=True)
+    # another curve: the copy of the first one goes, the user's file stays
+    (home / "hand.csv").write_text("0,0\n4,1\n6,5\n3,7\n-1,4\n")
+    (home / "task.toml").write_text(text.replace(place.format(tmp_path), "hand.csv"))
+    lw.Task.load(home / "task.toml").solve().save(moved, fresh=True)
+    assert (moved / "hand.csv").exists()
+    assert not (moved / copied).exists()
     assert mine.exists()
 
 
@@ -238,6 +290,7 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
         write_designs(found, folder, FolderOptions(refused=True, draw=True, csv=True))
     names = sorted(path.name for path in folder.iterdir())
     assert names == [
+        ".linkwork-synthesis.sha256",
         "designs.csv",
         "refused",
         "task.toml",
@@ -250,8 +303,8 @@ def test_an_interruption_leaves_a_new_folder_with_whole_designs_and_an_earlier_o
     written.clear()
     monkeypatch.undo()
     found.save(folder, refused=True)
-    before = {path: path.read_bytes() for path in folder.rglob("*.toml")}
-    assert len(before) == 13
+    before = {path: path.read_bytes() for path in folder.rglob("*.*")}
+    assert len(before) == 14
     monkeypatch.setattr("linkwork.api.designs_folder.save_text", stop_at_the_fourth)
     with pytest.raises(KeyboardInterrupt):
         write_designs(found, folder, FolderOptions(fresh=True, csv=True))
@@ -268,7 +321,7 @@ def test_a_folder_that_cannot_be_made_is_refused_before_the_task_is_solved(tmp_p
     folder = tmp_path / "file" / "designs"
     done = CliRunner().invoke(linkwork, ["synthesize", str(_TASK), "-o", str(folder)])
     assert done.exit_code == 2
-    assert "Not a directory" in done.output
+    assert 'file" is not a folder; name another folder' in " ".join(done.stderr.split())
 
 
 def test_without_a_sound_design_the_costliest_wish_is_named(tmp_path: Path) -> None:
@@ -430,6 +483,24 @@ def test_files_that_a_task_names_are_not_replaced_by_designs(
         out.symlink_to(home)
     shown = _run(str(home / "task.toml"), "-o", str(out), "--fresh", "--csv", code=2)
     assert shown == ""
-    with pytest.raises(lw.InputError, match=f'holds "{name}", which the task names'):
+    with pytest.raises(lw.InputError, match=r'holds ".*", which this synthesis could'):
         lw.Task.load(home / "task.toml").solve().save(out, fresh=True)
     assert (home / name).read_text() == kept
+
+
+@pytest.mark.parametrize("name", ["Tilt a box", "Other"])
+def test_a_design_that_the_task_improves_is_not_replaced(tmp_path: Path, name: str) -> None:
+    """It is a file of the earlier synthesis in the folder, and unchanged."""
+    folder = tmp_path / "designs"
+    lw.Task.load(_TASK).solve().save(folder)
+    kept = folder / "tilt-a-box-01.toml"
+    before = kept.read_text()
+    task = tmp_path / "improve.toml"
+    task.write_text(
+        f'format = 1\nname = "{name}"\ntask = "improve"\n'
+        'mechanism = "designs/tilt-a-box-01.toml"\n[improve]\nstarts = 1\n'
+        'goals = [{ of = "max(P.x)", target = 262 }]\n'
+    )
+    _run(str(task), "-o", str(folder), "--fresh", code=2 if name == "Tilt a box" else 0)
+    assert kept.read_text() == before
+    assert (folder / "other-01.toml").exists() == (name == "Other")

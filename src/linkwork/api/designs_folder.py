@@ -5,12 +5,12 @@ from __future__ import annotations
 import cmath
 import re
 import unicodedata
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwork.api.mechanism import Mechanism
-from linkwork.api.task_copy import OWN_FILES, REFUSED, task_copy
+from linkwork.api.task_copy import REFUSED, task_copy
 from linkwork.design.defects.judged_design import JudgedDesign
 from linkwork.design.synthesis.designs_table import designs_table, front_of
 from linkwork.design.synthesis.result import Synthesis
@@ -20,19 +20,19 @@ from linkwork.drawing.charts.front_chart import front_chart
 from linkwork.drawing.inline_svg import FixedInks, inline_svg
 from linkwork.drawing.position_marks import PositionMark
 from linkwork.drawing.scene import Scene
-from linkwork.foundation.errors import InputError
-from linkwork.foundation.paths import as_path, unwritten
+from linkwork.foundation.own_files import OwnFiles
+from linkwork.foundation.paths import as_path
 from linkwork.foundation.written_file import save_bytes, save_text
-from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.csv_text import csv_text
 from linkwork.textfile.writer import write_text
 from linkwork.viewer.designs_page import designs_page
 
-__all__ = ["FolderOptions", "write_designs"]
+__all__ = ["FolderOptions", "check_folder", "keeps_earlier", "write_designs"]
 
 _LONGEST = 800.0  # the longer side of a picture [CSS pixels]
 _LONGEST_STEM = 160  # bytes of a name: file systems take 255, temporary files add some
-_TABLE = "designs.csv"
+_TABLE, _FRONT, _PAGE = "designs.csv", "front.svg", "index.html"
+_DESIGN = re.compile(r"[^/]+-\d+\.toml")  # one that is delivered
 _PICTURES = 24  # designs that a page shows
 
 
@@ -41,7 +41,8 @@ class FolderOptions:
     """What a folder holds besides the delivered designs and their task.
 
     ``refused``: the refused designs too; ``draw``: a picture of each design; ``csv``, ``html``: a
-    table and a page of all designs; ``fresh``: replaces the designs of an earlier synthesis.
+    table and a page of all designs; ``fresh``: replaces the files of an earlier synthesis that are
+    unchanged since, and keeps all others.
     """
 
     refused: bool = False
@@ -60,15 +61,17 @@ def write_designs(
     """Write a synthesis into a folder; returns the files of designs by their place in the list.
 
     An interruption (Ctrl-C) leaves a new folder with the designs that are written by then, and one
-    of earlier designs as it was.
+    of earlier designs as it was; so does a synthesis without a delivered design.
 
     Raises
     ------
     InputError
-        If the folder holds anything else, or cannot be written.
+        If the folder holds files that are not to be replaced, or cannot be written.
     """
     root = as_path(folder)
     earlier = check_folder(root, options, found.task)
+    if keeps_earlier(found, earlier):
+        return {}
     chosen = [
         (k, design)
         for k, design in enumerate(found.designs)
@@ -76,11 +79,12 @@ def write_designs(
     ]
     names: dict[int, str] = {}
     interrupted = False
-    with written_folder(root) as part:
+    with _own_files(options, found.task).written(root, earlier) as part:
         if options.refused:
             (part / REFUSED).mkdir()
         for done, (k, design) in enumerate(chosen):
-            name = _file_name(found, design)
+            name = f"{_stem(found.task)}-{design.number:02}.toml"
+            name = f"{REFUSED}/{name}" if design.kinds else name
             try:
                 if progress is not None:
                     progress(done / len(chosen))
@@ -94,16 +98,9 @@ def write_designs(
                 break
             names[k] = name
         _write_tables(found, part, options, names)
-        new = {root / path.relative_to(part) for path in part.rglob("*")}
     if interrupted:
         told = f"after {len(names)} of {len(chosen)} designs were written in {root}"
         raise KeyboardInterrupt(told)
-    for path in earlier:
-        if path not in new:
-            path.unlink(missing_ok=True)
-    emptied = root / REFUSED
-    if options.fresh and not options.refused and emptied.is_dir() and not any(emptied.iterdir()):
-        emptied.rmdir()
     return {k: str(root / name) for k, name in names.items()}
 
 
@@ -118,20 +115,18 @@ def _write_tables(
     found: Synthesis, part: Path, options: FolderOptions, files: Mapping[int, str]
 ) -> None:
     """The task with the files that it names, the table, the front and the page."""
-    copy = task_copy(found.task)
-    save_text(copy.text, part / "task.toml")
-    for place, text in copy.files.items():
+    for place, text in task_copy(found.task).files.items():
         (part / place).parent.mkdir(parents=True, exist_ok=True)
         save_text(text, part / place)
     if options.csv:
         save_text(csv_text(designs_table(found, files)), part / _TABLE)
     front = _front_picture(found) if options.draw or options.html else b""
     if options.draw and front:
-        save_bytes(front, part / "front.svg")
+        save_bytes(front, part / _FRONT)
     if options.html:
         shown = found.delivered[:_PICTURES]
         scenes = [_scene(design) for design in shown]
-        save_text(designs_page(found, scenes, files, front), part / "index.html")
+        save_text(designs_page(found, scenes, files, front), part / _PAGE)
 
 
 def _scene(design: JudgedDesign) -> Scene:
@@ -158,51 +153,44 @@ def _front_picture(found: Synthesis) -> bytes:
     return render(front_chart(found.task.name, front, numbers), "svg")
 
 
-def check_folder(root: Path, options: FolderOptions, task: Task) -> list[Path]:
-    """The files of an earlier synthesis that will be replaced.
+def check_folder(root: Path, options: FolderOptions, task: Task) -> Collection[str]:
+    """The files of an earlier synthesis that will be replaced, by their places in the folder.
 
     Raises
     ------
     InputError
-        If the folder holds files, and these are not to be replaced or are none of a synthesis, or
-        if it cannot be written.
+        If the folder holds files that are not to be replaced, or cannot be written.
     """
-    copy_of_task = task_copy(task)
-    copies = [root / place for place in copy_of_task.files]
-    own_folders = {root, root / REFUSED}
-    for copy in copies:
-        own_folders |= {place for place in copy.parents if place.is_relative_to(root)}
-    try:
-        there = [
-            path
-            for place in sorted(own_folders)
-            for path in (sorted(place.iterdir()) if place.exists() else ())
-            if not (path in own_folders and path.is_dir())
-        ]
-    except OSError as error:
-        raise unwritten(root, error) from None
-    for path in there:
-        if path.resolve() in copy_of_task.moved:
-            raise InputError(
-                f'the folder "{root}" holds "{path.name}", which the task names: name a new folder'
-            )
-        own = OWN_FILES.fullmatch(path.name) or path in copies
-        if not (options.fresh and path.is_file() and own):
-            raise InputError(
-                f'the folder "{root}" is not empty: it holds "{path.name}"; name a new '
-                "folder, or replace earlier designs: --fresh, in Python fresh=True"
-            )
-    check_place(root)
-    return there
+    return _own_files(options, task).check(root, options.fresh)
 
 
-def _file_name(found: Synthesis, design: JudgedDesign) -> str:
-    """``pick-and-place-01.toml``; refused ones are in their own folder."""
+def keeps_earlier(found: Synthesis, earlier: Collection[str]) -> bool:
+    """Whether a folder keeps its earlier designs because there are none to replace them."""
+    return not found.delivered and any(map(_DESIGN.fullmatch, earlier))
+
+
+def _own_files(options: FolderOptions, task: Task) -> OwnFiles:
+    copy = task_copy(task)
+    further = {_TABLE: options.csv, _FRONT: options.draw, _PAGE: options.html}
+    suffixes = "toml|svg" if options.draw else "toml"
+    design = rf"({REFUSED}/)?{re.escape(_stem(task))}-\d+\.({suffixes})"
+    return OwnFiles(
+        run="synthesis",
+        option="--fresh (in Python fresh=True)",
+        # file systems that do not tell letters apart have one file for both
+        numbered=re.compile(design, re.IGNORECASE),
+        named={name: text.encode() for name, text in copy.files.items()}
+        | dict.fromkeys((name for name, is_written in further.items() if is_written)),
+        folders=(".", REFUSED) if options.refused else (".",),
+        read=copy.sources,
+    )
+
+
+def _stem(task: Task) -> str:
+    """``pick-and-place``, of which ``pick-and-place-01.toml`` is a design."""
     # composed letters have one spelling in all file systems
-    name = unicodedata.normalize("NFKC", found.task.name.lower())
+    name = unicodedata.normalize("NFKC", task.name.lower())
     # vowel signs and accents belong to their letters
     kept = (c if c.isalnum() or unicodedata.category(c)[0] == "M" else "-" for c in name)
     stem = re.sub("-+", "-", "".join(kept)).encode()[:_LONGEST_STEM].decode(errors="ignore")
-    stem = stem.strip("-") or "design"
-    name = f"{stem}-{design.number:02}.toml"
-    return f"{REFUSED}/{name}" if design.kinds else name
+    return stem.strip("-") or "design"

@@ -240,21 +240,23 @@ class Synthesis(result.Synthesis):
         Parameters
         ----------
         folder : str or Path
-            A new or empty folder.
+            A new or empty folder; with ``fresh`` it may hold files.
         refused : bool
             Whether to write the refused designs too, in its folder ``refused``.
         fresh : bool
-            Whether to replace the designs of an earlier synthesis in the folder.
+            Whether to replace the files of an earlier synthesis in the folder that are unchanged
+            since. All others stay; one that this synthesis could write over is refused.
 
         Returns
         -------
         tuple of str
-            The files.
+            The files; none if no design is delivered, and a folder of earlier designs stays as it
+            was.
 
         Raises
         ------
         InputError
-            If the folder is not empty, or cannot be written.
+            If the folder holds files that are not to be replaced, or cannot be written.
         """
         return tuple(
             write_designs(self, folder, FolderOptions(refused=refused, fresh=fresh)).values()

@@ -10,24 +10,23 @@ from pathlib import Path
 from linkwork.design.tasks.task import Task
 from linkwork.textfile.text_edits import TextEdits
 
-__all__ = ["OWN_FILES", "REFUSED", "TaskCopy", "task_copy"]
+__all__ = ["REFUSED", "TaskCopy", "task_copy"]
 
 REFUSED = "refused"
-#: Names of files of a synthesis.
-OWN_FILES = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
+# names of files of a synthesis
+_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
 
 
 @dataclass(frozen=True, kw_only=True)
 class TaskCopy:
     """A task that is at home in the folder of its designs.
 
-    ``text``: that of the task's file; ``files``: the texts of the files that it names, by their
-    places in the folder; ``moved``: the files whose copies have other places.
+    ``files``: the texts of the task's file and of those that it names, by their places in the
+    folder; ``sources``: the files that it names themselves.
     """
 
-    text: str
-    files: Mapping[Path, str]
-    moved: Collection[Path]
+    files: Mapping[str, str]
+    sources: Collection[Path]
 
 
 def task_copy(task: Task) -> TaskCopy:
@@ -36,19 +35,20 @@ def task_copy(task: Task) -> TaskCopy:
     Files that lie in the folder of the task keep their places. Others, and those with names of
     designs, lie in a folder named like the key that names them: ``curve/foot.csv``.
     """
-    files: dict[Path, str] = {}
-    moved: list[Path] = []
+    files = {"task.toml": task.text}
+    sources: list[Path] = []
     edits = TextEdits(task.text)
     for key, name, text in _named_files(task):
         place = Path(name)
+        sources.append(((task.folder or Path()) / place).resolve())
         first = place.parts[0]
-        own = first == REFUSED or (place == Path(first) and OWN_FILES.fullmatch(first))
+        own = first == REFUSED or (place == Path(first) and _OWN.fullmatch(first))
         if place.is_absolute() or ".." in place.parts or own:
-            moved.append(((task.folder or Path()) / place).resolve())
             place = Path(key[0], place.name)
             edits.put(key, place.as_posix())
-        files[place] = text
-    return TaskCopy(text=edits.text if moved else task.text, files=files, moved=moved)
+            files["task.toml"] = edits.text
+        files[place.as_posix()] = text
+    return TaskCopy(files=files, sources=sources)
 
 
 def _named_files(task: Task) -> Iterator[tuple[tuple[str, ...], str, str]]:

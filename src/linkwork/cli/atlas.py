@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from pathlib import Path
 
 import click
@@ -14,8 +15,8 @@ from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.cli.text_table import table_lines
 from linkwork.design.tasks.curve_file import read_curve
 from linkwork.foundation.errors import InputError
+from linkwork.foundation.own_files import OwnFiles
 from linkwork.foundation.paths import as_path
-from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.results.listing.column import Column
 from linkwork.results.listing.number_text import significant
 from linkwork.textfile.writer import save
@@ -23,7 +24,9 @@ from linkwork.textfile.writer import save
 __all__ = ["atlas"]
 
 _SHOWN = 20
-_OWN = re.compile(r"near-\d+\.toml")
+_OWN = OwnFiles(
+    run="search", option="--fresh", numbered=re.compile(r"near-\d+\.toml", re.IGNORECASE)
+)
 
 
 @click.command
@@ -31,7 +34,7 @@ _OWN = re.compile(r"near-\d+\.toml")
 @click.option("-o", "--output", metavar="PATH", help="Folder for mechanisms; with --index a file.")
 @click.option("--atlas", "file", metavar="FILE", help="Another atlas than the shipped one.")
 @click.option("--count", type=int, help="Mechanisms to find. Default: 100.")
-@click.option("--fresh", is_flag=True, help="Replace the mechanisms of an earlier search.")
+@click.option("--fresh", is_flag=True, help="Replace the files of an earlier search.")
 @click.option("--index", is_flag=True, help="Make an atlas of the stores of studies.")
 @json_option
 @debug_option
@@ -64,16 +67,13 @@ def atlas(
     if len(sources) != 1:
         raise InputError("give one curve:\n    linkwork atlas curve.csv")
     curve = read_curve({"file": sources[0]}, None)
-    earlier = [] if output is None else _earlier(as_path(output), fresh)
+    earlier = () if output is None else _OWN.check(as_path(output), fresh)
     with progress("comparing paths"):
         asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)
         found = asked.nearest(curve.points, 100 if count is None else count)
     files: list[str] = []
     if output is not None:
-        files = _write(found, as_path(output))
-        for path in earlier:
-            if str(path) not in files:
-                path.unlink(missing_ok=True)
+        files = _write(found, as_path(output), earlier)
     if as_json:
         print_json({"paths": len(asked), "nearest": [_data(n, files) for n in found]})
         return
@@ -102,28 +102,15 @@ def _index(stores: tuple[str, ...], output: str | None, as_json: bool) -> None:
         print_lines(wrapped(f"{told}. Finish it and repeat this command for the others."))
 
 
-def _write(found: tuple[NearPath, ...], folder: Path) -> list[str]:
+def _write(found: tuple[NearPath, ...], folder: Path, earlier: Collection[str]) -> list[str]:
     digits, files = len(str(len(found))), []
-    with progress("writing mechanisms") as tell, written_folder(folder) as part:
+    with progress("writing mechanisms") as tell, _OWN.written(folder, earlier) as part:
         for near in found:
             name = f"near-{near.number:0{digits}}.toml"
             save(near.mechanism.description, part / name)
             files.append(str(folder / name))
             tell(near.number / len(found))
     return files
-
-
-def _earlier(folder: Path, fresh: bool) -> list[Path]:
-    """The files of an earlier search that will be replaced."""
-    check_place(folder)
-    there = sorted(folder.iterdir()) if folder.exists() else []
-    for path in there:
-        if not (fresh and _OWN.fullmatch(path.name) and path.is_file()):
-            raise InputError(
-                f'the folder "{folder}" is not empty: it holds "{path.name}"; name a new folder, '
-                "or replace earlier mechanisms with --fresh"
-            )
-    return there
 
 
 def _data(near: NearPath, files: list[str]) -> dict[str, object]:

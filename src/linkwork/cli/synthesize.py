@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
+from linkwork.api.designs_folder import FolderOptions, check_folder, keeps_earlier, write_designs
 from linkwork.api.synthesis import Task
 from linkwork.api.task_copy import task_copy
 from linkwork.cli.interrupts import answer_interrupt
@@ -25,7 +25,7 @@ __all__ = ["synthesize"]
 @click.option("--draw", is_flag=True, help="Draw every written design (SVG).")
 @click.option("--csv", is_flag=True, help="Write a table of all designs: FOLDER/designs.csv.")
 @click.option("--html", is_flag=True, help="Write a page of all designs: FOLDER/index.html.")
-@click.option("--fresh", is_flag=True, help="Replace the designs of an earlier synthesis.")
+@click.option("--fresh", is_flag=True, help="Replace the files of an earlier synthesis.")
 @json_option
 @debug_option
 @click.pass_context
@@ -56,7 +56,7 @@ def synthesize(
         raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
     asked = Task.load(task)
     if output is not None:
-        check_folder(as_path(output), options, asked.described)
+        earlier = check_folder(as_path(output), options, asked.described)
     try:
         with progress("solving the task") as tell:
             found = asked.solve(progress=tell)
@@ -78,8 +78,10 @@ def synthesize(
         lines = synthesis_lines(found)
         if output is not None:
             count = f"{len(files)} design{'' if len(files) == 1 else 's'}"
-            written = [count, "task.toml", *map(str, task_copy(found.task).files)]
+            written = [count, *task_copy(found.task).files]
             told = f"Wrote {', '.join(written[:-1])} and {written[-1]} in {output}."
+            if keeps_earlier(found, earlier):
+                told = f"Wrote nothing: {output} keeps its earlier designs and their task."
             lines += ["", *wrapped(told)]
         print_lines(lines)
     if not found.delivered:

@@ -11,7 +11,7 @@ from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.output_file import check_outputs, write_bytes
 from linkwork.cli.terminal import print_lines, print_written, progress
 from linkwork.foundation.errors import InputError
-from linkwork.foundation.written_folder import written_folder
+from linkwork.foundation.written_folder import check_place, written_folder
 from linkwork.viewer.web.pyodide_files import pyodide_files
 from linkwork.viewer.web.web_app import MARK, web_folder, web_page
 
@@ -77,10 +77,11 @@ def _check_folder(out: Path) -> None:
         raise InputError(f'"{out}" is to be a folder: for one HTML file, add --single')
     if not out.absolute().parent.is_dir():
         raise InputError(f'cannot write "{out}": there is no folder "{out.parent}"')
+    if out.is_file():
+        raise InputError(f'cannot write "{out}": it is a file; for one HTML file, add --single')
+    check_place(out)
     if not out.exists():
         return
-    if not out.is_dir():
-        raise InputError(f'cannot write "{out}": it is a file; for one HTML file, add --single')
     page = out / "index.html"
     ours = page.is_file() and MARK in page.read_text("utf-8", "replace")
     if not ours and any(out.iterdir()):

@@ -253,6 +253,7 @@ def test_a_folder_that_cannot_be_written_is_named(folder: Path, tmp_path: Path) 
         (["page.txt", "--single"], "a page needs the suffix .html"),
         (["page.html"], "for one HTML file, add --single"),
         (["no/such/folder"], "there is no folder"),
+        (["lost"], "is a link that leads to no folder"),
     ],
 )
 def test_a_wrong_name_is_refused_before_anything_is_read(
@@ -260,9 +261,10 @@ def test_a_wrong_name_is_refused_before_anything_is_read(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(module, "urlopen", pytest.fail)
+    Path("lost").symlink_to("nowhere")
     done = run(*arguments)
     assert done.exit_code == 2
-    assert message in done.output
+    assert message in " ".join(done.output.split())
 
 
 def test_the_command_writes_one_page(folder: Path, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from linkwork.export.report.pdf_writer import pdf_bytes, typst_package
 from linkwork.export.report.template import SECTIONS, Template
 from linkwork.foundation.paths import suffix_of, unwritten
 from linkwork.foundation.written_file import save_bytes
-from linkwork.foundation.written_folder import check_place, written_folder
+from linkwork.foundation.written_folder import written_folder
 
 __all__ = ["FORMATS", "WrittenReport", "check_report_file", "document_of", "report_of"]
 
@@ -76,7 +76,6 @@ class WrittenReport:
         folder = places[0].parent  # all pictures are in one
         if not folder.parent.is_dir():
             raise unwritten(folder, FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)))
-        check_place(folder)
         with written_folder(folder) as part:
             for place, picture in zip(places, self.pictures.values(), strict=True):
                 (part / place.name).write_bytes(picture)
