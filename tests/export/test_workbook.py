@@ -250,15 +250,26 @@ def test_a_cams_law_is_told_to_be_values_only(tmp_path: Path) -> None:
     assert told[0] in [row[1].value for row in about.iter_rows()]
 
 
-def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
+def test_a_side_across_an_angle_has_a_formula(tmp_path: Path) -> None:
     mechanism = lw.example("watt-linkage")
     motion = mechanism.sweep(step=6, certify=False)
     sheet = written(tmp_path, mechanism, motion)
     check_rows(sheet, motion)
-    told = mechanism.to_excel(tmp_path / "again.xlsx", motion)
-    assert told == (
-        "A B, A P, A P B: no formula connects these with the equations; they keep the values of "
-        "the file",
+    assert mechanism.to_excel(tmp_path / "again.xlsx", motion) == ()
+
+
+def test_a_shape_without_a_formula_keeps_its_numbers(tmp_path: Path) -> None:
+    """No point of the coupler but A and B can be placed before another one."""
+    text = lw.example_text("four-bar").replace('"A", "B"]', '"A", "B", "C", "D"]')
+    text = text.replace("[lengths]", '[lengths]\n"A C" = 50\n"B D" = 50\n"C D" = 100')
+    text = text.replace("[links]", "C = [50, 70]\nD = [140, 110]\n\n[links]")
+    mechanism = lw.loads(f'{text}\n[angles]\n"A C D" = 100\n')
+    motion = mechanism.sweep(step=30, certify=False)
+    sheet = written(tmp_path, mechanism, motion)
+    check_rows(sheet, motion)
+    (told,) = mechanism.to_excel(tmp_path / "again.xlsx", motion)
+    assert told.endswith(
+        "A C D: no formula connects these with the equations; they keep the values of the file"
     )
 
 
