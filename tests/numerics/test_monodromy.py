@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from linkwork.foundation.arrays import BoolArray, ComplexArray
+from linkwork.foundation.completeness import Completeness
+from linkwork.marching.solution_path import SINGULAR
 from linkwork.numerics.homotopy.bilinear_homotopy import normal_numbers
 from linkwork.numerics.homotopy.monodromy import Member, first_of_each, solve_by_monodromy
 from linkwork.numerics.homotopy.parameter_path import (
@@ -148,6 +150,24 @@ def test_of_paths_that_meet_one_is_followed_again(solved: Member) -> None:
     found = roots_at(Quintic(), solved, goal, jumping, np.random.default_rng(3))
     assert calls == [5, 2]
     assert (len(found.x), found.complete, found.by_mirror) == (5, True, 0)
+
+
+def test_a_path_that_stalls_beside_its_end_leaves_no_singular_solution_of_complete_ones(
+    solved: Member,
+) -> None:
+    """The mirror image shows where the path leads; with all solutions found there is no other."""
+
+    def stalling(path: ParameterPath, start: ComplexArray, options: Any) -> Any:
+        paths = track_in_batches(path, start, options)
+        stalled = paths.w[:, 0].imag > 0.1
+        paths.w[stalled] += 0.1
+        paths.near[stalled], paths.state[stalled] = paths.w[stalled], SINGULAR
+        return paths
+
+    goal = np.array([1.0, -3.0], dtype=complex)
+    found = roots_at(Quintic(), solved, goal, stalling, np.random.default_rng(3))
+    assert (len(found.x), found.by_mirror, len(found.singular)) == (5, 1, 0)
+    assert found.graded(np.ones(5, dtype=bool)) is Completeness.WITH_PROBABILITY_ONE
 
 
 def test_repeated_rows_are_found_in_any_order() -> None:

@@ -41,3 +41,17 @@ def test_a_random_six_bar_solves_its_own_pairs_with_couplers_of_constant_length(
         coupler_bar = 1.0 + b_bar / t - a_bar / turned
         start = (1.0 + b - a) * (1.0 + b_bar - a_bar)
         assert coupler * coupler_bar == pytest.approx(np.full(8, start), rel=1e-9)
+
+
+def test_solutions_whose_bell_crank_rests_are_none() -> None:
+    """With B at A0 and C at C0 any crank and rocker turn by any angles."""
+    rng = np.random.default_rng(3)
+    c, six_bar = WATT.random_member(rng)
+    x = normal_numbers(rng, 3, WATT.unknowns)
+    x[:, [2, 3, 6, 7]] = -1.0
+    x[1, 6] = x[2, 2] = -0.9
+    path = ParameterPath(system=WATT, start=c, goal=c)
+    f, jacobian = path.residual_and_jacobian(x[:1])
+    assert np.abs(f).max() < 1e-14
+    assert np.linalg.matrix_rank(jacobian[0]) < WATT.unknowns
+    assert list(WATT.proper(np.append(x, six_bar[None], axis=0), c)) == [False, True, True, True]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,13 @@ import pytest
 import linkwork as lw
 from linkwork.design.loops.travel import Range
 from linkwork.design.six_bars import watt_six_bars
+from linkwork.design.six_bars.watt_six_bars import WattSixBars
 from linkwork.design.synthesis.watt_design import WattDesign
 from linkwork.design.synthesis.watt_linkage import driven_range
-from linkwork.design.synthesis.watt_synthesis import _nine_pairs
+from linkwork.design.synthesis.watt_synthesis import _completeness, _nine_pairs
+from linkwork.design.tasks.function_goal import FunctionGoal
 from linkwork.numerics.homotopy.monodromy import Member
+from linkwork.numerics.homotopy.parameter_roots import ParameterRoots
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of, turned
 
 INPUTS = 90.0 * chebyshev()
@@ -134,9 +138,106 @@ def test_a_change_of_branch_is_found_loop_by_loop(monkeypatch: pytest.MonkeyPatc
 def test_inputs_out_of_order_are_refused_unless_any_order_will_do() -> None:
     outputs = 90.0 * np.log10(1.0 + INPUTS / 10.0)
     pairs = np.stack([INPUTS, outputs], axis=1)[[0, 2, 1, *range(3, 9)]].tolist()
-    # the same pairs in another order: the path ends elsewhere, or nowhere
-    for design in lw.Task.function(pairs, mechanism="watt-ii").solve().designs:
-        assert design.kinds
+    with pytest.raises(lw.MechanismError, match=r"pairs\[3\]  is out of order: let inputs rise or"):
+        lw.Task.function(pairs, mechanism="watt-ii")
+    lw.Task.function(pairs, mechanism="watt-ii", wanted={"order": "any"})
+    lw.Task.function(pairs[::-1][:6], mechanism="watt-ii")
+    lw.Task.function(pairs[:5], mechanism="four-bar")
+
+
+@pytest.mark.usefixtures("one_path")
+@pytest.mark.parametrize("free", [True, False])
+def test_the_crank_is_in_the_turn_of_the_wanted_range(free: bool) -> None:
+    outputs = 90.0 * np.log10(1.0 + INPUTS / 10.0)
+    pairs = np.stack([INPUTS, outputs], axis=1).tolist()
+    task = lw.Task.function(pairs, mechanism="watt-ii") if free else logarithm()
+    (design,) = task.solve().designs
+    assert isinstance(design, WattDesign)
+    begin = np.radians(design.first_input)
+    span = design.group.inputs[-1]
+    for whole in (-2, -1, 0, 1, 2):
+        turned = begin + whole * 2.0 * np.pi
+        for below, above in ((0.0, 0.0), (1e-3, 0.1), (2.0 * np.pi - span - 0.1, 0.0)):
+            low, high = turned - below, turned + span + above
+            for ends in ((low, high), (high, low)):
+                wishes = replace(design.wishes, range=Range(start=ends[0], stop=ends[1]))
+                moved = replace(design, wishes=wishes)
+                assert np.radians(moved.first_input) == pytest.approx(turned)
+                assert moved.defects == ()
+        # no turn has all inputs in it
+        for low, high in ((turned + 1e-3, turned + 2.0), (turned - 1e-3, turned + span - 1e-3)):
+            wishes = replace(design.wishes, range=Range(start=low, stop=high))
+            told = [defect.message for defect in replace(design, wishes=wishes).defects]
+            assert told[0].endswith("is outside the driven range")
+
+
+@pytest.mark.usefixtures("one_path")
+def test_a_range_in_another_turn_of_the_crank_changes_no_design() -> None:
+    def error(begin: float) -> float:
+        wanted = {"input": {"from": begin - 1.0, "to": begin + 91.0}}
+        (design,) = logarithm(wanted=wanted).solve().delivered
+        assert design.first_input == pytest.approx(begin + INPUTS[0])
+        return design.error
+
+    assert [error(360.0), error(-720.0)] == pytest.approx([error(0.0)] * 2)
+
+
+@pytest.mark.usefixtures("one_path")
+@pytest.mark.parametrize("wanted", [{}, {"input": {"from": -361.0, "to": -269.0}}])
+def test_the_error_is_that_of_the_range_in_which_the_function_is_defined(
+    wanted: dict[str, Any],
+) -> None:
+    (plain,) = logarithm().solve().delivered
+    # no numbers below 1, the end of the range
+    task = lw.Task.function(
+        "log10(x) + 0*sqrt(x - 1)", x=(1, 10), input=(0, 90), output=(0, 90), mechanism="watt-ii",
+        wanted=wanted,
+    )  # fmt: skip
+    (design,) = task.solve().delivered
+    assert design.error == pytest.approx(plain.error)
+    assert design.score == pytest.approx(plain.score, rel=1e-2)
+
+
+def test_structural_errors_are_those_at_angles_in_the_range_in_whatever_turn() -> None:
+    goal = FunctionGoal(of="sqrt(0.7 - x)", x=(0.1, 0.7), input=(10.0, 70.0), output=(0.0, 90.0))
+    inputs = np.array([9.0, 10.0 - 1e-12, 40.0, 70.0 + 1e-12, 71.0])
+    half = 90.0 * (1.0 - np.sqrt(0.5))
+    outputs = np.array([5.0, 1.0, half - 358.0, 93.0, 5.0])
+    for whole in (-720.0, 0.0, 360.0):
+        wrong = goal.errors(inputs + whole, outputs, 360.0)
+        assert wrong == pytest.approx([1.0, 2.0, 3.0])
+    # of a whole turn or more every angle belongs to the turn of the most
+    goal = FunctionGoal(of="x", x=(0, 1), input=(0, 360), output=(0, 360))
+    inputs = np.linspace(0.0, 360.0, 5)
+    assert goal.errors(inputs - 720.0, inputs, 360.0) == pytest.approx([0.0] * 5)
+
+
+def _solved(regular: int, singular: int, proved: list[bool]) -> WattSixBars:
+    """What is found by four paths, of which no end is shown."""
+    none = np.zeros((0, 8), dtype=complex)
+    roots = ParameterRoots(
+        x=np.zeros((regular, 8), dtype=complex), singular=np.zeros((singular, 8), dtype=complex),
+        paths=4, at_infinity=0, lost=0, by_mirror=0, by_detour=0, closed=True,
+    )  # fmt: skip
+    return WattSixBars(
+        arms=none, turns=none, inputs=INPUTS, outputs=INPUTS, proved=np.array(proved),
+        error=np.zeros(len(proved)), roots=roots,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("found", "told"),
+    [
+        ((4, 0, [True]), "complete with probability one: .* [(]4 of 4 solutions found[)]$"),
+        ((4, 0, [True, False]), "not proved: 4 of 4 solutions found, 1 of the real ones without"),
+        ((3, 0, [True]), "not proved: 3 of 4 solutions found, other paths met or were lost$"),
+        ((3, 1, [True]), "not proved: 3 of 4 solutions found, other paths met or were lost$"),
+    ],
+)
+def test_the_count_of_solutions_says_what_is_missing(found: Any, told: str) -> None:
+    grade, message = _completeness(_solved(*found), 9)
+    assert re.search(told, message)
+    assert grade.complete == ("complete" in message)
 
 
 def test_missing_pairs_lie_between_those_given() -> None:
@@ -179,6 +280,9 @@ def test_pairs_are_counted_and_must_differ() -> None:
     pairs[8] = [360.0, 0.0]
     with pytest.raises(lw.MechanismError, match="is pair 1 after whole turns"):
         lw.Task.function(pairs[:9], mechanism="watt-ii").solve()
+    pairs = [[10.0 * k, 5.0] for k in range(9)]
+    with pytest.raises(lw.MechanismError, match=r"pairs  all have the output 5, so that the out"):
+        lw.Task.function(pairs, mechanism="watt-ii")
     with pytest.raises(lw.MechanismError, match="is made for functions only"):
         lw.Task.path([(0, 0), (1, 1)], mechanism="watt-ii")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -285,12 +287,83 @@ def test_links_of_a_fit_without_wishes_for_lengths_are_in_proportion(fit: str) -
     assert max(any_size) > 1000.0
 
 
+_LEVEL = r"pairs  all have the output 0\.3, so that the output has no range"
+
+
 @pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank"])
-def test_outputs_that_do_not_move_have_no_fit(mechanism: str) -> None:
-    pairs = [(10.0 * k, 0.0) for k in range(8)]
-    found = lw.Task.function(pairs, fit="minimax", mechanism=mechanism).solve()
-    assert not found.designs
-    assert found.message.startswith("nothing found: no loop")
+@pytest.mark.parametrize("fit", [{}, {"fit": "minimax"}, {"fit": "least squares"}])
+@pytest.mark.parametrize("outputs", [(0.3,) * 5, (0.3, 0.1 + 0.2, 0.3, 0.3, 0.3)])
+def test_pairs_whose_outputs_are_equal_are_refused(
+    mechanism: str, fit: dict[str, str], outputs: tuple[float, ...]
+) -> None:
+    pairs = list(zip((0, 10, 20, 30, 40), outputs, strict=True))
+    with pytest.raises(MechanismError, match=_LEVEL):
+        lw.Task.function(pairs, mechanism=mechanism, **fit)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "free"),
+    [*product(("four-bar", "slider-crank"), (True, False)), ("watt-ii", False)],
+)
+@pytest.mark.parametrize(
+    ("of", "end", "told"),
+    [
+        ("sin(x)", np.pi, "nearly the same value at both ends, 0 and 1.22465e-16"),
+        ("sin(x)", 2.0 * np.pi, "nearly the same value at both ends, 0 and -2.44929e-16"),
+        ("sin(x)", 3.14159, "nearly the same value at both ends, 0 and 2.65359e-06"),
+        ("1e9 + sin(x)^2 + cos(x)^2", 0.7, "the value 1e[+]09 at both ends"),
+        ("sin(x)^2 + cos(x)^2", 0.7, "(nearly the same|the) value.* at both ends.*"),
+        ("9e307*cos(x)", 2.0 * np.pi, "the value 9e[+]307 at both ends"),
+    ],
+)  # fmt: skip
+def test_a_function_that_comes_back_to_its_first_value_is_refused(
+    mechanism: str, free: bool, of: str, end: float, told: str
+) -> None:
+    spans = {"input": 90, "output": 40} if free else {"input": (30, 120), "output": (40, 80)}
+    with pytest.raises(MechanismError, match=f"of  has {told}, so that the output has no range$"):
+        lw.Task.function(of, x=(0, end), mechanism=mechanism, **spans)
+
+
+def test_a_range_of_the_output_that_is_small_beside_the_way_is_none_of_rounding() -> None:
+    spans = {"x": (0, 3.14), "input": 90, "output": 0.04, "mechanism": "slider-crank"}
+    goal = lw.Task.function("sin(x)", **spans).described.function
+    assert goal is not None
+    assert max(goal.dense_points()[1]) > 25.0
+
+
+_OVER = "function.{}  spans outputs of more than a turn, {}"
+
+
+@pytest.mark.parametrize("fit", [{}, {"fit": "minimax"}, {"fit": "least squares"}])
+@pytest.mark.parametrize(
+    ("spans", "told"),
+    [
+        ({"input": (0, 340), "output": (120, 60)}, ": cos(x) gives -2893 to 120"),
+        ({"input": 340, "output": -60}, ": cos(x) gives -3013 to 0"),
+        ({"input": (0, 1), "output": (1, 7.3), "angle": "rad"}, ": cos(x) gives 1 to 317.3"),
+    ],
+)
+def test_an_angle_of_the_output_of_more_than_a_turn_is_refused(
+    spans: dict[str, Any], told: str, fit: dict[str, str]
+) -> None:
+    turn = "6.28319" if "angle" in spans else "360"
+    with pytest.raises(MechanismError, match=re.escape(_OVER.format("output", turn) + told)):
+        lw.Task.function("cos(x)", x=(0, 6.0), mechanism="four-bar", **spans, **fit)
+    pairs = [(0, 0), (20, 10), (40, 200), (60, 361)]
+    with pytest.raises(MechanismError, match=_OVER.format("pairs", 360)):
+        lw.Task.function(pairs, mechanism="four-bar", **fit)
+
+
+def test_outputs_of_more_than_a_turn_are_refused_of_those_alone_that_cannot_have_them() -> None:
+    """Displacements are lengths, a turn is none too many, and six-bars may make several."""
+    spans: dict[str, Any] = {"x": (0, 1), "input": (0, 100)}
+    lw.Task.function("x", output=(0, 500), mechanism="slider-crank", **spans)
+    lw.Task.function("x", output=(40, 400), mechanism="four-bar", **spans)
+    spans["mechanism"] = "watt-ii"
+    with pytest.raises(MechanismError, match=r"360: x gives 0 to 361"):
+        lw.Task.function("x", output=(0, 361), **spans)
+    spans["input"] = (0, 400)
+    lw.Task.function("x", output=(0, 400), **spans)
 
 
 def test_pairs_of_a_real_four_bar_are_fitted_exactly() -> None:

@@ -29,6 +29,7 @@ from linkwork.numerics.homotopy.parameter_path import Equations
 __all__ = ["WATT", "WattProblem", "bell_crank_turns"]
 
 _UNKNOWNS = 8
+_ARMS = [2, 3, 6, 7]  # b, b̄, c, c̄
 _TURN = 0.7  # rad, of random complex rotations
 _CLOSE, _FAR = 0.1, 10.0  # rotations of a random six-bar beyond these make a bad start
 _NOTHING = 1e-9  # of the largest number of a solution: zero
@@ -84,9 +85,12 @@ class WattProblem:
         return values, slopes, changes
 
     def proper(self, x: ComplexArray, c: ComplexArray) -> BoolArray:
-        """Which solutions (B, n) are six-bars: a link of no length leaves its neighbour at rest."""
+        """Which solutions (B, n) are six-bars: a link of no length leaves its neighbour at rest,
+        and so do B at A0 and C at C0, whatever crank and rocker are.
+        """
         size = np.abs(x)
-        return np.asarray(size.min(axis=1) > _NOTHING * size.max(axis=1, initial=1.0))
+        moves = np.abs(1.0 + x[:, _ARMS]).max(axis=1) > _NOTHING
+        return np.asarray(moves & (size.min(axis=1) > _NOTHING * size.max(axis=1, initial=1.0)))
 
     def is_real(self, c: ComplexArray) -> bool:
         """Whether parameters (P,) are rotations by real angles."""

@@ -16,6 +16,7 @@ from linkwork.design.synthesis.improved_mechanism import ImprovedMechanism, Swep
 from linkwork.design.synthesis.watt_group import WattGroup
 from linkwork.design.synthesis.watt_linkage import (
     ERROR,
+    ROUNDED_ANGLE,
     SIDES,
     driven_range,
     first_angle,
@@ -28,8 +29,6 @@ from linkwork.foundation.internal import internal
 from linkwork.mechanism.linkage import Linkage
 
 __all__ = ["WattDesign"]
-
-_ROUNDING = 1e-9  # of angles of positions [rad]
 
 
 @internal("group", "index", "wishes", "changed", "swept", "linkage", "kinds")
@@ -100,13 +99,17 @@ class WattDesign(SweptDesign):
     @property
     def inputs(self) -> tuple[float, ...]:
         """The inputs at the positions [file units]."""
-        radians = self.group.inputs + first_angle(self.group, self.index)
+        radians = self.group.inputs + self._first_angle
         return tuple(map(self.task.angle.from_radians, radians.tolist()))
 
     @property
     def first_input(self) -> float:
         """The input at the first position [file units]."""
-        return self.task.angle.from_radians(first_angle(self.group, self.index))
+        return self.task.angle.from_radians(self._first_angle)
+
+    @property
+    def _first_angle(self) -> float:
+        return first_angle(self.group, self.index, self.wishes)
 
     @cached_property
     def linkage(self) -> Linkage:
@@ -141,15 +144,18 @@ class WattDesign(SweptDesign):
 
     @cached_property
     def error(self) -> float:
-        """The largest structural error in the rows of the driven range, 0 for pairs, NaN for a
-        design that changes branch or circuit [file's angle unit].
+        """The largest structural error in the rows of the function's own range, 0 for pairs, NaN
+        for a design that changes branch or circuit [file's angle unit].
         """
         if self.swept is None:
             return float("nan")
         motion, described = self.swept.improved.motion, self.swept.improved.description
-        if motion is None or ERROR not in described.outputs:
+        goal = self.task.function
+        if motion is None or ERROR not in described.outputs or goal is None:
             return 0.0
-        return float(np.abs(motion[ERROR][motion.found]).max(initial=0.0))
+        found = motion.found
+        wrong = goal.errors(motion["crank"][found], motion["rocker"][found], self.task.angle.turn)
+        return float(np.abs(wrong).max(initial=0.0))
 
     @property
     def error_unit(self) -> str:
@@ -171,22 +177,16 @@ class WattDesign(SweptDesign):
         if self.changed is not None:
             return (self.changed,)
         swept = () if self.swept is None else self.swept.defects
-        return (*self._order_and_range(), *swept)
+        return (*self._outside(), *swept)
 
-    def _order_and_range(self) -> Iterator[Defect]:
-        inputs = self.group.inputs
-        steps = np.diff(inputs)
-        if self.wishes.ordered and not ((steps > 0.0).all() or (steps < 0.0).all()):
-            order = ", ".join(map(str, np.argsort(inputs, kind="stable") + 1))
-            told = f"the input passes the positions in the order {order}"
-            yield Defect(kind=DefectKind.ORDER, between=None, message=told)
+    def _outside(self) -> Iterator[Defect]:
         if self.wishes.range is not None and self.wishes.range.turn:
             return
         low, high = sorted(driven_range(self.group, self.index, self.wishes))
-        places = inputs + first_angle(self.group, self.index)
-        outside = np.flatnonzero((places < low - _ROUNDING) | (places > high + _ROUNDING))
-        if len(outside):
-            told = f"position {outside[0] + 1} is outside the driven range"
+        places = self.group.inputs + self._first_angle
+        outside = (places < low - ROUNDED_ANGLE) | (places > high + ROUNDED_ANGLE)
+        if outside.any():
+            told = f"position {outside.argmax() + 1} is outside the driven range"
             yield Defect(kind=DefectKind.RANGE, between=None, message=told)
 
     def _details(self) -> Mapping[str, Any]:

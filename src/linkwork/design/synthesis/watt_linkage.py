@@ -14,7 +14,15 @@ from linkwork.foundation.names import GROUND
 from linkwork.mechanism.driven_input import Input
 from linkwork.mechanism.linkage import Linkage
 
-__all__ = ["ERROR", "SIDES", "driven_range", "first_angle", "swept_mechanism", "watt_linkage"]
+__all__ = [
+    "ERROR",
+    "ROUNDED_ANGLE",
+    "SIDES",
+    "driven_range",
+    "first_angle",
+    "swept_mechanism",
+    "watt_linkage",
+]
 
 ERROR = "structural_error"
 _LINKS = {
@@ -32,23 +40,30 @@ _BARS = tuple(
 SIDES = (*_BARS, *combinations(_LINKS[GROUND], 2))
 _STEP = math.pi / 180.0  # of the table [rad]
 _ROUNDING = 1e-12  # of a few angles [rad]
+#: Of angles of positions [rad].
+ROUNDED_ANGLE = 1e-9
 
 
-def first_angle(group: WattGroup, k: int) -> float:
-    """The angle of the crank at the first position, in the turn in which the task has it [rad]."""
-    points, goal = group.points(k), group.task.function
+def first_angle(group: WattGroup, k: int, wishes: Wishes) -> float:
+    """The angle of the crank at the first position, in the turn in which the wanted range has all
+    inputs, else the task has it [rad].
+    """
+    points, goal, wanted = group.points(k), group.task.function, wishes.range
     crank = points["A"] - points["A0"]
     angle = math.atan2(crank.imag, crank.real)
+    if wanted is not None and not wanted.turn:
+        begin = min(wanted.start, wanted.stop) - float(group.inputs.min())
+        return angle + FULL_TURN * math.ceil((begin - ROUNDED_ANGLE - angle) / FULL_TURN)
     if goal is None or goal.input is None:
         # without start angles in the first turn
         return angle if angle > -_ROUNDING else angle + FULL_TURN
-    wanted = group.task.in_radians(goal.precision_points()[0][0])
-    return angle + FULL_TURN * round((wanted - angle) / FULL_TURN)
+    given = group.task.in_radians(goal.precision_points()[0][0])
+    return angle + FULL_TURN * round((given - angle) / FULL_TURN)
 
 
 def driven_range(group: WattGroup, k: int, wishes: Wishes) -> tuple[float, float]:
     """The driven range: as wanted, else the range of the function, or its pairs [rad]."""
-    task, wanted, start = group.task, wishes.range, first_angle(group, k)
+    task, wanted, start = group.task, wishes.range, first_angle(group, k, wishes)
     goal, inputs = task.function, group.inputs
     if wanted is not None:
         turn = math.copysign(FULL_TURN, inputs[-1] - inputs[0])

@@ -49,9 +49,12 @@ def _completeness(solved: WattSixBars, given: int) -> tuple[Completeness, str]:
         more = PAIRS - given
         told = f"a sample: {given} pairs leave a family; {more} more were taken between them"
         return Completeness.SAMPLED, f"{told} ({found})"
-    if grade is Completeness.NOT_PROVED:
-        return grade, f"not proved: {found}, other paths met or were lost"
-    return grade, f"{grade.value} ({found})"
+    if grade.complete:
+        return grade, f"{grade.value} ({found})"
+    why = "other paths met or were lost"
+    if len(roots.x) == roots.paths:
+        why = f"{np.count_nonzero(~solved.proved)} of the real ones without a proof"
+    return grade, f"not proved: {found}, {why}"
 
 
 def _refuse_equal(task: Task, inputs: Array, outputs: Array) -> None:

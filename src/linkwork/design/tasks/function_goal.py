@@ -17,7 +17,7 @@ from linkwork.foundation.angles import FULL_TURN, AngleUnit
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import ExpressionError
 from linkwork.foundation.plain_numbers import as_told
-from linkwork.foundation.rounding import EQUAL_ROWS
+from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 
 __all__ = ["LOOP_PAIRS", "ExactPairs", "FunctionGoal"]
 
@@ -25,6 +25,8 @@ _VARIABLE = "x"
 _ANGLES = ("rocker",)  # outputs that are angles
 _LARGEST_STEP = 0.5  # of all values: between neighbours it is a pole
 _EQUAL = 1e-9  # relative: ranges that differ by less are equal
+_AS_WRITTEN = 1e-5  # relative: 3.14159 is half a turn
+_ROUNDED = 16.0 * EPSILON  # relative: a value of a formula
 _DENSE = 181  # points over the range for fits and structural errors
 
 Pair = tuple[float, float]
@@ -136,18 +138,22 @@ class FunctionGoal:
         if missing:
             return
         try:
-            ends = [self._evaluated(number) for number in self.x or ()]
             values = [self._evaluated(number) for number in self._x(_DENSE)]
         except ExpressionError as error:
             yield ("function", "of"), str(error)
             return
-        if ends[0] == ends[1]:
-            told = f"has the value {ends[0]:g} at both ends, so that the output has no range"
-            yield ("function", "of"), told
-        steps = np.abs(np.diff(values))
-        if steps.max() > _LARGEST_STEP * np.ptp(values) > 0.0:
+        first, last = values[0], values[-1]
+        size = max(map(abs, values)) or 1.0
+        shares = np.array(values) / size
+        steps, spread = np.abs(np.diff(shares)), float(np.ptp(shares))
+        if abs(shares[-1] - shares[0]) <= max(_AS_WRITTEN * spread, _ROUNDED):
+            told = f"has the value {first:g} at both ends"
+            if first != last:
+                told = f"has nearly the same value at both ends, {first:g} and {last:g}"
+            yield ("function", "of"), f"{told}, so that the output has no range"
+        elif steps.max() > _LARGEST_STEP * spread:
             place = self._x(_DENSE)[steps.argmax()]
-            told = f"jumps by {steps.max():.4g} near x = {place:.4g}"
+            told = f"jumps by {size * steps.max():.4g} near x = {place:.4g}"
             yield ("function", "of"), f"{told}: give a range without this place"
         if self.x is not None and self.x[0] == self.x[1]:
             yield ("function", "x"), f"begins and ends at {self.x[0]:g}: give a range"
@@ -174,6 +180,10 @@ class FunctionGoal:
         fixed, most = self.starts_fixed, self._most
         if count > most and not self.fit:
             told = f"{count} pairs leave no {exact.mechanism} in general: keep {exact.told(most)}"
+            yield ("function", "pairs"), told
+        outputs = [output for _, output in self.pairs]
+        if count and np.ptp(outputs) <= _ROUNDED * max(map(abs, outputs)):
+            told = f"all have the output {outputs[0]:g}, so that the output has no range"
             yield ("function", "pairs"), told
         for k, one in enumerate(self.pairs):
             for j in range(k):
@@ -203,6 +213,29 @@ class FunctionGoal:
             told = f"from {low:g} to {high:g} leaves out inputs of the function, which are from"
             told = f"{told} {first + near:.6g} to {last + near:.6g}: move or widen it"
             yield ("wanted", "input"), told
+
+    def turn_problems(self, turn: float, rotates: bool) -> Problems:
+        """Inputs, or angles of the output, of more than a turn; links of six-bars that make several
+        turns come back to their angles in each.
+        """
+        inputs, outputs = self.dense_points()
+        if not self.exact.fits and np.ptp(inputs) > turn:
+            return
+        listed = (("input", inputs), ("output", outputs)) if rotates else (("input", inputs),)
+        for key, angles in listed:
+            if np.ptp(angles) > turn * (1.0 + EQUAL_ROWS):
+                told = f"spans {key}s of more than a turn, {turn:g}"
+                if self.of and key == "output":
+                    told += f": {self.of} gives {angles.min():.4g} to {angles.max():.4g}"
+                yield ("function", "pairs" if self.pairs else key), told
+
+    def order_problems(self) -> Problems:
+        """A pair whose input is not between its neighbours' inputs."""
+        steps = np.sign(np.diff(self.points()[0]))
+        turned = np.flatnonzero(steps != steps[0])
+        if len(turned):
+            told = "is out of order: let inputs rise or fall from pair to pair, or write [wanted]"
+            yield ("function", "pairs", int(turned[0]) + 1), f'{told} order = "any"'
 
     @property
     def _count(self) -> int:
@@ -267,6 +300,22 @@ class FunctionGoal:
         f0, f1 = map(self._evaluated, self.x)
         wrong = f"{output} - ({v0!r} + ({shown} - {f0!r})*{(v1 - v0) / (f1 - f0)!r})"
         return _within_half_a_turn(wrong) if output in _ANGLES else wrong
+
+    def errors(self, inputs: Array, outputs: Array, turn: float) -> Array:
+        """Structural errors (R,) at those of the angles (K,) of both links that are in the range of
+        a formula, in whatever turn.
+        """
+        assert self.input is not None
+        assert self.x is not None
+        (u0, u1), (x0, x1) = self.input, self.x
+        away = inputs - 0.5 * (u0 + u1)
+        about = away if abs(u1 - u0) < turn else away.mean()
+        share = 0.5 + (away - turn * np.round(about / turn)) / (u1 - u0)
+        own = np.abs(share - 0.5) <= 0.5 + EQUAL_ROWS
+        # an end to rounding is the end, where a root or logarithm may begin
+        wanted = self._outputs(np.clip(x0 + share[own] * (x1 - x0), min(self.x), max(self.x)))[1]
+        wrong = outputs[own] - wanted
+        return np.asarray(wrong - turn * np.round(wrong / turn))
 
     def _of_pairs(self) -> tuple[Array, Array]:
         inputs, outputs = np.array(self.pairs, dtype=float).T

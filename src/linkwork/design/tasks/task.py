@@ -301,13 +301,15 @@ class Task:
             told = f"spans {asked:g}, more than a turn of {self.angle.turn:g}"
             yield ("wanted", "input"), f'{told}: write input = "turns fully"'
         timed = [p.input for p in self.positions if p.input is not None]
-        if self.function is not None and not self.is_six_bar:
-            given = [one for one, _ in self.function.pairs] or self.function.input or (0.0,)
-            if max(given) - min(given) > self.angle.turn:
-                key = "pairs" if self.function.pairs else "input"
-                yield ("function", key), f"spans inputs of more than a turn, {self.angle.turn:g}"
-            elif not self.function.starts_fixed:
-                timed = [*given]
+        goal, ends = self.function, wanted.range
+        if goal is not None and not [*goal.problems()]:
+            yield from goal.turn_problems(self.angle.turn, self.mechanisms[0] != "slider-crank")
+            if ends and goal.starts_fixed:
+                yield from goal.range_problems(ends, self.angle.turn)
+            elif not goal.starts_fixed:
+                timed = goal.dense_points()[0].tolist()
+            if self.is_six_bar and wanted.ordered:
+                yield from goal.order_problems()
         count = len(self.positions) or len(timed)
         if wanted.range is not None and len(timed) == count > 0:
             _, span = arc_in_order(np.array(timed, dtype=float), self.angle.turn)
@@ -315,9 +317,6 @@ class Task:
             if span > asked * (1.0 + EQUAL_ROWS):
                 told = f"spans {asked:g}, but the given inputs span {span:g}: widen it"
                 yield ("wanted", "input"), told
-        goal, ends = self.function, wanted.range
-        if goal is not None and ends and goal.starts_fixed and not [*goal.problems()]:
-            yield from goal.range_problems(ends, self.angle.turn)
         yield from length_contradictions(wanted, self._given_sides())
         held = not self.is_approximate or any(p.tolerance for p in self.positions)
         pivoted = self.kind != "improve" and {*self.mechanisms} != {"double-slider"}

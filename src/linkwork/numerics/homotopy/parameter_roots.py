@@ -140,8 +140,8 @@ class _Search:
             elif settled > paths - settled - len(found):
                 # in a special task what is missing creeps to where the other paths ended
                 break
-        # a mirror image may have shown that an end is regular after all
-        singular = self._apart(found, ends.x[ends.singular])
+        # a mirror image may have shown that an end is regular after all; every path has one end
+        singular = self._apart(found, ends.x[ends.singular & (len(found) < paths)])
         return ParameterRoots(
             x=found,
             singular=singular,
