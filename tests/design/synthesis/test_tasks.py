@@ -229,9 +229,19 @@ def test_parallel_poses_and_poses_about_one_point_are_refused() -> None:
     translated = [(0, 0, 5), (40, -40, 5), (100, -80, 5), (170, -110, 5), (260, -140, 5)]
     with pytest.raises(lw.MechanismError, match="two guides"):
         lw.Task.motion(translated).solve()
+    with pytest.raises(lw.MechanismError, match="two guides"):
+        lw.Task.motion(translated[:4]).solve()
+    with pytest.raises(lw.MechanismError, match="have one angle and lie on a line"):
+        lw.Task.motion([(0, 0, 5), (40, -40, 5), (80, -80, 5)]).solve()
+    three = lw.Task.motion(translated[:2] + translated[3:4]).solve()
+    assert three.designs
+    assert {kind.name for design in three.designs for kind in design.kinds} == {"NOT_PROVED"}
     turned = [(1, 2, angle) for angle in (0, 10, 30, 50, 90)]
     with pytest.raises(lw.MechanismError, match=r"a rotation about \[1, 2\]"):
         lw.Task.motion(turned).solve()
+    for place in ((1, 2), (1e6 + 0.1, 0.3), (0.1, -0.7)):
+        with pytest.raises(lw.MechanismError, match=r"a rotation about \["):
+            lw.Task.motion([(*place, angle) for angle in (0, 10, 30)]).solve()
     rolled = [(0, 0, 0), (1, 0, 90), (1, 1, 180), (0, 1, 270)]
     with pytest.raises(lw.MechanismError, match=r"a rotation about \[0.5, 0.5\]"):
         lw.Task.motion(rolled).solve()

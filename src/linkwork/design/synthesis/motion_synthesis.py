@@ -33,6 +33,7 @@ from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.errors import MechanismError, Problem
+from linkwork.foundation.rounding import EPSILON
 
 __all__ = ["poses_of", "solve_motion"]
 
@@ -47,6 +48,7 @@ _PARALLELOGRAMS = (
     "parallelogram, whose branch is lost at its change points: turn a pose, or guide the body by "
     "a third crank"
 )
+_ROUNDED = 16.0 * EPSILON  # of a pole, relative to coordinates
 _PARALLEL = 1e-12  # angles that differ by less are equal to rounding
 
 
@@ -105,7 +107,8 @@ def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
     # not -0
     pole = complex((turns[k] * points[0] - points[k]) / (turns[k] - 1.0)) + (0.0 + 0.0j)
     size = max(float(np.abs(points - points[0]).max()), abs(points[0] - pole))
-    if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size:
+    rounding = _ROUNDED * np.abs(points).max() / abs(turns[k] - 1.0)
+    if np.abs(pole + (points[0] - pole) * turns - points).max() <= _PARALLEL * size + rounding:
         told = f"all lie on a rotation about [{pole.real:.6g}, {pole.imag:.6g}]: a fixed pin there "
         raise _refused(task, "positions", f"{told}carries the body, and no linkage is determined")
 
