@@ -157,7 +157,8 @@ def test_the_crank_is_in_the_turn_of_the_wanted_range(free: bool) -> None:
     span = design.group.inputs[-1]
     for whole in (-2, -1, 0, 1, 2):
         turned = begin + whole * 2.0 * np.pi
-        for below, above in ((0.0, 0.0), (1e-3, 0.1), (2.0 * np.pi - span - 0.1, 0.0)):
+        margins = ((0.0, 0.0), (-5e-10, 0.0), (1e-3, 0.1), (2.0 * np.pi - span - 0.1, 0.0))
+        for below, above in margins:
             low, high = turned - below, turned + span + above
             for ends in ((low, high), (high, low)):
                 wishes = replace(design.wishes, range=Range(start=ends[0], stop=ends[1]))
@@ -183,19 +184,21 @@ def test_a_range_in_another_turn_of_the_crank_changes_no_design() -> None:
 
 
 @pytest.mark.usefixtures("one_path")
-@pytest.mark.parametrize("wanted", [{}, {"input": {"from": -361.0, "to": -269.0}}])
+@pytest.mark.parametrize(
+    ("begin", "wanted"), [(9.1, {}), (0.0, {"input": {"from": -361.0, "to": -269.0}})]
+)
 def test_the_error_is_that_of_the_range_in_which_the_function_is_defined(
-    wanted: dict[str, Any],
+    begin: float, wanted: dict[str, Any]
 ) -> None:
     (plain,) = logarithm().solve().delivered
-    # no numbers below 1, the end of the range
+    # no numbers below 0, the end of the range, which the first row of a file is to rounding
     task = lw.Task.function(
-        "log10(x) + 0*sqrt(x - 1)", x=(1, 10), input=(0, 90), output=(0, 90), mechanism="watt-ii",
-        wanted=wanted,
+        "log10(1 + 9*x) + 0*sqrt(x)", x=(0, 1), input=(begin, begin + 90.0), output=(0, 90),
+        mechanism="watt-ii", wanted=wanted,
     )  # fmt: skip
     (design,) = task.solve().delivered
     assert design.error == pytest.approx(plain.error)
-    assert design.score == pytest.approx(plain.score, rel=1e-2)
+    assert design.score > 0.75
 
 
 def test_structural_errors_are_those_at_angles_in_the_range_in_whatever_turn() -> None:
@@ -207,9 +210,9 @@ def test_structural_errors_are_those_at_angles_in_the_range_in_whatever_turn() -
         wrong = goal.errors(inputs + whole, outputs, 360.0)
         assert wrong == pytest.approx([1.0, 2.0, 3.0])
     # of a whole turn or more every angle belongs to the turn of the most
-    goal = FunctionGoal(of="x", x=(0, 1), input=(0, 360), output=(0, 360))
+    goal = FunctionGoal(of="x", x=(0, 1), input=(0, 360), output=(0, 90))
     inputs = np.linspace(0.0, 360.0, 5)
-    assert goal.errors(inputs - 720.0, inputs, 360.0) == pytest.approx([0.0] * 5)
+    assert goal.errors(inputs + 360.0, inputs / 4.0, 360.0) == pytest.approx([0.0] * 5)
 
 
 def _solved(regular: int, singular: int, proved: list[bool]) -> WattSixBars:

@@ -311,7 +311,6 @@ def test_pairs_whose_outputs_are_equal_are_refused(
         ("sin(x)", np.pi, "nearly the same value at both ends, 0 and 1.22465e-16"),
         ("sin(x)", 2.0 * np.pi, "nearly the same value at both ends, 0 and -2.44929e-16"),
         ("sin(x)", 3.14159, "nearly the same value at both ends, 0 and 2.65359e-06"),
-        ("1e9 + sin(x)^2 + cos(x)^2", 0.7, "the value 1e[+]09 at both ends"),
         ("sin(x)^2 + cos(x)^2", 0.7, "(nearly the same|the) value.* at both ends.*"),
         ("9e307*cos(x)", 2.0 * np.pi, "the value 9e[+]307 at both ends"),
     ],

@@ -45,15 +45,15 @@ ROUNDED_ANGLE = 1e-9
 
 
 def first_angle(group: WattGroup, k: int, wishes: Wishes) -> float:
-    """The angle of the crank at the first position, in the turn in which the wanted range has all
-    inputs, else the task has it [rad].
+    """The angle of the crank at the first position, in the turn in which the wanted range, or else
+    the task, has it [rad].
     """
     points, goal, wanted = group.points(k), group.task.function, wishes.range
     crank = points["A"] - points["A0"]
     angle = math.atan2(crank.imag, crank.real)
     if wanted is not None and not wanted.turn:
-        begin = min(wanted.start, wanted.stop) - float(group.inputs.min())
-        return angle + FULL_TURN * math.ceil((begin - ROUNDED_ANGLE - angle) / FULL_TURN)
+        least = min(wanted.start, wanted.stop) - ROUNDED_ANGLE
+        return angle + FULL_TURN * math.ceil((least - angle) / FULL_TURN)
     if goal is None or goal.input is None:
         # without start angles in the first turn
         return angle if angle > -_ROUNDING else angle + FULL_TURN
