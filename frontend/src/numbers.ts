@@ -40,6 +40,13 @@ export function printedName(name: string): string {
   return name.replace(/^([\p{L}]+)([0-9]+)$/u, (_, letters: string, digits: string) => letters + digits.replace(/[0-9]/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]!));
 }
 
+/** The largest number of so many significant digits that is not above a lower bound. */
+export function roundedDown(value: number, digits: number): number {
+  const near = Number(value.toPrecision(digits));
+  const step = 10 ** (Math.floor(Math.log10(value)) - digits + 1);
+  return near <= value ? near : Number((near - step).toPrecision(digits));
+}
+
 /** A number without trailing zeros. */
 export function trimmed(text: string): string {
   return text.includes(".") ? text.replace(/\.?0+$/, "") : text;

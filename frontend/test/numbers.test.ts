@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { degreeTicks, measured, powerOfTen, printedName, roundUp, shortNumber, ticks } from "../src/numbers";
+import { degreeTicks, measured, powerOfTen, printedName, roundedDown, roundUp, shortNumber, ticks } from "../src/numbers";
 
 describe("numbers", () => {
   it("has six digits, and a true minus sign", () => {
@@ -27,6 +27,10 @@ describe("numbers", () => {
     expect(measured(60, "deg")).toBe("60°");
     expect(measured(-12.5, "mm")).toBe("−12.5000 mm");
     expect(measured(-1.4e-14, "deg")).toBe("0°");
+  });
+
+  it("rounds lower bounds down", () => {
+    expect([40.0546, 44.9999, 9.9996, 45, 0.25057, 0].map((one) => roundedDown(one, 4))).toEqual([40.05, 44.99, 9.999, 45, 0.2505, 0]);
   });
 
   it("rounds up to short numbers", () => {

@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
-import type { TaskSolved } from "../src/messages";
-import { verdict } from "../src/task/designs_table";
-import { goalsOf } from "../src/task/task_form";
+import type { DesignShown, TaskSolved, TaskState } from "../src/messages";
+import { inOneLine, soundFirst, verdict } from "../src/task/designs_table";
+import { radiusOf } from "../src/task/handles";
+import { goalsOf, problemOf } from "../src/task/task_form";
 import { distance, front, resampled, roundedTo, type Place } from "../src/task/geometry";
 
 describe("a drawn curve", () => {
@@ -48,8 +49,38 @@ describe("the verdict on a task without a sound design", () => {
   const solved = (about: Partial<TaskSolved>): TaskSolved => ({ count: 3, sound: 0, interrupted: false, costliest: "", costs: 0, advice: "", ...about }) as TaskSolved;
   it("names the wish to blame, else what to change", () => {
     expect(verdict(solved({ costliest: "the driven range", costs: 2 }), "motion")).toMatch(/The wish that costs most is the driven range: without it 2/);
+    expect(verdict(solved({ costliest: "the driven range", costs: 2, advice: "The best is 40°." }), "motion")).toMatch(/2 would be sound. The best is 40°.$/);
     expect(verdict(solved({ advice: "Try to move a position." }), "motion")).toBe("No design is free of defects (3 designs). Try to move a position.");
     expect(verdict(solved({ count: 0, advice: "Start nearer." }), "improve")).toBe("No start leads to a design. Start nearer.");
     expect(verdict(solved({ count: 0 }), "motion")).toBe("No mechanism of the wanted kinds solves the task.");
+  });
+});
+
+describe("designs of several origins", () => {
+  it("are listed sound ones first, else in their order", () => {
+    const designs = [[1, false], [2, true], [3, false], [4, true]].map(([index, sound]) => ({ index, sound }) as unknown as DesignShown);
+    expect(soundFirst(designs).map(({ index }) => index)).toEqual([2, 4, 1, 3]);
+  });
+  it("have a bound that is rounded down", () => {
+    const design = { mechanism: "four-bar", drive: "B0", transmission: 40.0546, size: 314.26 } as DesignShown;
+    expect(inOneLine(design, { angle_unit: "deg", length_unit: "mm" } as TaskState)).toBe("four-bar driven at B0, transmission angle ≥ 40.05°, longest link 314.3 mm");
+  });
+});
+
+describe("rings of positions", () => {
+  it("are smaller where they would cover each other", () => {
+    expect(radiusOf([[0, 0]])).toBe(10);
+    expect(radiusOf([[0, 0], [30, 0], [30, 16]])).toBe(8);
+    expect(radiusOf([[0, 0], [3, 0]])).toBe(4);
+    expect(radiusOf(Array.from({ length: 13 }, (_, k): Place => [100 * k, 0]))).toBe(4);
+  });
+});
+
+describe("a problem of the task", () => {
+  it("is told at the field of its entry", () => {
+    const problems = [{ line: 21, key: "wanted.transmission.least", message: "must be below 90" }, { line: 3, key: "positions[2].point[1]", message: "must be a number" }];
+    expect(problemOf({ problems }, "wanted.transmission.least")).toBe("must be below 90");
+    expect(problemOf({ problems }, "positions.1.point.0")).toBe("must be a number");
+    expect(problemOf({ problems }, "positions.0.point.0")).toBe("");
   });
 });

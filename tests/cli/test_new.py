@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,23 @@ def test_a_copy_has_its_own_name(run: Run, tmp_path: Path) -> None:
     copy, own = lw.load(path), lw.example("four-bar")
     assert copy.name == 'a "b"'
     assert copy.changed(name=own.name).description == own.description
+
+
+def test_a_task_to_begin_with_is_listed_copied_and_solvable(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "tipper.toml"
+    assert run("new", str(path), "--from", "three-poses").exit_code == 0
+    assert lw.Task.load(path).name == "tipper"
+    other = tmp_path / "other.toml"
+    shown = run("examples", "three-poses", "-o", str(other)).stdout
+    assert " ".join(shown.split()).endswith(f"Next: linkwork synthesize {other}")
+    assert lw.Task.load(other).described.positions == lw.Task.load(path).described.positions
+    listed = run("examples").stdout
+    assert "Tasks, for linkwork synthesize" in listed
+    named = json.loads(run("examples", "--json").stdout)
+    assert {"name": "three-poses", "title": "Three poses", "family": "other"} in named["tasks"]
+    assert not {entry["name"] for entry in named["tasks"]} & {
+        entry["name"] for entry in named["examples"]
+    }
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "/"])

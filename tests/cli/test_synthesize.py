@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -34,6 +35,11 @@ def test_counts_dyads_and_delivered_designs_are_printed() -> None:
     assert "5 of 12 designs have no defect." in shown
     assert shown.count("proved\n") == 4
     assert max(map(len, shown.splitlines())) <= 80
+    # a lower bound is rounded down
+    cells = re.findall(r"(?m)^  \d  four-bar +[AB]0 +([\d.]+)", shown)
+    delivered = lw.Task.load(_TASK).solve().delivered
+    for design, cell in zip(delivered, cells, strict=True):
+        assert float(cell) <= design.transmission < float(cell) + 0.001
 
 
 def test_delivered_designs_are_files_that_pass_the_poses(tmp_path: Path) -> None:
@@ -455,7 +461,8 @@ def test_a_task_without_a_sound_design_counts_defects_and_names_the_costliest_wi
         "No design is free of defects.\n"
         "The wish that costs most is the least transmission angle: without it 6 would be\n"
         "sound.\n"
-        "  four-bar driven at A0: transmission angle down to 62.89°, wanted 80°\n"
+        "The best least transmission angle is 62.88°.\n"
+        "  four-bar driven at A0: transmission angle down to 62.88°, wanted 80°\n"
         "  and 11 more; --json lists all reasons\n"
     )
     found = lw.Task.load(task).solve()

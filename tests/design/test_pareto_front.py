@@ -215,7 +215,14 @@ def test_fronts_without_a_meaning_are_refused() -> None:
         ([rocker], {"front": 4}, "between two goals or more, and 1 is given"),
         ([rocker, {"of": "rocker", "least": 3}], {"front": 4}, "bounds only limit it"),
         ([rocker, {**rocker, "weight": 2.0}], {"front": 4}, "has no effect on a front"),
-        ([rocker, rocker], {"front": 1}, "2 designs or more"),
+        ([rocker, rocker], {"front": 1}, "a whole number of 2 to 1000, got 1"),
+        ([rocker, rocker], {"front": 1.5}, "a whole number of 2 to 1000, got 1.5"),
+        ([rocker, rocker], {"front": 10**6}, "a whole number of 2 to 1000, got 1000000"),
+        ([rocker], {"starts": "2"}, "a whole number of 1 to 1000000, got '2'"),
+        ([rocker], {"starts": 0}, "a whole number of 1 to 1000000, got 0"),
+        ([rocker], {"seed": -1}, "a whole number of 0 to 2147483648, got -1"),
+        ([rocker], {"spread": "a"}, "at least 0 and below 1, got 'a'"),
+        ([rocker], {"bounds": {"O2 A": 3}}, "must be two numbers, got 3"),
         ([rocker, rocker], {"front": 4, "fit": "minimax"}, "does not add up its goals"),
     ):
         own: dict[str, Any] = given

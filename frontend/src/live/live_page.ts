@@ -427,7 +427,12 @@ export class LivePage {
 
   private lost(message: string): void {
     this.shell.lost(message, this.element, this.tabs.element);
-    if (this.page === null) this.element.replaceChildren(html("p", { class: "lw-wait", role: "alert" }, undefined, message));
+    if (this.page !== null) return;
+    const alone = html("div", { class: "lw lw-wait", role: "alert" });
+    html("h1", {}, alone, "Linkwork");
+    html("p", {}, alone, message);
+    html("button", { type: "button" }, alone, "Reload").addEventListener("click", () => location.reload());
+    this.element.replaceChildren(alone);
   }
 }
 

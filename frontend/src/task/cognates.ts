@@ -5,6 +5,7 @@ import { html, say, svg } from "../svg";
 import { boxAround, pairs, type Place } from "./geometry";
 import { drawLinkage } from "./linkage_drawing";
 
+const NONE = "Cognates are those of a four-bar with a coupler point: choose one in the list of designs.";
 const [WIDTH, HEIGHT, AIR] = [200, 160, 20];
 
 export class Cognates {
@@ -14,10 +15,11 @@ export class Cognates {
 
   constructor(private readonly choose: (index: number) => void) {}
 
-  show(found: CognatesFound | null): void {
+  /** The cognates of a design; `none` tells why there are none. */
+  show(found: CognatesFound | null, none = NONE): void {
     this.cards.replaceChildren();
     const some = (found?.cognates.length ?? 0) > 1;
-    say(this.lead, some ? "Roberts' cognates: their points P follow one curve. All pictures have one scale." : "Cognates are those of a four-bar with a coupler point: choose one in the list of designs.");
+    say(this.lead, some ? "Roberts' cognates: their points P follow one curve. All pictures have one scale." : none);
     if (!found || !some) return;
     const places = [...found.cognates.flatMap(({ points }) => Object.values(points)), ...found.curve.flatMap(pairs)];
     const box = boxAround(places)!;

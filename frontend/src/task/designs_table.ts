@@ -1,7 +1,7 @@
 // All designs in a table that sorts; refused ones are grey, with their reason.
 
 import type { DesignShown, DesignsSuggested, TaskSolved, TaskState } from "../messages";
-import { measured, trimmed, shortNumber } from "../numbers";
+import { measured, roundedDown, shortNumber, trimmed } from "../numbers";
 import { html, say } from "../svg";
 import { toggle } from "../controls";
 
@@ -82,15 +82,19 @@ export class DesignsTable {
     this.fill();
   }
 
-  /** Mark the chosen design. */
+  /** Mark the chosen design, and bring it into sight where the list scrolls by itself. */
   mark(index: number): void {
     this.chosen = index;
-    for (const row of this.body.rows) row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
+    const panel = this.element.parentElement!;
+    for (const row of this.body.rows) {
+      row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
+      if (Number(row.dataset.index) === index && panel.scrollHeight > panel.clientHeight) row.scrollIntoView({ block: "nearest" });
+    }
   }
 
-  /** All designs: suggested ones, then those found. */
+  /** All designs, sound ones first: suggested ones, then those found. */
   get designs(): readonly DesignShown[] {
-    return [...this.suggested, ...(this.solved?.designs ?? [])];
+    return soundFirst([...this.suggested, ...(this.solved?.designs ?? [])]);
   }
 
   private get columns(): Column[] {
@@ -108,7 +112,7 @@ export class DesignsTable {
     if (!designs.length || !task) return;
     for (const column of this.columns) this.title(column, task, solved?.error_unit ?? task.length_unit);
     const shown = designs.filter(({ sound }) => sound || this.refused);
-    for (const design of this.sorted(shown)) this.row(design, task);
+    for (const design of this.sorted(shown)) this.row(design);
     this.mark(this.chosen);
   }
 
@@ -137,24 +141,23 @@ export class DesignsTable {
     });
   }
 
-  private row(design: DesignShown, task: TaskState): void {
+  private row(design: DesignShown): void {
     const row = html("tr", { tabindex: 0, "data-index": design.index, class: design.sound ? "" : "lw-t-refused" }, this.body);
     row.addEventListener("click", () => this.choose(design.index));
     for (const column of this.columns) {
       if (column === "mechanism") {
         const cell = html("td", {}, row, `${inWords(design)}, ${design.drive}`);
         if (design.reason) html("span", { class: "lw-t-reason" }, cell, design.reason);
-      } else html(column === "number" ? "th" : "td", column === "number" ? { scope: "row" } : {}, row, this.number(design, column, task));
+      } else html(column === "number" ? "th" : "td", column === "number" ? { scope: "row" } : {}, row, this.number(design, column));
     }
   }
 
-  private number(design: DesignShown, column: Exclude<Column, "mechanism">, task: TaskState): string {
+  private number(design: DesignShown, column: Exclude<Column, "mechanism">): string {
     const value = design[column];
     if (value === null) return "–";
     if (design.origin && column === "number") return origin(design);
     if (column === "number") return design.sound ? String(value) : `(${value})`;
-    if (column === "transmission") return trimmed(shortNumber(value, task.angle_unit === "deg" ? 3 : 4));
-    return trimmed(shortNumber(value, 4));
+    return trimmed(shortNumber(column === "transmission" ? roundedDown(value, 4) : value, 4));
   }
 
   private key(event: KeyboardEvent): void {
@@ -170,6 +173,11 @@ export class DesignsTable {
   }
 }
 
+/** Designs in their order, the refused ones after the sound ones. */
+export function soundFirst(designs: readonly DesignShown[]): readonly DesignShown[] {
+  return [...designs.filter(({ sound }) => sound), ...designs.filter(({ sound }) => !sound)];
+}
+
 /** The counts in one sentence, or why there is no sound design. */
 export function verdict(solved: TaskSolved, kind: string): string {
   const designs = `${solved.count} design${solved.count === 1 ? "" : "s"}`;
@@ -177,14 +185,14 @@ export function verdict(solved: TaskSolved, kind: string): string {
   const none = kind === "improve" ? "No start leads to a design." : "No mechanism of the wanted kinds solves the task.";
   if (!solved.count) return stopped ? "Stopped before a design was found." : `${none} ${solved.advice}`.trim();
   if (solved.sound) return `${stopped}${designs}, ${solved.sound} without defects${solved.delivered < solved.sound ? `; the best ${solved.delivered} are delivered` : ""}.`;
-  const cost = solved.costliest ? `The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound.` : solved.advice;
+  const cost = solved.costliest ? `The wish that costs most is ${solved.costliest}: without it ${solved.costs} would be sound. ${solved.advice}` : solved.advice;
   return `${stopped}No design is free of defects (${designs}). ${cost}`.trim();
 }
 
 /** A design in one line. */
 export function inOneLine(design: DesignShown, task: TaskState): string {
   const driven = design.drive.startsWith("slider") ? `driven at the ${design.drive}` : `driven at ${design.drive}`;
-  const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(Number(design.transmission.toPrecision(3)), task.angle_unit)}`;
+  const angle = design.transmission === null ? "" : `, transmission angle ≥ ${measured(roundedDown(design.transmission, 4), task.angle_unit)}`;
   const size = design.size === null ? "" : `, longest link ${`${trimmed(shortNumber(design.size, 4))} ${task.length_unit}`}`;
   return `${inWords(design)} ${driven}${angle}${size}`;
 }

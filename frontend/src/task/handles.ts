@@ -3,7 +3,7 @@
 import type { TaskState } from "../messages";
 import { measured } from "../numbers";
 import { put, svg } from "../svg";
-import type { Place } from "./geometry";
+import { distance, type Place } from "./geometry";
 import type { Project } from "./linkage_drawing";
 
 /** One handle: a thing of the task, or the angle or radius of one. */
@@ -16,6 +16,9 @@ export interface Thing {
 
 /** Length of the arrow of a pose [px]. */
 export const ARM = 44;
+
+/** Radius of a position, of one among many, and the least one that holds a number [px]. */
+const [RING, DOT, NUMBERED] = [10, 4, 7];
 
 export const sameThing = (one: Thing | null, other: Thing | null): boolean => one !== null && other !== null && one.of === other.of && one.index === other.index && one.knob === other.knob;
 
@@ -46,7 +49,7 @@ export class Handles {
 
   draw(task: TaskState, project: Project, pixel: number, picked: Thing | null, at: number | null): void {
     const used = new Set<string>();
-    const many = task.positions.length > 12;
+    const radius = radiusOf(task.positions.map(({ x, y }) => project([x, y])));
     for (const thing of thingsOf(task)) {
       const key = `${thing.of} ${thing.index} ${thing.knob}`;
       used.add(key);
@@ -59,7 +62,7 @@ export class Handles {
       put(element, { transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, "aria-label": nameOf(task, thing) });
       element.classList.toggle("lw-t-picked", sameThing(thing, picked));
       element.classList.toggle("lw-t-here", thing.of === "position" && thing.index === at);
-      if (thing.of === "position" && !thing.knob) shapePosition(element, task, thing.index, many);
+      if (thing.of === "position" && !thing.knob) shapePosition(element, task, thing.index, radius);
       if (thing.of === "obstacle" && !thing.knob) put(element.querySelector(".lw-t-disc")!, { r: task.obstacles[thing.index]![2] / pixel });
     }
     for (const [key, element] of this.made) {
@@ -113,14 +116,22 @@ function* thingsOf(task: TaskState): Iterable<Thing> {
   }
 }
 
-function shapePosition(element: Element, task: TaskState, index: number, many: boolean): void {
+function shapePosition(element: Element, task: TaskState, index: number, radius: number): void {
   const { angle } = task.positions[index]!;
-  element.querySelector("text")!.textContent = many ? "" : String(index + 1);
-  put(element.querySelector(".lw-t-dot")!, { r: many ? 4 : 10 });
+  element.querySelector("text")!.textContent = radius < NUMBERED ? "" : String(index + 1);
+  put(element.querySelector("text")!, { "font-size": 1.2 * radius });
+  put(element.querySelector(".lw-t-dot")!, { r: radius });
   const turned = (angle ?? 0) * radians(task);
   const [c, s] = [Math.cos(turned), -Math.sin(turned)];
   // an arrow along the body, and a short one across it
   put(element.querySelector(".lw-t-arm")!, { d: angle === null ? "" : `M0 0L${(ARM * c).toFixed(1)} ${(ARM * s).toFixed(1)}M0 0L${(22 * s).toFixed(1)} ${(-22 * c).toFixed(1)}` });
+}
+
+/** The radius of the rings of positions, which do not cover each other [px]. */
+export function radiusOf(places: readonly Place[]): number {
+  if (places.length > 12) return DOT;
+  const gaps = places.flatMap((place, k) => places.slice(k + 1).map((other) => distance(place, other)));
+  return Math.max(DOT, Math.min(RING, ...gaps.map((gap) => gap / 2)));
 }
 
 /** What a screen reader says of a handle. */

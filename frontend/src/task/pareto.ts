@@ -1,7 +1,7 @@
 // Transmission angle against size: what a larger mechanism gains.
 
 import type { DesignShown, TaskState } from "../messages";
-import { measured, ticks, trimmed, shortNumber } from "../numbers";
+import { measured, roundedDown, shortNumber, ticks, trimmed } from "../numbers";
 import { html, say, svg } from "../svg";
 import { called } from "./designs_table";
 import { front, type Place } from "./geometry";
@@ -10,6 +10,8 @@ const [WIDTH, HEIGHT] = [400, 290];
 const [LEFT, RIGHT, TOP, BOTTOM] = [44, 14, 12, 40];
 /** Sizes that differ by more are on a logarithmic axis. */
 const WIDE = 8;
+/** Relative: sizes that differ by less are one. */
+const ONE_SIZE = 1e-3;
 
 export class Pareto {
   readonly element = html("div", { class: "lw-t-pareto" });
@@ -22,15 +24,18 @@ export class Pareto {
   show(task: TaskState, listed: readonly DesignShown[]): void {
     this.plot.replaceChildren();
     const designs = listed.filter(({ sound, size, transmission }) => sound && size !== null && transmission !== null);
-    this.element.classList.toggle("lw-t-none", !designs.length);
-    say(this.lead, designs.length ? "Sound designs. On the line, no other one is both smaller and better; choose one by a click or with Tab and Enter." : "Sound designs are shown here, once there are any.");
-    if (!designs.length) return;
     const sizes = designs.map(({ size }) => size!);
     const [low, high] = [Math.min(...sizes), Math.max(...sizes)];
+    const one = high - low <= ONE_SIZE * high;
+    this.element.classList.toggle("lw-t-none", !designs.length || one);
+    if (!designs.length) say(this.lead, "Sound designs are shown here, once there are any.");
+    else if (one) say(this.lead, `All sound designs have one size, ${trimmed(shortNumber(high, 4))} ${task.length_unit}: there is nothing to trade for it.`);
+    else say(this.lead, "Sound designs. On the line, no other one is both smaller and better; choose one by a click or with Tab and Enter.");
+    if (!designs.length || one) return;
     const logs = high > WIDE * low;
     const along = (size: number): number => (logs ? Math.log10(size) : size);
     const [from, to] = [along(low), along(high)];
-    const span = to - from > 1e-9 * Math.abs(to) ? to - from : Math.max(1e-9, Math.abs(from) * 0.1);
+    const span = to - from;
     const x = (size: number): number => LEFT + 8 + ((along(size) - from) / span) * (WIDTH - LEFT - RIGHT - 16);
     const right = task.angle_unit === "deg" ? 90 : Math.PI / 2;
     const top = Math.min(right, 1.08 * Math.max(...designs.map(({ transmission }) => transmission!)));
@@ -65,7 +70,7 @@ export class Pareto {
   }
 
   private dot(design: DesignShown, [x, y]: Place, best: boolean, task: TaskState): void {
-    const name = `${called(design)}: transmission angle ${measured(Number(design.transmission!.toPrecision(3)), task.angle_unit)}, size ${trimmed(shortNumber(design.size!, 4))} ${task.length_unit}`;
+    const name = `${called(design)}: transmission angle ${measured(roundedDown(design.transmission!, 4), task.angle_unit)}, size ${trimmed(shortNumber(design.size!, 4))} ${task.length_unit}`;
     const dot = svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: best ? 5 : 3.5, class: `lw-t-point${best ? " lw-t-best" : ""}`, "data-index": design.index, ...(best ? { tabindex: 0, role: "button", "aria-label": name } : { "aria-hidden": "true" }) }, this.plot);
     svg("title", {}, dot).textContent = name;
     dot.addEventListener("click", () => this.choose(design.index));

@@ -60,7 +60,7 @@ export class TaskForm {
   private readonly wishes = html("div", { class: "lw-t-fields" }, this.element);
   private readonly extra = html("p", { class: "lw-lead" }, this.element);
   private readonly text: HTMLTextAreaElement;
-  private readonly fields = new Map<string, { input: HTMLInputElement; unit: HTMLElement; kind: string }>();
+  private readonly fields = new Map<string, { input: HTMLInputElement; unit: HTMLElement; kind: string; wrong: HTMLElement }>();
   private rows = "";
 
   constructor(
@@ -87,6 +87,7 @@ export class TaskForm {
     (this.mechanism.querySelector("[value=given]") as HTMLOptionElement).hidden = !several;
     this.order.value = String(entries["wanted.order"] ?? "as given");
     const ranged = "wanted.input.from" in entries;
+    this.range.options[0]!.textContent = task.task === "improve" ? "table of the mechanism" : "first to last position";
     this.range.value = ranged ? "given" : String(entries["wanted.input"] ?? "");
     (this.range.querySelector("[value=given]") as HTMLOptionElement).hidden = !ranged;
     const functions = task.task === "function";
@@ -97,10 +98,13 @@ export class TaskForm {
     this.mechanism.parentElement!.hidden = ["path", "mixed", "improve"].includes(task.task);
     this.improved.hidden = task.task !== "improve";
     this.goals.replaceChildren(...goalsOf(task).map((goal) => html("li", {}, undefined, goal)));
-    for (const [key, { input, unit, kind }] of this.fields) {
+    for (const [key, { input, unit, kind, wrong }] of this.fields) {
       const value = entries[key];
       input.parentElement!.hidden = pairsOf(task) > 0 && /^function\.(of|x)/.test(key);
       fill(input, value === undefined ? "" : typeof value === "number" ? plain(value) : value);
+      const problem = problemOf(task, key);
+      input.setAttribute("aria-invalid", String(problem !== ""));
+      say(wrong, problem);
       say(unit, kind === "angle" ? (task.angle_unit === "deg" ? "°" : "rad") : kind === "length" ? task.length_unit : "");
     }
     const pivots = task.fixed_pivots.length + task.moving_pivots.length;
@@ -132,7 +136,7 @@ export class TaskForm {
     const input = html("input", { type: "text", class: "lw-field", spellcheck: "false", "data-key": key, ...(TEXTS.includes(key) ? {} : { inputmode: "decimal" }) }, holder);
     const unit = html("span", { class: "lw-unit" }, holder);
     input.addEventListener("change", () => this.set(key, TEXTS.includes(key) ? input.value.trim() || null : number(input.value)));
-    this.fields.set(key, { input, unit, kind });
+    this.fields.set(key, { input, unit, kind, wrong: html("span", { class: "lw-t-wrong" }, holder) });
   }
 
   /** Positions, or pairs of a function, as rows of fields; kept while their number stays, so that the focus does. */
@@ -149,6 +153,7 @@ export class TaskForm {
       for (const name of names) {
         const value = functions ? task.entries[keyOf(name, k)] : (task.positions[k]![name as keyof PositionShown] ?? "");
         const input = this.positions.querySelector<HTMLInputElement>(`tr[data-index="${k}"] input[data-name=${name}]`);
+        input?.setAttribute("aria-invalid", String(problemOf(task, keyOf(name, k)) !== ""));
         if (input) fill(input, typeof value === "number" && !(name.endsWith("tolerance") && value === 0) ? plain(value) : "");
       }
   }
@@ -189,6 +194,12 @@ const PLACES: Readonly<Partial<Record<Column, number>>> = { x: 0, y: 1, input: 0
 function keyOf(name: Column, index: number): string {
   if (name === "input" || name === "output") return `function.pairs.${index}.${PLACES[name]}`;
   return `positions.${index}.${name in PLACES ? `point.${PLACES[name]}` : name}`;
+}
+
+/** What is wrong with an entry, "" if nothing is: a list of it is named `[1]` in a problem. */
+export function problemOf({ problems }: Pick<TaskState, "problems">, key: string): string {
+  const named = key.replace(/\.(\d+)(?=\.|$)/g, (_, index) => `[${Number(index) + 1}]`);
+  return problems.find((problem) => problem.key === named)?.message ?? "";
 }
 
 /** How many pairs a function has. */

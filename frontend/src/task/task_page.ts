@@ -238,8 +238,9 @@ export class TaskPage {
   }
 
   private askCognates(): void {
-    if (this.design && !this.design.design.origin && ["path", "mixed"].includes(this.task!.task)) this.shell.background({ kind: "show_cognates", design: this.design.design.index });
-    else this.cognates.show(null);
+    const of = ["path", "mixed"].includes(this.task!.task);
+    if (this.design && !this.design.design.origin && of) this.shell.background({ kind: "show_cognates", design: this.design.design.index });
+    else this.cognates.show(null, of ? undefined : "Only four-bars found for a path have cognates: these share the path of a point, but neither poses nor functions.");
   }
 
   /** The chosen design in words. */

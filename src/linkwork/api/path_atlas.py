@@ -18,6 +18,7 @@ from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.internal import internal
 from linkwork.foundation.paths import as_path
+from linkwork.foundation.plain_numbers import as_told, whole_number
 
 __all__ = ["NearPath", "PathAtlas"]
 
@@ -163,17 +164,14 @@ class PathAtlas:
         Raises
         ------
         InputError
-            For fewer than five points, or all at one place.
+            For fewer than five points, all at one place, or numbers beyond 1e12 or below 1e-12.
         """
-        points = np.asarray(curve)
-        z = points if np.iscomplexobj(points) else points @ np.array([1.0, 1.0j])
+        z = _points(curve)
         if len(z) > 1 and z[0] == z[-1]:
             z = z[:-1]
         if len(z) < _FEWEST or not np.isfinite(z).all():
             raise InputError(f"a curve needs {_FEWEST} points or more, all finite: got {len(z)}")
-        if count < 1:
-            raise InputError(f"count must be 1 or more, got {count}")
-        found = self._atlas.nearest(z, count)
+        found = self._atlas.nearest(z, whole_number("count", count, least=1))
         return tuple(
             NearPath(number=k, near=near, curve=z) for k, near in enumerate(found, start=1)
         )
@@ -183,3 +181,16 @@ class PathAtlas:
 
     def __repr__(self) -> str:
         return f"<PathAtlas of {len(self)} paths>"
+
+
+def _points(curve: object) -> ComplexArray:
+    """The corners (N,) of a curve."""
+    try:
+        given = np.asarray(curve)
+    except ValueError:  # rows of different lengths
+        given = np.empty(0, dtype=object)
+    if given.dtype.kind == "c" and given.ndim == 1:
+        return np.asarray(given, dtype=complex)
+    if given.dtype.kind in "iuf" and given.ndim == 2 and given.shape[1] == 2:
+        return np.asarray(given[:, 0] + 1j * given[:, 1])
+    raise InputError(f"a curve is a list of points (x, y) or complex numbers, got {as_told(curve)}")

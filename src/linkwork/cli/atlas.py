@@ -14,7 +14,7 @@ from linkwork.cli.output_file import check_outputs
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines, wrapped
 from linkwork.cli.text_table import table_lines
 from linkwork.design.tasks.curve_file import read_curve
-from linkwork.foundation.errors import InputError
+from linkwork.foundation.errors import InputError, MechanismError, MechanismFileError
 from linkwork.foundation.own_files import OwnFiles
 from linkwork.foundation.paths import as_path
 from linkwork.results.listing.column import Column
@@ -66,7 +66,12 @@ def atlas(
         return
     if len(sources) != 1:
         raise InputError("give one curve:\n    linkwork atlas curve.csv")
-    curve = read_curve({"file": sources[0]}, None)
+    try:
+        curve = read_curve({"file": sources[0]}, None)
+    except MechanismFileError:
+        raise
+    except MechanismError as error:  # there is no task that names the file
+        raise InputError(error.problems[0].message) from None
     earlier = () if output is None else _OWN.check(as_path(output), fresh)
     with progress("comparing paths"):
         asked = PathAtlas.shipped() if file is None else PathAtlas.load(file)

@@ -15,8 +15,9 @@ from linkwork.mechanism.varied_number import numbers_named, with_numbers
 from linkwork.textfile.link import is_link, source_text
 from linkwork.textfile.reader import read_text
 from linkwork.textfile.toml_text import text_of
+from linkwork.viewer.live.task.templates import template_names, template_text
 
-__all__ = ["mechanism_of", "read_mechanism", "shown_source", "text_of_source"]
+__all__ = ["mechanism_of", "read_mechanism", "shown_source", "text_of_source", "text_to_copy"]
 
 
 def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
@@ -52,6 +53,17 @@ def text_of_source(file: str) -> tuple[str, str]:
             f"    linkwork examples {path.stem} -o {path.stem}.toml"
         )
     return source_text(file)
+
+
+def text_to_copy(name: str) -> str:
+    """A mechanism of the library, or a task to begin with.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none of this name.
+    """
+    return template_text(name) if name in template_names() else example_text(name)
 
 
 def mechanism_of(text: str, name: str, changes: tuple[str, ...] = ()) -> Mechanism:

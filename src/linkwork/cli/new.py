@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from linkwork.api import example_text
+from linkwork.cli.mechanism_source import text_to_copy
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json
 from linkwork.foundation.errors import InputError
@@ -23,16 +23,17 @@ __all__ = ["new"]
     "--from",
     "model",
     metavar="EXAMPLE",
-    help='A mechanism of the library to begin with: "linkwork examples" lists them.',
+    help='A mechanism or a task to begin with: "linkwork examples" lists them.',
 )
 @json_option
 @debug_option
 def new(name: str, model: str | None, as_json: bool) -> None:
-    """Write a new mechanism file.
+    """Write a new file of a mechanism or a task.
 
     \b
       linkwork new press                        (a blank sheet, press.toml)
       linkwork new press --from toggle-press    (a copy with that name)
+      linkwork new tipper --from three-poses    (a task: linkwork synthesize)
 
     "linkwork view press.toml" opens it to draw on. Existing files are never
     overwritten.
@@ -43,7 +44,7 @@ def new(name: str, model: str | None, as_json: bool) -> None:
             f'"{name}" is not the name of a file: write one, as in "linkwork new press"'
         )
     path = path if path.suffix else path.with_suffix(".toml")
-    text = blank_sheet(path.stem) if model is None else _named(example_text(model), path.stem)
+    text = blank_sheet(path.stem) if model is None else _named(text_to_copy(model), path.stem)
     if path.exists():
         raise InputError(f'"{path}" exists already: choose another name, or open it')
     save_text(text, path)

@@ -12,7 +12,7 @@ from linkwork.design.synthesis.advice import advice_of, remarks_on
 from linkwork.design.synthesis.designs_table import front_of, goal_misses
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.results.listing.column import Column
-from linkwork.results.listing.number_text import significant
+from linkwork.results.listing.number_text import rounded_down, significant
 
 __all__ = ["synthesis_lines"]
 
@@ -95,8 +95,9 @@ def _design_lines(found: Synthesis) -> list[str]:
         columns.append(Column(header="mechanism", cells=[d.mechanism for d in designs]))
         if not found.starts:  # fits are all driven at one link
             columns.append(Column(header="driven at", cells=[d.driven for d in designs]))
+    least = [rounded_down(design.transmission, _DIGITS) for design in designs]
     columns += [
-        column(f"transmission [{task.angle.value}]", [design.transmission for design in designs]),
+        column(f"transmission [{task.angle.value}]", least),
         column(f"size [{task.length}]", [design.size for design in designs]),
     ]
     if front:

@@ -29,6 +29,7 @@ __all__ = [
     "DraftFile",
     "ReadFile",
     "check_format",
+    "check_kind",
     "located_error",
     "read_bytes",
     "read_draft",
@@ -38,6 +39,9 @@ __all__ = [
 
 #: Keys that are words of Python's ranges there.
 _RENAMED = {"from": "start", "to": "stop"}
+
+#: Tables that only mechanisms have.
+_DESCRIBED = ("points", "links", "loops", "equations")
 
 #: Tables and keys that no other table refers to.
 _LEAVES = frozenset(
@@ -106,6 +110,7 @@ def read_text(text: str, name: str = "the text") -> ReadFile:
     data = data_of(text, name)
     lines = Lines.of(text)
     check_format(data, lines, name)
+    check_kind(data, lines, name, task=False)
     form = form_of(data)
     structure = Structure(data, form)
     problems = list(structure.problems)
@@ -184,6 +189,21 @@ def check_format(data: dict[str, Any], lines: Lines, name: str) -> None:
             f"reads format = {FORMAT}: update Linkwork"
         )
         raise located_error([Problem(key=("format",), message=message)], lines, name)
+
+
+def check_kind(data: dict[str, Any], lines: Lines, name: str, *, task: bool) -> None:
+    """Reject a task where a mechanism is wanted, and the other way round, in one sentence."""
+    kind, command, function = (
+        ("mechanism", "sweep", "load") if task else ("task", "synthesize", "Task.load")
+    )
+    marks = [key for key in data if key in ("task", *_DESCRIBED)]
+    if {"task" if key == "task" else "mechanism" for key in marks} != {kind}:
+        return
+    told = (
+        f"this is a {kind}: linkwork {command} FILE or linkwork view FILE, "
+        f"in Python linkwork.{function}"
+    )
+    raise located_error([Problem(key=(marks[0],), message=told)], lines, name)
 
 
 def _description(content: dict[str, Any], form: Form) -> Linkage | Loops | PlainEquations:

@@ -13,6 +13,7 @@ from linkwork.design.synthesis.result import Synthesis
 from linkwork.drawing.embedded_svg import embedded_svg
 from linkwork.drawing.inline_svg import Inks, inline_svg
 from linkwork.drawing.scene import Scene
+from linkwork.results.listing.number_text import rounded_down
 
 __all__ = ["designs_page"]
 
@@ -29,9 +30,9 @@ border-radius:.5rem}
 figcaption{font-size:.85rem}
 .wide{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .8rem .2rem 0;text-align:left;white-space:nowrap;vertical-align:top}
-td:last-child{white-space:normal;min-width:16rem}
-th button{font:inherit;font-weight:600;border:0;background:none;color:inherit;padding:0;
-cursor:pointer}tr.refused{color:color-mix(in srgb,CanvasText 60%,Canvas)}
+th,td:last-child{white-space:normal}td:last-child:not(:empty){min-width:16rem}
+th button{font:inherit;text-align:left;font-weight:600;border:0;background:none;color:inherit;
+padding:0;cursor:pointer}tr.refused{color:color-mix(in srgb,CanvasText 60%,Canvas)}
 dl{display:grid;grid-template-columns:fit-content(36%) 1fr;gap:.1rem 1rem;margin:0}dd{margin:0}
 """.replace("\n", "")
 _SORT = """
@@ -114,8 +115,8 @@ def _caption(found: Synthesis, design: JudgedDesign) -> str:
     task = found.task
     return (
         f"{design.number}: {design.mechanism} driven at {design.driven}, "
-        f"transmission angle {design.transmission:.4g}{task.angle.sign} or more, longest link "
-        f"{design.size:.4g} {task.length}"
+        f"transmission angle {rounded_down(design.transmission, 4):g}{task.angle.sign} or more, "
+        f"longest link {design.size:.4g} {task.length}"
     )
 
 
@@ -138,7 +139,7 @@ def _rows(found: Synthesis, files: Mapping[int, str]) -> Iterator[str]:
             name = os.path.basename(files[k])
             link = f"refused/{name}" if design.kinds else name
             number = f'<a href="{html.escape(link)}">{number}</a>'
-        numbers = [design.transmission, design.size, design.error, design.score]
+        numbers = [rounded_down(design.transmission, 5), design.size, design.error, design.score]
         numbers += [misses[k] for misses in goals.values()]
         cells = [
             f'<td data-key="{k + 1}">{number}</td>',

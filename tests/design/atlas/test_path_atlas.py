@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -234,6 +235,21 @@ def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
         atlas.nearest([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
     with pytest.raises(lw.InputError, match="the curve is one point"):
         atlas.nearest([(1, 1)] * 8)
+    square: ComplexArray = np.array([0.0, 1.0, 2.0, 2.0 + 2.0j, 2.0j])
+    for curve in (
+        *([], "abc", range(9), np.zeros((4, 3)), np.ones((9, 2), dtype=complex), [(0, 0), (1,)]),
+        *([("0", "0")] * 9, [None] * 9),
+    ):
+        with pytest.raises(lw.InputError, match=r"a curve is a list of points \(x, y\) or complex"):
+            atlas.nearest(curve)  # type: ignore[arg-type]
+    for count in (0, 2.5, "3", True):
+        with pytest.raises(lw.InputError, match="count must be a whole number, 1 or more, got"):
+            atlas.nearest(square, count)  # type: ignore[arg-type]
+    for factor, told in ((1e200, "beyond"), (1e150, "beyond"), (1e-199, "in size, less than")):
+        with pytest.raises(lw.InputError, match=f"the curve .* {told}"):
+            atlas.nearest(factor * square)
+    for factor in (4e11, 1e-11):
+        assert atlas.nearest(factor * square, 1)[0].mechanism.sweep().found.all()
     broken = tmp_path / "broken.npz"
     broken.write_bytes(SHIPPED.read_bytes()[:1000])
     with pytest.raises(lw.InputError, match="is no atlas of paths"):
@@ -242,3 +258,25 @@ def test_curves_and_files_that_are_none_are_refused(tmp_path: Path) -> None:
         lw.PathAtlas.load(tmp_path / "missing.npz")
     assert isinstance(read_atlas().families[0], AtlasFamily)
     assert SHIPPED.stat().st_size < 5e6
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("1,2\n3,4\n", "has 2 points: a curve needs 5 to 2000"),
+        ("0,0\n1e200,0\n1e200,1\n0,1\n0,0.5\n", "goes to 1e+200, beyond ±1e+12"),
+        ("0,0\n1e-199,0\n1e-199,1e-199\n0,1e-199\n0,5e-200\n", "is 1e-199 in size, less than"),
+    ],
+)
+def test_a_bad_curve_is_the_problem_of_its_file(text: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "c.csv"
+    path.write_text(text)
+    done = CliRunner().invoke(linkwork, ["atlas", str(path)])
+    assert done.exit_code == 2
+    shown = " ".join(done.stderr.split())
+    assert shown.startswith("Error: ")
+    assert told in shown
+    assert "the task" not in shown
+    with pytest.raises(lw.MechanismError, match=re.escape(told)) as found:
+        lw.Task.loads(f'format = 1\ntask = "path"\n[curve]\nfile = "{path.as_posix()}"\n')
+    assert found.value.problems[0].key == ("curve", "file")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -327,18 +328,29 @@ def test_fits_that_end_at_the_usual_bound_and_cognates_are_named() -> None:
     ]
     found = lw.Task.path(points, mechanism="four-bar", improve={"starts": 60}).solve()
     ending = sum(design.size > 0.999 * 2040.0 for design in found.delivered)
-    *_, first, kin, _ = remarks_on(found)
+    *_, first, kin, images = remarks_on(found)
     assert ending
     assert first == (
         f"Delivered designs with a longest link at the usual bound, 2040 mm: {ending}. [wanted] "
         "lengths = { most = … } refuses them."
     )
-    assert kin.startswith("Cognates draw one curve with different links: designs 1, 2")
+    assert kin.startswith("Cognates draw one curve with different links: designs ")
+    assert images.startswith("The same links in different places: designs 1, 2")
+    pair = [int(number) for number in re.findall(r"\d+", kin)[:2]]
+    assert pair != [1, 2]
     one, other = (
-        lw.api.Mechanism(design.linkage).sweep(certify=False).trace("P")
-        for design in found.of_loops[:2]
+        lw.api.Mechanism(found.of_loops[number - 1].linkage).sweep(certify=False).trace("P")
+        for number in pair
     )
     assert np.abs(one[:, None] - other).min(axis=1).max() < 5.0
+
+
+def test_a_cognate_that_is_the_mirror_image_has_the_same_links_and_is_named_once() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
+    points = [(60 * np.cos(a), max(30 * np.sin(a), 0.0)) for a in turn]
+    found = lw.Task.path(points, mechanism="four-bar", improve={"starts": 60}).solve()
+    kin = [told for told in remarks_on(found) if "designs 1, 2" in told]
+    assert [told.partition(":")[0] for told in kin] == ["The same links in different places"]
 
 
 @pytest.mark.parametrize("inputs", [(300, 330, 360, 390, 420), (300, 330, 0, 30, 60)])

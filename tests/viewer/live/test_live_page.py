@@ -14,6 +14,7 @@ import linkwork as lw
 from linkwork.mechanism.linkage import Linkage
 from linkwork.textfile.link import text_of_link
 from tests.described import described_as
+from tests.viewer.accessibility import assert_accessible
 from tests.viewer.live.conftest import FOUR_BAR, Served
 
 Open = Callable[..., Any]
@@ -201,6 +202,11 @@ def test_a_second_page_and_a_lost_connection_are_told(open_live: Open, served: S
     page = open_live()
     second = open_live(wait=".lw-wait[role=alert]")
     assert "Another page shows this file" in second.locator(".lw-wait").text_content()
+    assert_accessible(second)
+    page.close()
+    second.get_by_role("button", name="Reload").click()
+    second.locator(".lw[data-row]").wait_for()
+    page = second
     served.server.stop()
     page.get_by_text("The connection is lost").wait_for()
     assert page.get_by_role("button", name="Save").is_disabled()

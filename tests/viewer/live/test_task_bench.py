@@ -18,12 +18,14 @@ from linkwork.design.synthesis.solving import solve_task
 from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.wanted_mechanisms import MECHANISMS
 from linkwork.foundation.errors import InputError
+from linkwork.results.listing.number_text import rounded_down
 from linkwork.viewer.live import events as tell, requests as ask, task_requests as do
 from linkwork.viewer.live.answers import GivenUpError, Hurry
 from linkwork.viewer.live.bench import Bench
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 from linkwork.viewer.live.opened_file import NoSign
 from linkwork.viewer.live.session import Desk
+from linkwork.viewer.live.task import designs
 from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
 from linkwork.viewer.live.task.templates import task_template, template_names
@@ -177,6 +179,45 @@ def test_doubtful_designs_have_a_remark_and_a_task_without_sound_ones_advice(
     without = solved(bench.handle(ask.SetText(text=text)))
     assert without.sound == 0
     assert "enlarge the region of fixed pivots" in without.advice
+
+
+def test_without_sound_designs_near_misses_come_first_and_the_best_one_is_chosen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(designs, "_MOST_REFUSED", 8)
+    bench = opened(tmp_path, "five-poses")
+    first = solved(bench.opened())
+    assert first.advice == ""
+    assert first.chosen is not None
+    bound = do.SetTaskEntry(key="wanted.transmission.least", value=89)
+    again = solved(bench.handle(bound))
+    assert again.sound == 0
+    assert again.chosen is not None
+    assert again.chosen.fixed == first.chosen.fixed
+    assert again.left_out == again.count - 8
+    # the design in sight stays in the list
+    listed = [design.index for design in again.designs]
+    unlisted = next(k for k in range(again.count) if k not in listed)
+    bench.handle(do.ShowDesign(design=unlisted))
+    kept = solved(bench.handle(do.SetTaskEntry(key="wanted.transmission.least", value=88)))
+    assert kept.chosen is not None
+    assert kept.chosen.design.index == unlisted
+    assert kept.designs[-1] == kept.chosen.design
+    anew = solved(Bench(MechanismFile(_written(bench, tmp_path)), lw.loads, solve_task).opened())
+    near = [design for design in anew.designs if design.reason.startswith("transmission angle")]
+    angles = [design.transmission or 0.0 for design in near]
+    assert len(near) > 1
+    assert list(anew.designs[: len(near)]) == near
+    assert angles == sorted(angles, reverse=True)
+    assert anew.chosen is not None
+    assert anew.chosen.design == anew.designs[0]
+    assert anew.advice == f"The best least transmission angle is {rounded_down(angles[0], 4):g}°."
+
+
+def _written(bench: Bench, folder: Path) -> Path:
+    path = folder / "anew.toml"
+    path.write_text(bench.text, encoding="utf-8")
+    return path
 
 
 def test_a_pivot_of_four_poses_stays_on_their_curve(tmp_path: Path) -> None:

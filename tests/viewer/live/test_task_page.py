@@ -209,3 +209,59 @@ def test_every_task_fits_into_its_page(
         page.get_by_role("tab", name=tab).click()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert_accessible(page)
+
+
+def test_what_a_page_says_fits_the_kind_of_its_task(
+    tmp_path: Path, serve: Serve, watched: Watched
+) -> None:
+    size = {"width": 1280, "height": 560}
+    page = opened(serve(task(tmp_path, "five-poses")), watched, viewport=size)
+    page.locator(".lw-task[data-solved]").wait_for()
+    page.locator(".lw-t-designs tbody tr").last.click()
+    page.locator(".lw-t-chosen.lw-t-refused").wait_for()
+    page.get_by_role("tab", name="Cognates").click()
+    page.get_by_text("Only four-bars found for a path have cognates").wait_for()
+    page.get_by_role("tab", name="Task").click()
+    field = page.get_by_label("Transmission angle at least")
+    field.fill("95")
+    field.press("Enter")
+    page.locator(".lw-t-wrong", has_text="must be at least 0 and below 90, got 95").wait_for()
+    assert field.get_attribute("aria-invalid") == "true"
+    assert page.get_by_label("Links not shorter than").get_attribute("aria-invalid") == "false"
+    assert_accessible(page)
+    field.fill("89")
+    field.press("Enter")
+    page.get_by_role("tab", name="Designs").click()
+    page.get_by_text("The best least transmission angle is").wait_for()
+    assert field.get_attribute("aria-invalid") == "false"
+    # the chosen design is in sight in the list, which scrolls by itself
+    row = page.locator(".lw-t-designs tbody tr[aria-selected=true]")
+    row.wait_for()
+    page.wait_for_function(_IN_SIGHT)
+
+
+_IN_SIGHT = """() => {
+  const row = document.querySelector(".lw-t-designs tr[aria-selected=true]");
+  const [own, panel] = [row, row.closest(".lw-panel")].map((e) => e.getBoundingClientRect());
+  return own.top >= panel.top && own.bottom <= panel.bottom + 1;
+}"""
+
+
+@pytest.mark.extended
+def test_one_size_is_no_trade_off_and_an_improvement_moves_through_its_table(
+    tmp_path: Path, serve: Serve, watched: Watched
+) -> None:
+    page = opened(serve(task(tmp_path, "curve")), watched)
+    page.locator(".lw-task[data-solved]").wait_for()
+    page.get_by_role("tab", name="Trade-off").click()
+    page.get_by_text("All sound designs have one size, 220 mm").wait_for()
+    assert not page.locator(".lw-t-pareto svg").is_visible()
+    page.get_by_role("tab", name="Task").click()
+    range_ = page.get_by_label("Driven range").locator("option").first
+    assert range_.text_content() == "first to last position"
+    page.locator(".lw-t-choice", has_text="Task").locator("select").select_option("improve")
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('option')].some("
+        "(o) => o.textContent === 'table of the mechanism')"
+    )
+    assert range_.text_content() == "table of the mechanism"

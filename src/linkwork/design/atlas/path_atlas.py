@@ -11,6 +11,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from linkwork.design.atlas.path_shape import WAYS, coefficients, distances, in_ways
+from linkwork.design.tasks.curve_file import out_of_bounds
 from linkwork.foundation.arrays import AnyArray, Array, ComplexArray, IndexArray
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.written_file import save_bytes
@@ -118,6 +119,8 @@ class PathAtlas:
         Lengths of coefficients differ by no more than the coefficients: this lower bound of the
         distance chooses what is compared exactly, until no other design can be nearer.
         """
+        if told := out_of_bounds(curve):
+            raise InputError(f"the curve {told}")
         shape = coefficients(curve[None])[0][0]
         if not np.isfinite(shape).all():
             raise InputError("the curve is one point: draw a curve that encloses an area")

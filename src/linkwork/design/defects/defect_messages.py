@@ -11,6 +11,7 @@ from linkwork.design.defects.verdicts import DefectKind, Verdicts
 from linkwork.design.loops.candidates import Candidates, Drive
 from linkwork.design.tasks.task import Task
 from linkwork.foundation.arrays import Array
+from linkwork.results.listing.number_text import rounded_down
 
 __all__ = ["Defect", "defects_of", "tolerance_message"]
 
@@ -117,7 +118,7 @@ class _Words:
 
     def _transmission(self) -> tuple[str, None]:
         unit = self.task.angle
-        least = unit.from_radians(float(self.verdicts.transmission[self.k]))
+        least = rounded_down(unit.from_radians(float(self.verdicts.transmission[self.k])), 4)
         wanted = self.task.wanted.transmission
         return (
             f"transmission angle down to {least:.4g}{unit.sign}, wanted {wanted:g}{unit.sign}",

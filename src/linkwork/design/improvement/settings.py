@@ -7,12 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from linkwork.foundation.errors import MechanismError, Problem, choices
+import numpy as np
 
-__all__ = ["FITS", "Goal", "Improvement", "Points", "read_goal"]
+from linkwork.foundation.errors import MechanismError, Problem, choices
+from linkwork.foundation.plain_numbers import as_told, plain_number
+
+__all__ = ["FITS", "WHOLE", "Goal", "Improvement", "Points", "read_goal"]
 
 #: How misses count.
 FITS = ("least squares", "minimax")
+#: The least and the largest of whole numbers.
+WHOLE = {"starts": (1, 10**6), "front": (2, 1000), "seed": (0, 2**31)}
 
 _LARGEST = 1e12  # of goals: squares of misses stay far from overflow
 
@@ -181,16 +186,24 @@ class Improvement:
                 yield ("goals", k, *key), message
         if self.fit not in FITS:
             yield ("goal",), f'must be "least squares" or "minimax", got "{self.fit}"'
-        if self.front < 0 or self.front == 1:
-            yield ("front",), f"must be 2 designs or more, got {self.front}"
+        for name, (least, most) in WHOLE.items():
+            number = getattr(self, name)
+            whole = isinstance(number, int | np.integer) and least <= number <= most
+            if not whole and number is not getattr(Improvement, name):
+                told = f"must be a whole number of {least} to {most}, got {as_told(number)}"
+                yield (name,), told
         if self.front and self.fit == "minimax":
             told = "has no effect on a front, which does not add up its goals: leave it out"
             yield ("goal",), told
-        for name, (low, high) in self.bounds.items():
-            if not low <= high:
-                yield ("bounds", name), f"from {low:g} to {high:g} hold no number"
-        if not 0.0 <= self.spread < 1.0:
-            yield ("spread",), f"must be at least 0 and below 1, got {self.spread:g}"
+        for name, pair in self.bounds.items():
+            ends = [plain_number(end) for end in np.ravel(np.asarray(pair, dtype=object))]
+            if len(ends) != 2 or None in ends:
+                yield ("bounds", name), f"must be two numbers, got {as_told(pair)}"
+            elif not pair[0] <= pair[1]:
+                yield ("bounds", name), f"from {pair[0]:g} to {pair[1]:g} hold no number"
+        spread = plain_number(self.spread)
+        if spread is None or not 0.0 <= spread < 1.0:
+            yield ("spread",), f"must be at least 0 and below 1, got {as_told(self.spread)}"
 
     def front_problems(self, goals: Sequence[Goal | Points]) -> Problems:
         """Goals between which there is no front."""

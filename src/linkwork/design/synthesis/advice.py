@@ -15,8 +15,9 @@ from linkwork.design.synthesis.kinship import alike_among
 from linkwork.design.synthesis.result import Synthesis
 from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.wanted_mechanisms import MECHANISMS
+from linkwork.results.listing.number_text import rounded_down
 
-__all__ = ["advice_of", "remark_on", "remarks_on"]
+__all__ = ["advice_of", "near_misses", "remark_on", "remarks_on"]
 
 #: Handbooks ask for 40 deg or more; below 30 deg friction jams many mechanisms.
 _LEAST_TRANSMISSION = 30.0  # [deg]
@@ -90,15 +91,16 @@ def _doubts(task: Task) -> Iterator[_Doubt]:
 
 
 def advice_of(found: Synthesis) -> str:
-    """What could be changed in a task without a sound design that no relaxed wish would help; of a
-    function also what else helps, which is tried. "" if there is a sound design.
+    """What could be changed in a task without a sound design that no relaxed wish would help, or
+    what is attained of one; of a function also what else helps, which is tried. "" if there is a
+    sound design.
     """
     if found.sound:
         return ""
     if found.helpful_change:
         return found.helpful_change
     if found.costliest is not None:
-        return ""
+        return _attained(found)
     if found.task.kind == "improve":
         if not found.designs:
             return _of_goals(found)
@@ -116,6 +118,21 @@ def advice_of(found: Synthesis) -> str:
     steps = first + "".join(f", or {other}" for other in others)
     blame = "No wish is to blame. " if found.designs else ""
     return f"{blame}Try to {steps}."
+
+
+def near_misses(found: Synthesis) -> list[int]:
+    """The places of designs that have too small a transmission angle and no other defect, the
+    largest angle first.
+    """
+    own = [k for k, d in enumerate(found.designs) if d.kinds == (DefectKind.TRANSMISSION,)]
+    return sorted(own, key=lambda k: -found.designs[k].transmission)
+
+
+def _attained(found: Synthesis) -> str:
+    for k in near_misses(found)[:1]:
+        best = rounded_down(found.designs[k].transmission, 4)
+        return f"The best least transmission angle is {best:g}{found.task.angle.sign}."
+    return ""
 
 
 def _of_goals(found: Synthesis) -> str:

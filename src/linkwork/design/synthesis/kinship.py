@@ -21,9 +21,12 @@ _Pair = tuple[SynthesizedDesign, SynthesizedDesign]
 def alike_among(found: Synthesis) -> Iterator[str]:
     """The groups of delivered loops that are alike, in words."""
     loops = [design for design in found.of_loops if design.delivered]
+    images = list(_images(loops))
+    # of a symmetric curve a cognate may be the mirror image, which has the same links
+    others = [pair for pair in _cognates(loops) if pair not in images]
     for told, pairs in (
-        ("Cognates draw one curve with different links", _cognates(loops)),
-        ("The same links in different places", _images(loops)),
+        ("Cognates draw one curve with different links", others),
+        ("The same links in different places", images),
     ):
         groups: list[set[int]] = []
         for one, other in pairs:

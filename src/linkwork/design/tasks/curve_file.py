@@ -10,15 +10,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from linkwork.foundation.arrays import ComplexArray
 from linkwork.foundation.errors import MechanismError, Problem
 from linkwork.foundation.plain_numbers import as_told
 from linkwork.foundation.rounding import EQUAL_ROWS
 from linkwork.textfile.toml_text import bytes_of, text_of
 
-__all__ = ["FEWEST", "Curve", "read_curve"]
+__all__ = ["FEWEST", "LARGEST", "Curve", "out_of_bounds", "read_curve"]
 
 _COLUMNS = ("x", "y", "input")
 FEWEST = 5  # points of a curve
+#: Powers of larger numbers are beyond floating point, and those of the inverse of smaller ones.
+LARGEST = 1e12
 _MOST = 2000  # points: beyond, a fit takes minutes and gains nothing
 
 
@@ -78,6 +83,8 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
         count = f"{len(rows)} point{'' if len(rows) == 1 else 's'}"
         told = f'"{name}" has {count}: a curve needs {FEWEST} to {_MOST}'
         raise _problem(("curve", "file"), told)
+    if told := out_of_bounds(np.array([complex(row[0], row[1]) for _, row in rows])):
+        raise _problem(("curve", "file"), f'"{name}" {told}')
     return Curve(
         points=tuple((row[0], row[1]) for _, row in rows),
         inputs=tuple(row[2] for _, row in rows) if timed else (),
@@ -87,6 +94,20 @@ def read_curve(table: Mapping[str, Any], folder: Path | None, turn: float = 360.
         lines=tuple(line for line, _ in rows),
         note=note,
     )
+
+
+def out_of_bounds(points: ComplexArray) -> str:
+    """Why points (N,) are too large or too close to compute with, in words; "" if they are not.
+
+    Points all at one place have another problem.
+    """
+    largest = np.abs([points.real, points.imag]).max(initial=0.0)
+    if largest > LARGEST:
+        return f"goes to {largest:g}, beyond ±{LARGEST:g}: choose a larger unit"
+    size = max(np.ptp(points.real), np.ptp(points.imag))
+    if 0.0 < size < 1.0 / LARGEST:
+        return f"is {size:g} in size, less than {1.0 / LARGEST:g}: choose a smaller unit"
+    return ""
 
 
 def _is_repeated(rows: list[list[float]], timed: bool, turn: float) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwork.design.improvement.settings import Goal, Improvement
-from linkwork.design.tasks.curve_file import Curve, read_curve
+from linkwork.design.tasks.curve_file import LARGEST, Curve, read_curve
 from linkwork.design.tasks.function_goal import LOOP_PAIRS, FunctionGoal
 from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.task_conditions import Given, PrecisionPosition, Ranking, Wanted
@@ -25,15 +25,12 @@ from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
 from linkwork.textfile.library import examples
 from linkwork.textfile.lines import Lines
-from linkwork.textfile.reader import check_format, located_error
+from linkwork.textfile.reader import check_format, check_kind, located_error
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.textfile.writer import write_tables
 
 __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
-
-
-_LARGEST = 1e12
 
 
 def read_task(path: Path | str) -> Task:
@@ -58,6 +55,7 @@ def read_task_text(text: str, name: str = "the task", folder: Path | None = None
     data = data_of(text, name)
     lines = Lines.of(text)
     check_format(data, lines, name)
+    check_kind(data, lines, name, task=True)
     structure = Structure(data, TASK)
     if structure.problems:
         raise located_error(structure.problems, lines, name)
@@ -189,7 +187,7 @@ def _check_numbers(content: Mapping[str, Any]) -> None:
     problems = [
         Problem(key=key, message=f"{as_told(number)} is beyond ±1e12: choose a larger unit")
         for key, number in _numbers(content)
-        if abs(number) > _LARGEST
+        if abs(number) > LARGEST
     ]
     if problems:
         raise MechanismError(problems, "the task")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwork.design.improvement.settings import FITS
+from linkwork.design.improvement.settings import FITS, WHOLE
 from linkwork.foundation.file_keys import (
     Constant,
     Either,
@@ -216,14 +216,14 @@ _IMPROVE = Key(
             Key("vary", ListOf(Text(), "number", 1), 'Numbers to vary: ["O2 A", "O4.x"]'),
             Key("goals", _GOALS, "Goals besides the positions"),
             Key("bounds", Named(_PAIR, 0), 'Bounds of numbers: "O2 A" = [10, 60]'),
-            Key("starts", Whole(1, 10**6), "Number of starts"),
+            Key("starts", Whole(*WHOLE["starts"]), "Number of starts"),
             Key("spread", PlainNumber(), "Relative spread of the starts; default 0.05"),
             Key(
                 "front",
-                Whole(2, 1000),
+                Whole(*WHOLE["front"]),
                 "Largest number of designs of a Pareto front between the goals; default: one sum",
             ),
-            Key("seed", Whole(0, 2**31), "Seed of the starts; default 1"),
+            Key("seed", Whole(*WHOLE["seed"]), "Seed of the starts; default 1"),
         )
     ),
     "How dimensions are improved",

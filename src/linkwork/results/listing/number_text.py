@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from decimal import ROUND_FLOOR, Context
 
-__all__ = ["NOTHING", "fixed", "lengths", "short", "significant"]
+__all__ = ["NOTHING", "fixed", "lengths", "rounded_down", "short", "significant"]
 
 _ANGLE_DECIMALS = 6
 _LENGTH_DIGITS = 6
@@ -48,6 +49,11 @@ def significant(value: float, digits: int = 6, noise: float = 0.0) -> str:
 def short(value: float, digits: int = 10) -> str:
     """A number with at most the given significant digits, without trailing zeros."""
     return f"{value:.{digits}g}" if math.isfinite(value) else NOTHING
+
+
+def rounded_down(value: float, digits: int) -> float:
+    """The largest number of so many significant digits that is not above a lower bound."""
+    return float(Context(prec=digits, rounding=ROUND_FLOOR).create_decimal_from_float(value))
 
 
 def _exponent(value: float) -> int:

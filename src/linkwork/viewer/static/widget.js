@@ -118,7 +118,8 @@ body { margin: 0; min-height: 100%; }
 .lw-table table { border-collapse: collapse; width: 100%; font-size: 13.5px; font-variant-numeric: tabular-nums; table-layout: fixed; }
 .lw-table th, .lw-table td { padding: 3px 4px; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400; white-space: nowrap; }
 .lw-table th[scope=row], .lw-table th:first-child { text-align: left; overflow: hidden; text-overflow: ellipsis; }
-.lw-table th:first-child, .lw-table thead td:first-child { width: 37%; }
+.lw-table th:first-child, .lw-table thead td:first-child { width: 34%; }
+.lw-table thead th:nth-child(3) { width: 37%; }
 .lw-table thead th { color: var(--faint); font-size: 12.5px; }
 .lw-proof { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 3px 14px; margin: 0; font-size: 13.5px; }
 .lw-proof dt { color: var(--faint); }

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from linkwork.design.defects.judged_design import JudgedDesign
+from linkwork.design.synthesis.advice import near_misses
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
 from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.task_file import located_task_error, read_task_text
@@ -176,9 +177,12 @@ class TaskCycle:
         designs = self.found.designs
         if not designs:
             return None
-        index, chosen = 0, self._chosen
-        if chosen is not None:
-            index = alike(self.found, chosen.kind, chosen.drive, chosen.pivots) or 0
+        chosen = self._chosen
+        index = (
+            None if chosen is None else alike(self.found, chosen.kind, chosen.drive, chosen.pivots)
+        )
+        if index is None:
+            index = next(iter(() if self.found.sound else near_misses(self.found)), 0)
         self._chosen = _Chosen.of(designs[index])
         return index
 

@@ -10,7 +10,7 @@ from linkwork.design.loops.candidates import Candidates, Drive, LoopKind
 from linkwork.design.loops.loop_positions import pivots_at
 from linkwork.design.poses.burmester import CentrePoints, centre_points
 from linkwork.design.precision.cognates import cognates
-from linkwork.design.synthesis.advice import advice_of
+from linkwork.design.synthesis.advice import advice_of, near_misses
 from linkwork.design.synthesis.improved_mechanism import SweptDesign
 from linkwork.design.synthesis.motion_synthesis import poses_of
 from linkwork.design.synthesis.result import Synthesis, SynthesizedDesign
@@ -48,11 +48,7 @@ def task_solved(
     found: Synthesis, chosen: tell.DesignFound | None, *, live: bool
 ) -> tell.TaskSolved:
     """The counts and the list; ``live``: without the list and what a wish costs."""
-    sound = found.sound
-    listed = [] if live else [
-        *range(min(sound, _MOST_SOUND)),
-        *range(sound, min(len(found.designs), sound + _MOST_REFUSED)),
-    ]  # fmt: skip
+    listed = [] if live else _listed(found, chosen)
     # to find what a wish costs takes longer than a drag waits
     wish, costs = (None if live or found.sound else found.costliest) or ("", 0)
     solutions = f"{found.complex} complex, {found.real} real, {found.proved} proved"
@@ -63,7 +59,7 @@ def task_solved(
         solutions=solutions,
         linkages=found.linkages,
         count=len(found.designs),
-        sound=sound,
+        sound=found.sound,
         delivered=len(found.delivered),
         completeness=found.completeness.name,
         message=found.message,
@@ -82,6 +78,14 @@ def task_solved(
         centre_curve=centre_curve(found.task),
         chosen=chosen,
     )
+
+
+def _listed(found: Synthesis, chosen: tell.DesignFound | None) -> list[int]:
+    """The places of the best sound designs, then those of refused ones: near misses first."""
+    refused = dict.fromkeys([*near_misses(found), *range(found.sound, len(found.designs))])
+    own = [*range(min(found.sound, _MOST_SOUND)), *[*refused][:_MOST_REFUSED]]
+    # the chosen one is not left out
+    return [*dict.fromkeys(own if chosen is None else [*own, chosen.design.index])]
 
 
 def design_found(found: Synthesis, index: int) -> tell.DesignFound:

@@ -7,7 +7,7 @@ from importlib import resources
 from linkwork.foundation.errors import InputError, choices
 from linkwork.viewer.live.mechanism_file import MechanismFile, new_file
 
-__all__ = ["task_template", "template_names"]
+__all__ = ["task_template", "template_names", "template_text"]
 
 
 def template_names() -> tuple[str, ...]:
@@ -16,8 +16,8 @@ def template_names() -> tuple[str, ...]:
     return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
 
 
-def task_template(name: str) -> MechanismFile:
-    """A task to begin with, under a name that no file has.
+def template_text(name: str) -> str:
+    """The text of a task to begin with.
 
     Raises
     ------
@@ -27,5 +27,9 @@ def task_template(name: str) -> MechanismFile:
     known = template_names()
     if name not in known:
         raise InputError(f'there is no task "{name}" to begin with {choices("tasks", known, name)}')
-    text = (resources.files(__name__) / f"{name}.toml").read_text(encoding="utf-8")
-    return new_file(name, text)
+    return (resources.files(__name__) / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def task_template(name: str) -> MechanismFile:
+    """A task to begin with, under a name that no file has; raises like `template_text`."""
+    return new_file(name, template_text(name))
