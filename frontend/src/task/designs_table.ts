@@ -85,10 +85,10 @@ export class DesignsTable {
   /** Mark the chosen design, and bring it into sight where the list scrolls by itself. */
   mark(index: number): void {
     this.chosen = index;
-    const panel = this.element.parentElement!;
+    const { scrollHeight, clientHeight } = this.element;
     for (const row of this.body.rows) {
       row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
-      if (Number(row.dataset.index) === index && panel.scrollHeight > panel.clientHeight) row.scrollIntoView({ block: "nearest" });
+      if (Number(row.dataset.index) === index && scrollHeight > clientHeight) row.scrollIntoView({ block: "nearest" });
     }
   }
 

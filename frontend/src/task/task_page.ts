@@ -76,7 +76,7 @@ export class TaskPage {
     this.cognates = new Cognates(choose);
     this.form = new TaskForm((request) => this.ask(request), (thing) => this.canvas.pick(thing));
     this.tabs = new Tabs([
-      { title: "Designs", element: this.table.element },
+      { title: "Designs", element: this.table.element, shown: (on) => on && this.mark() },
       { title: "Trade-off", element: this.pareto.element },
       { title: "Cognates", element: this.cognates.element, shown: (on) => on && this.askCognates() },
       { title: "Task", element: this.form.element },

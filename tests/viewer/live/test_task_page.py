@@ -214,7 +214,7 @@ def test_every_task_fits_into_its_page(
 def test_what_a_page_says_fits_the_kind_of_its_task(
     tmp_path: Path, serve: Serve, watched: Watched
 ) -> None:
-    size = {"width": 1280, "height": 560}
+    size = {"width": 1280, "height": 700}
     page = opened(serve(task(tmp_path, "five-poses")), watched, viewport=size)
     page.locator(".lw-task[data-solved]").wait_for()
     page.locator(".lw-t-designs tbody tr").last.click()
