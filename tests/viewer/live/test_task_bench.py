@@ -28,7 +28,7 @@ from linkwork.viewer.live.session import Desk
 from linkwork.viewer.live.task import designs
 from linkwork.viewer.live.task.bench import TaskBench
 from linkwork.viewer.live.task.cycle import SolveTask
-from linkwork.viewer.live.task.templates import task_template, template_names
+from linkwork.viewer.live.task.templates import task_template, template_names, template_text
 from linkwork.viewer.live.workbench import Workbench
 from tests.design.six_bars.six_bars import ARMS, chebyshev, member_of
 
@@ -143,6 +143,18 @@ def test_the_shown_motion_passes_the_positions_in_order(tmp_path: Path, mechanis
         elif line is not None:
             off = ((start - joint) * (coupler * np.exp(1j * line)).conj()).imag
         assert np.abs(off).max() < 1e-9 * np.ptp(rows)
+
+
+def test_a_curve_is_smooth_where_the_point_is_fast() -> None:
+    """An inverted slider-crank, whose block is near its pivot on the way back."""
+    found = lw.Task.loads(template_text("three-poses")).solve()
+    for index, design in enumerate(found.designs[:20]):
+        pieces = [np.reshape(part, (-1, 2)) for part in designs.design_found(found, index).curve]
+        size = np.ptp(np.concatenate(pieces), axis=0).max()
+        chords = [np.linalg.norm(np.diff(part, axis=0), axis=1).max() for part in pieces]
+        assert max(chords) < 0.02 * size
+        assert sum(map(len, pieces)) < 1000
+        assert design.delivered
 
 
 def test_a_refused_design_has_its_reason_and_no_motion(tmp_path: Path) -> None:

@@ -36,7 +36,8 @@ __all__ = [
 
 _MOST_SOUND, _MOST_REFUSED = 300, 200  # of the list on the page
 _ROWS = 181  # of a motion
-_CURVE = 361  # points of a coupler curve
+_CURVE = 361  # points of a coupler curve,
+_CHORD, _FINEST = 0.01, 50.0  # with more between them if they are farther apart than this share
 _CENTRE_CURVE = 240  # lines through the pole for each arc
 _INSIDE = 1e-9  # of an arc: at its very ends rounding may leave no point
 _FAR = 30.0  # sizes of the task: the centre-point curve goes to infinity
@@ -152,8 +153,18 @@ def _curve(own: Candidates, drive: Drive, loops: object) -> tuple[tuple[float, .
         place = np.linspace(*_slider_range(own), _CURVE)
     else:
         place = np.linspace(-np.pi, np.pi, _CURVE)
-    points = pivots_at(own, drive, loops, place[None])[2][0]  # type: ignore[arg-type]
-    return tuple(pieces(points))
+
+    def guided(at: Array) -> ComplexArray:
+        return np.asarray(pivots_at(own, drive, loops, at[None])[2][0])  # type: ignore[arg-type]
+
+    points = guided(place)
+    found = points[np.isfinite(points)]
+    size = float(max(np.ptp(found.real), np.ptp(found.imag))) if len(found) else 0.0
+    # more of them where the point is fast
+    parts = np.ceil(np.nan_to_num(np.abs(np.diff(points))) / (_CHORD * size or np.inf))
+    number = np.concatenate([[0.0], np.cumsum(np.clip(parts, 1.0, _FINEST))])
+    denser = np.interp(np.arange(number[-1] + 1.0), number, place)
+    return tuple(pieces(guided(denser)))
 
 
 def _slider_range(own: Candidates) -> tuple[float, float]:
