@@ -15,6 +15,7 @@ from click.testing import CliRunner
 
 import linkwork as lw
 from linkwork.api.designs_folder import FolderOptions, check_folder, write_designs
+from linkwork.api.task_copy import task_copy
 from linkwork.cli import interrupts
 from linkwork.cli.main import linkwork
 
@@ -182,6 +183,8 @@ def test_files_keep_the_letters_of_the_task(name: str, stem: str, tmp_path: Path
         ("{}/foot.csv", "curve/foot.csv"),
         ("designs.csv", "curve/designs.csv"),
         ("refused/foot.csv", "curve/foot.csv"),
+        ("Index.html/foot.csv", "curve/foot.csv"),
+        (".linkwork-synthesis.sha256", "curve/.linkwork-synthesis.sha256"),
     ],
 )
 def test_the_curve_of_a_task_is_copied_into_the_folder_of_its_designs(
@@ -247,6 +250,37 @@ def test_the_mechanism_of_a_task_is_copied_into_the_folder_of_its_designs(
     assert lw.Task.load(moved / "task.toml").solve().delivered
     again = _run(str(moved / "task.toml"), "-o", str(tmp_path / "again"))
     assert f"task.toml and {copied} in" in " ".join(again.split())
+
+
+@pytest.mark.parametrize("table", ["csv_text", "designs_page"])
+def test_an_interruption_of_the_tables_leaves_the_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: str
+) -> None:
+    def interrupted(*_: Any, **__: Any) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(f"linkwork.api.designs_folder.{table}", interrupted)
+    found = lw.Task.load(_TASK).solve()
+    options = FolderOptions(csv=True, html=True)
+    with pytest.raises(KeyboardInterrupt, match=r"after 5 of 5 designs were written in"):
+        write_designs(found, tmp_path / "out", options)
+    assert len(list((tmp_path / "out").glob("tilt-a-box-*.toml"))) == 5
+    assert lw.Task.load(tmp_path / "out" / "task.toml").solve().delivered
+
+
+def test_a_mechanism_and_a_curve_have_places_of_their_own(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    (home / "mechanism").mkdir(parents=True)
+    (tmp_path / "m.csv").write_text(lw.example_text("four-bar"))
+    (home / "mechanism" / "m.csv").write_text("0,0\n4,1\n6,4\n3,7\n-1,4\n")
+    (home / "task.toml").write_text(
+        'format = 1\ntask = "improve"\nmechanism = "../m.csv"\n'
+        'curve = { file = "mechanism/m.csv" }\nimprove = { point = "B", starts = 1 }\n'
+    )
+    files = task_copy(lw.Task.load(home / "task.toml").described).files
+    assert files["mechanism/m.csv"].startswith("0,0")
+    assert files["mechanism/mechanism/m.csv"] == lw.example_text("four-bar")
+    assert 'mechanism = "mechanism/mechanism/m.csv"' in files["task.toml"]
 
 
 def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -111,10 +112,10 @@ def test_links_in_the_folder_are_neither_followed_nor_replaced(tmp_path: Path) -
     with pytest.raises(InputError, match=r'holds "refused", which this search could'):
         _OWN.check(root, fresh=True)
     other = OwnFiles(run="search", option="--fresh", numbered=_OWN.numbered)
-    assert other.check(root, fresh=True) == ["near-1.toml", "near-2.toml"]
+    assert other.check(root, fresh=True) == {"near-1.toml", "near-2.toml"}
     # the folder itself may be a link
     (tmp_path / "link").symlink_to(root)
-    assert other.check(tmp_path / "link", fresh=True) == ["near-1.toml", "near-2.toml"]
+    assert other.check(tmp_path / "link", fresh=True) == {"near-1.toml", "near-2.toml"}
     (root / "near-1.toml").rename(mine / "near-1.toml")
     (root / "near-1.toml").symlink_to(mine / "near-1.toml")
     with pytest.raises(InputError, match=r'holds "near-1.toml", which this search could'):
@@ -131,11 +132,89 @@ def test_a_list_names_no_file_outside_its_folder(tmp_path: Path) -> None:
     line = file.read_text()
     for name in ("../outside.toml", str(outside)):
         file.write_text(line + line.replace("near-1.toml", name))
-        assert _OWN.check(root, fresh=True) == ["near-1.toml"]
+        assert _OWN.check(root, fresh=True) == {"near-1.toml"}
     for damaged in ("", line[1:], line.replace("  ", " "), "\0\n\ud800"):
         file.write_bytes(damaged.encode(errors="surrogatepass"))
-        with pytest.raises(InputError, match=r'holds "near-1.toml", which'):
+        with pytest.raises(InputError, match=r'holds "(near-1|.linkwork-search.sha256)'):
             _OWN.check(root, fresh=True)
+    file.write_text(line.replace("near-1.toml", "./near-1.toml"))
+    with pytest.raises(InputError, match=r'holds "near-1.toml", which'):
+        _OWN.check(root, fresh=True)
+
+
+@pytest.mark.parametrize("kind", ["folder", "link", "text"])
+def test_what_has_the_name_of_the_list_is_not_replaced(tmp_path: Path, kind: str) -> None:
+    file = tmp_path / "near" / ".linkwork-search.sha256"
+    file.parent.mkdir()
+    if kind == "folder":
+        file.mkdir()
+    elif kind == "link":
+        file.symlink_to(tmp_path / "elsewhere")
+    else:
+        file.write_text("mine")
+    with pytest.raises(InputError, match=r'holds "\.linkwork-search\.sha256", which this search'):
+        _OWN.check(file.parent, fresh=True)
+
+
+def test_files_that_are_changed_while_a_run_works_are_kept(tmp_path: Path) -> None:
+    root = tmp_path / "near"
+    _write(root, _FIRST)
+    earlier = _OWN.check(root, fresh=True)
+    (root / "near-2.toml").write_text("changed")
+    with _OWN.written(root, earlier) as part:
+        (part / "near-1.toml").write_text("new")
+    assert _files(root) == {"near-1.toml": "new", "near-2.toml": "changed"}
+    (root / "near-2.toml").unlink()
+    earlier = _OWN.check(root, fresh=True)
+    (root / "near-1.toml").write_text("changed")
+
+    def write() -> None:
+        with _OWN.written(root, earlier) as part:
+            (part / "near-1.toml").write_text("newer")
+            (part / "near-9.toml").write_text("nine")
+
+    for name in ("near-2", "near-3"):
+        told = rf'changed meanwhile at "near-1\.toml" and stays as it is: all .* in ".*/{name}"$'
+        with pytest.raises(InputError, match=told):
+            write()
+        assert _files(tmp_path / name) == {"near-1.toml": "newer", "near-9.toml": "nine"}
+        assert _OWN.check(tmp_path / name, fresh=True) == {"near-1.toml", "near-9.toml"}
+    assert _files(root) == {"near-1.toml": "changed"}
+
+
+def test_after_an_obstacle_all_files_of_both_runs_can_be_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root = tmp_path / "near"
+    _write(root, _FIRST)
+    replace = os.replace
+
+    def locked(source: Path, target: Path) -> None:
+        if Path(target) == root / "near-2.toml":
+            raise PermissionError(1, "Operation not permitted", str(source), None, str(target))
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", locked)
+    with pytest.raises(InputError, match=r'cannot write ".*/near/near-2.toml": Operation not'):
+        _write(root, {"near-1.toml": "new", "near-2.toml": "new", "near-4.toml": "new"})
+    monkeypatch.undo()
+    assert (root / "near-1.toml").read_text() == "new"
+    assert _OWN.check(root, fresh=True) == {*_FIRST}
+    _write(root, {"near-5.toml": "newest"})
+    assert _files(root) == {"near-5.toml": "newest"}
+
+
+def test_names_of_several_lines_are_never_removed(tmp_path: Path) -> None:
+    root = tmp_path / "near"
+    _write(root, {"a\nb.toml": "one"})
+    (root / "a").write_text("one")
+    _write(root, {"near-1.toml": "new"})
+    assert _files(root) == {"a": "one", "a\nb.toml": "one", "near-1.toml": "new"}
+
+
+def test_left_over_temporary_folders_do_not_fill_a_folder(tmp_path: Path) -> None:
+    (tmp_path / ".linkwork-0123456789ab.part").mkdir()
+    assert not _OWN.check(tmp_path, fresh=False)
 
 
 def test_a_file_that_comes_while_a_run_writes_is_kept(tmp_path: Path) -> None:
@@ -144,7 +223,7 @@ def test_a_file_that_comes_while_a_run_writes_is_kept(tmp_path: Path) -> None:
             (part / "near-1.toml").write_text("new")
             (tmp_path / "near-1.toml").write_text("mine")
 
-    with pytest.raises(InputError, match=r'holds "near-1.toml", which this search could'):
+    with pytest.raises(InputError, match=r'changed meanwhile at "near-1.toml" and stays as it is'):
         late()
     assert _files(tmp_path) == {"near-1.toml": "mine"}
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
 
@@ -51,6 +52,15 @@ def test_a_new_folder_appears_whole_and_an_old_one_holds_the_files_until_then(
     assert len(list(out.parent.iterdir())) == 1
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Python's own handler: shells start background jobs that ignore interruptions."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_an_interruption_waits_until_all_files_are_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,7 +74,7 @@ def test_an_interruption_waits_until_all_files_are_replaced(
         replace(source, target)
 
     def write() -> None:
-        with written_folder(tmp_path, stale=["c"]) as part:
+        with written_folder(tmp_path, stale={"c"}) as part:
             for name in "ab":
                 (part / name).write_text("new")
 

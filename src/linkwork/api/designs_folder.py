@@ -57,11 +57,13 @@ def write_designs(
     folder: str | Path,
     options: FolderOptions,
     progress: Callable[[float], None] | None = None,
+    earlier: Collection[str] | None = None,
 ) -> dict[int, str]:
     """Write a synthesis into a folder; returns the files of designs by their place in the list.
 
-    An interruption (Ctrl-C) leaves a new folder with the designs that are written by then, and one
-    of earlier designs as it was; so does a synthesis without a delivered design.
+    ``earlier``: the result of a check before the work. An interruption (Ctrl-C) leaves a new folder
+    with the designs that are written by then, and one of earlier designs as it was; so does a
+    synthesis without a delivered design.
 
     Raises
     ------
@@ -69,7 +71,8 @@ def write_designs(
         If the folder holds files that are not to be replaced, or cannot be written.
     """
     root = as_path(folder)
-    earlier = check_folder(root, options, found.task)
+    if earlier is None:
+        earlier = check_folder(root, options, found.task)
     if keeps_earlier(found, earlier):
         return {}
     chosen = [
@@ -97,7 +100,12 @@ def write_designs(
                     half.unlink(missing_ok=True)
                 break
             names[k] = name
-        _write_tables(found, part, options, names)
+        try:
+            _write_tables(found, part, options, names)
+        except KeyboardInterrupt:
+            if earlier or not names:
+                raise
+            interrupted = True
     if interrupted:
         told = f"after {len(names)} of {len(chosen)} designs were written in {root}"
         raise KeyboardInterrupt(told)

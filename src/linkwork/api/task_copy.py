@@ -14,7 +14,10 @@ __all__ = ["REFUSED", "TaskCopy", "task_copy"]
 
 REFUSED = "refused"
 # names of files of a synthesis
-_OWN = re.compile(r"(.+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html)")
+_OWN = re.compile(
+    r".+-\d+\.(toml|svg)|task\.toml|designs\.csv|front\.svg|index\.html|refused|\.linkwork.*",
+    re.IGNORECASE,  # disks that do not tell letters apart have one file for both
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,10 +44,10 @@ def task_copy(task: Task) -> TaskCopy:
     for key, name, text in _named_files(task):
         place = Path(name)
         sources.append(((task.folder or Path()) / place).resolve())
-        first = place.parts[0]
-        own = first == REFUSED or (place == Path(first) and _OWN.fullmatch(first))
-        if place.is_absolute() or ".." in place.parts or own:
+        if place.is_absolute() or ".." in place.parts or _OWN.fullmatch(place.parts[0]):
             place = Path(key[0], place.name)
+            if place.as_posix() in files:
+                place = Path(key[0], *place.parts)
             edits.put(key, place.as_posix())
             files["task.toml"] = edits.text
         files[place.as_posix()] = text

@@ -70,7 +70,7 @@ def synthesize(
     files: dict[int, str] = {}
     if output is not None:
         with progress("writing designs") as tell:
-            files = write_designs(found, output, options, tell)
+            files = write_designs(found, output, options, tell, earlier)
     if as_json:
         advice = {"remarks": list(remarks_on(found)), "advice": advice_of(found)}
         print_json({**found.to_dict(files), **advice})

@@ -44,7 +44,9 @@ def save_text(text: str, path: Path | str) -> None:
 
 def _replace(target: Path, pieces: Iterable[bytes]) -> None:
     """Write a temporary file and rename it: readers see the old file or the new one."""
-    beside = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}")
+    # names have 255 bytes at most
+    stem = target.name.encode()[:100].decode(errors="ignore")
+    beside = target.with_name(f".{stem}.{secrets.token_hex(6)}")
     try:
         with beside.open("xb") as file:
             file.writelines(pieces)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import re
 import secrets
 import shutil
 import signal
@@ -14,7 +16,10 @@ from pathlib import Path
 from linkwork.foundation.errors import InputError
 from linkwork.foundation.paths import unwritten
 
-__all__ = ["check_place", "written_folder"]
+__all__ = ["PART", "check_place", "moved_aside", "written_folder"]
+
+#: The names of temporary folders.
+PART = re.compile(r"\.linkwork-[0-9a-f]{12}\.part")
 
 
 def check_place(out: Path) -> None:
@@ -43,8 +48,9 @@ def written_folder(out: Path, last: str = "", stale: Collection[str] = ()) -> It
     """A temporary folder whose files come into ``out`` when all are written.
 
     A folder that does not exist appears in one step. In one that does, files are replaced one by
-    one, the file ``last`` after all others; then files that are ``stale`` and not replaced are
-    removed, and their folders if nothing else is there. An interruption waits for the end of that.
+    one, the file ``last`` after all others; then files that are ``stale`` by then and not replaced
+    are removed, and their folders if nothing else is there. An interruption waits for the end of
+    that.
 
     Raises
     ------
@@ -63,7 +69,9 @@ def written_folder(out: Path, last: str = "", stale: Collection[str] = ()) -> It
         with _uninterrupted(f"after all files were written in {out}"):
             _replace(whole, part, last, stale)
     except OSError as error:
-        raise unwritten(out, error) from None
+        place = Path(str(error.filename2 or error.filename or part))
+        inside = out / place.relative_to(whole) if place.is_relative_to(whole) else out
+        raise unwritten(inside, error) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
 
@@ -78,9 +86,20 @@ def _replace(whole: Path, part: Path, last: str, stale: Collection[str]) -> None
         (whole / name).parent.mkdir(parents=True, exist_ok=True)
         os.replace(part / name, whole / name)
     for name in {Path(name) for name in stale}.difference(files):
-        (whole / name).unlink(missing_ok=True)
         with suppress(OSError):
+            (whole / name).unlink(missing_ok=True)
             os.removedirs((whole / name).parent)  # as far as ``whole``, which has ``part``
+
+
+def moved_aside(part: Path, out: Path) -> Path:
+    """A written folder as one of its own: beside another one, or in it if nothing can be beside."""
+    whole = out.absolute()
+    for home in (whole.parent, whole):
+        names = (f"{whole.name}-{k}" for k in itertools.count(2))
+        free = next(home / name for name in names if not os.path.lexists(home / name))
+        with suppress(OSError):
+            return Path(shutil.move(part, free))
+    return part
 
 
 @contextmanager
