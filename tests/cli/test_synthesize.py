@@ -283,6 +283,24 @@ def test_a_mechanism_and_a_curve_have_places_of_their_own(tmp_path: Path) -> Non
     assert 'mechanism = "mechanism/mechanism/m.csv"' in files["task.toml"]
 
 
+def test_an_interruption_of_the_advice_keeps_the_refused_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted() -> str:
+        interrupts._came.set()  # as Ctrl-C does
+        raise KeyboardInterrupt
+
+    task = tmp_path / "steep.toml"
+    task.write_text(_TASK.read_text().replace("least = 30", "least = 89"))
+    found = replace(lw.Task.load(task).solve(), what_helps=interrupted)
+    assert not found.sound
+    monkeypatch.setattr(lw.Task, "solve", lambda *_, **__: found)
+    shown = _run(str(task), "-o", str(tmp_path / "out"), "--all", code=1)
+    assert not interrupts.was_interrupted()
+    assert "No design is free of defects." in shown
+    assert len(list((tmp_path / "out" / "refused").glob("tilt-a-box-*.toml"))) == 12
+
+
 def test_an_interruption_before_there_is_a_design_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: Any, **__: Any) -> lw.Synthesis:
         raise KeyboardInterrupt

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import click
 
 from linkwork.api.designs_folder import FolderOptions, check_folder, keeps_earlier, write_designs
@@ -65,8 +67,12 @@ def synthesize(
     if found.interrupted:
         answer_interrupt()
     if not found.sound:
-        with progress("trying changes of the task"):
-            advice_of(found)  # which is kept
+        try:
+            with progress("trying changes of the task"):
+                advice_of(found)  # which is kept
+        except KeyboardInterrupt:
+            found = replace(found, what_helps=str)
+            answer_interrupt()
     files: dict[int, str] = {}
     if output is not None:
         with progress("writing designs") as tell:
