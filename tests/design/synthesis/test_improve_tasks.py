@@ -404,3 +404,7 @@ def test_a_goal_that_no_design_meets_is_named() -> None:
         "slider-crank", goals=[{"of": "stroke(d)", "target": 75}], vary=["O2 A"], starts=1
     )
     assert not [text for text in remarks_on(met.solve()) if "misses" in text]
+    goals = [{"of": "stroke(d)", "target": 5000}, {"of": "max(d)", "target": 60}]
+    front = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=1, front=2).solve()
+    assert front.delivered
+    assert not [text for text in remarks_on(front) if "misses" in text]

@@ -41,7 +41,9 @@ def remarks_on(found: Synthesis) -> tuple[str, ...]:
 
 
 def _missed_goals(found: Synthesis) -> Iterator[str]:
-    """The goals that no delivered design comes near, with the smallest miss."""
+    """The goals that no delivered design comes near, with the smallest miss; of fronts none."""
+    if found.task.improvement is None or found.task.improvement.front:
+        return
     shares = [relative_misses(design) for design in found.delivered]
     for name, misses in goal_misses(found.delivered).items():
         share = min((own.get(name, 0.0) for own in shares), default=0.0)
