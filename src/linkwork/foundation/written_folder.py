@@ -70,8 +70,8 @@ def written_folder(out: Path, last: str = "", stale: Collection[str] = ()) -> It
             _replace(whole, part, last, stale)
     except OSError as error:
         place = Path(str(error.filename2 or error.filename or part))
-        inside = out / place.relative_to(whole) if place.is_relative_to(whole) else out
-        raise unwritten(inside, error) from None
+        base = next(filter(place.is_relative_to, (part, whole)), place)
+        raise unwritten(out / place.relative_to(base), error) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
 
