@@ -329,7 +329,9 @@ def test_pins_are_dragged_with_locked_lengths_and_steps_are_undone_by_name(
     sheet.drag((-60, 20), (30, 50))
     sheet.key("v")
     sheet.page.mouse.click(*sheet._on_screen((-60, 20)))
-    sheet._done(sheet.page.get_by_label("Lock A B").check)  # answered before the drag begins
+    sheet.settle()  # the click is answered before the lock is set
+    sheet.page.get_by_label("Lock A B").check()
+    sheet.settle()
     sheet.drag((-60, 20), (-40, 40))
     a, b = (complex(*lw_point(sheet.bench.text, name)) for name in "AB")
     assert abs(b - a) == pytest.approx(abs(complex(20, 40)), rel=1e-9)
