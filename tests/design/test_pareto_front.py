@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import linkwork as lw
+from linkwork.design.improvement import front_designs
 from linkwork.design.improvement.pareto_front import spread, undominated
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import MechanismError
@@ -228,6 +229,15 @@ def test_fronts_without_a_meaning_are_refused() -> None:
         own: dict[str, Any] = given
         with pytest.raises(MechanismError, match=message):
             bar.improve(goals, **own)
+
+
+def test_sound_designs_that_equal_later_ones_are_not_among_the_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(front_designs, "alike", lambda values, *_: np.arange(len(values)))
+    goals = [{"of": "stroke(d)", "target": 70}, {"of": "max(d)", "target": 60}]
+    front = lw.loads(CRANK).improve(goals, vary=["O2 A"], starts=1, front=5)
+    assert [design.sound for design in front] == [True]
 
 
 def test_a_front_that_no_start_leads_to_is_empty() -> None:

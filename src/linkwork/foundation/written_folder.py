@@ -94,12 +94,15 @@ def _replace(whole: Path, part: Path, last: str, stale: Collection[str]) -> None
 def moved_aside(part: Path, out: Path) -> Path:
     """A written folder as one of its own: beside another one, or in it if nothing can be beside."""
     whole = out.absolute()
-    for home in (whole.parent, whole):
+
+    def free(home: Path) -> Path:
         names = (f"{whole.name}-{k}" for k in itertools.count(2))
-        free = next(home / name for name in names if not os.path.lexists(home / name))
-        with suppress(OSError):
-            return Path(shutil.move(part, free))
-    return part
+        return next(home / name for name in names if not os.path.lexists(home / name))
+
+    try:
+        return Path(shutil.move(part, free(whole.parent)))
+    except OSError:
+        return Path(shutil.move(part, free(whole)))
 
 
 @contextmanager

@@ -73,6 +73,7 @@ def front_designs(
         kept[broken.argmin()] = True
     values = np.where(kept[:, None], values, np.inf)
     proved: dict[int, ImprovedDesign] = {}
+    refused: dict[int, ImprovedDesign] = {}
     told, stopped = 0.0, False
     while True:
         front = undominated(values)
@@ -98,14 +99,14 @@ def front_designs(
                     values[k] = list(design.goals.values())
                 else:
                     values[k] = np.inf
+                    refused[k] = design
                 proved[k] = design
         except KeyboardInterrupt:
             stopped = True
             values[[k not in proved for k in range(len(lanes))]] = np.inf
     if stopped and not proved:
         raise KeyboardInterrupt
-    refused = [own for k, own in proved.items() if not np.isfinite(values[k]).all()]
-    designs = (*(proved[k] for k in chosen), *refused)
+    designs = (*(proved[k] for k in chosen), *refused.values())
     return tuple(map(interrupted_design, designs)) if stopped else designs
 
 
