@@ -408,3 +408,11 @@ def test_a_goal_that_no_design_meets_is_named() -> None:
     front = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=1, front=2).solve()
     assert front.delivered
     assert not [text for text in remarks_on(front) if "misses" in text]
+
+
+def test_bounds_that_are_kept_miss_nothing() -> None:
+    goals = [{"of": "stroke(d)", "least": 60}]
+    by_error = {"by": {"error": 1}}
+    task = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=1, rank=by_error)
+    (design,) = task.solve().delivered
+    assert design.score == 1.0

@@ -233,7 +233,7 @@ def _ranked_alone(
         (
             task.in_radians(d.transmission),
             d.size,
-            max(relative_misses(d).values(), default=math.inf)
+            max(relative_misses(d).values(), default=0.0)  # of bounds alone
             if task.has_goals_alone
             else d.error * unit.get(d.error_unit, 1.0),
         )
