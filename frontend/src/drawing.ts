@@ -143,7 +143,7 @@ export class Drawing {
     const { width, height } = this.size;
     const lower = this.around === innerWidth ? this.height - height : 0;
     [this.height, this.around] = [height, innerWidth];
-    if (this.chosen && lower) this.pan(0, (lower / 2) * (this.chosen.width / width));
+    if (this.chosen) this.pan(0, (lower / 2) * (this.chosen.width / width));
     this.fit();
   }
 

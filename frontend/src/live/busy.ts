@@ -12,14 +12,14 @@ export class Busy {
 
   /** A request was sent. */
   asked(id: number): void {
-    this.waiting.add(id);
+    this.count(this.waiting.add(id));
     this.timer ??= setTimeout(() => this.show(), SOON);
   }
 
   /** A request was answered; so were all before it, since they are answered in order. */
   answered(id: number | null): void {
     if (id === null) return;
-    this.waiting = new Set([...this.waiting].filter((one) => one > id));
+    this.count(new Set([...this.waiting].filter((one) => one > id)));
     if (this.waiting.size) return;
     this.stop();
   }
@@ -35,10 +35,16 @@ export class Busy {
   stop(): void {
     clearTimeout(this.timer);
     this.timer = undefined;
-    this.waiting.clear();
+    this.count(new Set());
     this.element.hidden = true;
     this.element.classList.remove("lw-measured");
     this.element.removeAttribute("aria-valuenow");
+  }
+
+  /** Programs that steer the page read the number of open requests. */
+  private count(waiting: Set<number>): void {
+    this.waiting = waiting;
+    put(this.element, { "data-open": waiting.size });
   }
 
   private show(): void {

@@ -17,6 +17,7 @@ from linkwork.viewer.live.workbench import Workbench
 from tests.viewer.accessibility import assert_accessible
 from tests.viewer.conftest import browser as browser  # the fixture, for this folder too
 from tests.viewer.live.conftest import FOUR_BAR
+from tests.viewer.live.rest import at_rest
 
 DESKTOP = {"viewport": {"width": 1440, "height": 900}}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
@@ -52,7 +53,7 @@ def done(page: Any, *keys: str) -> None:
     for key in keys:
         page.keyboard.press(key)
     page.locator(f"#linkwork:not([data-updates='{before}'])").wait_for()
-    page.wait_for_timeout(100)  # the last of several answers
+    at_rest(page)
 
 
 def test_a_four_bar_is_drawn_fixed_and_driven_by_keys(browser: Any, tmp_path: Path) -> None:

@@ -90,6 +90,20 @@ def test_a_photograph_is_scaled_and_stays_in_the_browser(open_sheet: Callable[..
     assert image.count() == 0
 
 
+def test_a_sheet_has_the_proportions_of_its_drawing_before_and_after_a_window_is_resized(
+    open_sheet: Callable[..., Sheet],
+) -> None:
+    sheet = open_sheet()
+    for width in (1440, 1100):
+        sheet.page.set_viewport_size({"width": width, "height": 900})
+        sheet.settle()
+        wide, high, drawn_wide, drawn_high = sheet.page.locator(".lw-drawing").evaluate(
+            "svg => [svg.viewBox.baseVal.width, svg.viewBox.baseVal.height,"
+            " svg.clientWidth, svg.clientHeight]"
+        )
+        assert high / wide == pytest.approx(drawn_high / drawn_wide, rel=5e-3)
+
+
 @pytest.mark.extended
 def test_a_flat_view_of_a_sketch_does_not_grow(open_sheet: Callable[..., Sheet]) -> None:
     sheet = open_sheet()

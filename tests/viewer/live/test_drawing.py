@@ -14,6 +14,7 @@ import linkwork as lw
 from linkwork.viewer.live.mechanism_file import MechanismFile, blank_sheet
 from linkwork.viewer.live.server import LiveServer
 from linkwork.viewer.live.workbench import Workbench
+from tests.viewer.live.rest import at_rest
 
 Place = tuple[float, float]
 
@@ -44,21 +45,8 @@ class Sheet:
         self.settle()  # after the last of several answers
 
     def settle(self) -> None:
-        """Wait until nothing was answered and the drawing has kept its place for a while."""
-        self.page.evaluate(
-            """() => new Promise((resolve) => {
-              let [last, frames] = ["", 0];
-              const look = () => {
-                const { a, d, e, f } = document.querySelector(".lw-drawing").getScreenCTM();
-                const { updates } = document.getElementById("linkwork").dataset;
-                const now = [a, d, e, f, updates].join();
-                [last, frames] = [now, now === last ? frames + 1 : 0];
-                if (frames < 12) requestAnimationFrame(look);
-                else resolve();
-              };
-              look();
-            })"""
-        )
+        """Wait until all requests are answered and drawn."""
+        at_rest(self.page)
 
     def drag(self, start: Place, end: Place) -> None:
         mouse = self.page.mouse
@@ -110,6 +98,7 @@ def open_sheet(
         page.set_default_timeout(10_000)
         page.goto(server.address)
         page.locator(".lw-tools [aria-pressed=true]", has_text="Link").wait_for()
+        at_rest(page)
         width = page.locator(".lw-drawing").evaluate("svg => svg.viewBox.baseVal.width")
         return Sheet(page, bench, scale * width / 240)
 
@@ -167,7 +156,7 @@ def test_a_first_mechanism_keeps_its_place_its_open_panel_and_its_circuits(
     listed.first.wait_for()
     page.get_by_role("button", name="Save").click()
     page.locator(".lw-file", has_not_text="•").wait_for()
-    page.wait_for_timeout(200)
+    sheet.settle()
     assert listed.count() > 0
 
 
@@ -300,7 +289,7 @@ def test_a_mechanism_is_drawn_at_any_scale(scale: float, open_sheet: Callable[..
     sheet.page.mouse.move(*sheet._on_screen((0, 0)))
     for _ in range(46):
         sheet.page.mouse.wheel(0, 100 if scale > 1 else -100)
-    sheet.page.wait_for_timeout(300)  # symbols have the size of the view
+    sheet.settle()  # symbols have the size of the view
     sheet.scale *= scale
     left, top, width, height = sheet.page.locator(".lw-drawing").evaluate(
         """svg => {
@@ -378,7 +367,7 @@ def test_any_actions_leave_a_page_that_agrees_with_its_file(
                 page.mouse.down()
                 page.mouse.move(*somewhere(), steps=2)
                 page.mouse.up()
-    page.wait_for_timeout(500)
+    sheet.settle()
     page.get_by_role("tab", name="Build").click()
     page.wait_for_function(
         "text => document.querySelector('.lw-build textarea').value === text",

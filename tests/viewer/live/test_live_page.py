@@ -16,6 +16,7 @@ from linkwork.textfile.link import text_of_link
 from tests.described import described_as
 from tests.viewer.accessibility import assert_accessible
 from tests.viewer.live.conftest import FOUR_BAR, Served
+from tests.viewer.live.rest import at_rest
 
 Open = Callable[..., Any]
 
@@ -333,7 +334,7 @@ def test_newton_follows_the_input_that_is_shown(open_live: Open) -> None:
         "old => document.querySelector('.lw-steps tbody tr td').textContent !== old", arg=before
     )
     iterates = lw.loads(FOUR_BAR).iterates({}, {"crank": 200.0}).iterates
-    page.wait_for_timeout(300)
+    at_rest(page)
     first = page.locator(".lw-steps tbody tr td").first.text_content()
     assert float(first) == pytest.approx(iterates[0].norm, rel=1e-3)
     assert page.locator(".lw-iterate .lw-gap").count() == len(iterates[0].apart) > 0
@@ -387,7 +388,7 @@ def test_the_guess_is_dragged_in_the_drawing(open_live: Open) -> None:
         "old => Math.abs(document.querySelector('[data-guess=rocker] input').value - old) > 5",
         arg=before,
     )
-    page.wait_for_timeout(300)  # the last place is solved
+    at_rest(page)  # the last place is solved
     guess = {"rocker": float(slider.input_value())}
     crank = float(lw.loads(FOUR_BAR).sweep()["crank"][shown_row(page)])
     iterates = lw.loads(FOUR_BAR).iterates(guess, {"crank": crank}).iterates

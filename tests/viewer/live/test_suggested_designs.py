@@ -230,7 +230,7 @@ def test_a_curve_finds_paths_and_improves_one_on_the_page(
     page.get_by_role("button", name="Nearest in the atlas").click()
     rows = page.locator(".lw-t-designs tbody tr")
     rows.nth(9).wait_for()
-    assert page.locator(".lw-t-curve").count() >= 1  # its path over the drawn one
+    page.locator(".lw-t-curve").first.wait_for(state="attached")  # its path over the drawn one
     rows.nth(3).click()
     page.locator("p", has_text="Atlas 4: ").wait_for()
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -126,9 +126,10 @@ def test_a_half_drawn_task_an_unsound_one_and_a_lost_server_say_so(
     assert page.locator(".lw-t-designs tbody tr:not(.lw-t-refused)").count() == 0
     assert_accessible(page)  # a refused design is chosen
     page.get_by_role("tab", name="Task").click()
-    for _ in range(4):
+    rows = page.locator(".lw-t-positions tbody tr")
+    for left in (4, 3, 2, 1):
         page.get_by_role("button", name="Remove position 2").click()
-        page.wait_for_timeout(50)
+        rows.nth(left).wait_for(state="detached")
     page.locator(".lw-motion-notice", has_text="one position is given").wait_for()
     assert page.locator(".lw-t-position[data-knob=false]").count() == 1
     page.reload()
