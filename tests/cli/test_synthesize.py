@@ -22,8 +22,8 @@ from linkwork.cli.main import linkwork
 _TASK = Path(__file__).parents[2] / "examples" / "tasks" / "tilt-a-box.toml"
 
 
-def _run(*arguments: str, code: int = 0) -> str:
-    done = CliRunner().invoke(linkwork, ["synthesize", *arguments])
+def _run(*arguments: str, code: int = 0, typed: str = "") -> str:
+    done = CliRunner().invoke(linkwork, ["synthesize", *arguments], typed)
     assert done.exit_code == code, done.output
     return done.stdout
 
@@ -41,6 +41,24 @@ def test_counts_dyads_and_delivered_designs_are_printed() -> None:
     delivered = lw.Task.load(_TASK).solve().delivered
     for design, cell in zip(delivered, cells, strict=True):
         assert float(cell) <= design.transmission < float(cell) + 0.001
+
+
+def test_a_task_to_begin_with_is_solved_by_its_name_unless_a_file_has_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert _run("five-poses", "-o", "designs").startswith("Five poses\n")
+    kept = (tmp_path / "designs" / "task.toml").read_text("utf-8")
+    assert _run("-", typed=kept) == _run("five-poses")
+    Path("five-poses").write_text(_TASK.read_text("utf-8"), "utf-8")
+    assert _run("five-poses").startswith("Tilt a box\n")
+    runner = CliRunner()
+    told = runner.invoke(linkwork, ["synthesize", "four-poses.toml"]).stderr
+    assert "linkwork examples four-poses -o four-poses.toml" in told
+    for words, what in (("synthesize four-bar", "mechanism"), ("sweep curve", "task")):
+        done = runner.invoke(linkwork, words)
+        assert done.exit_code == 2
+        assert f"this is a {what}: linkwork" in done.stderr
 
 
 def test_delivered_designs_are_files_that_pass_the_poses(tmp_path: Path) -> None:

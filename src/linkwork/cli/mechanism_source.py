@@ -1,4 +1,4 @@
-"""The mechanism of a command: a file, a link or standard input, with changed dimensions."""
+"""The mechanism or task of a command: a file, a link or standard input, with changed numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,14 @@ from linkwork.textfile.reader import read_text
 from linkwork.textfile.toml_text import text_of
 from linkwork.viewer.live.task.templates import template_names, template_text
 
-__all__ = ["mechanism_of", "read_mechanism", "shown_source", "text_of_source", "text_to_copy"]
+__all__ = [
+    "mechanism_of",
+    "names_to_copy",
+    "read_mechanism",
+    "shown_source",
+    "text_of_source",
+    "text_to_copy",
+]
 
 
 def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
@@ -32,7 +39,8 @@ def read_mechanism(file: str, changes: tuple[str, ...] = ()) -> Mechanism:
 
 
 def text_of_source(file: str) -> tuple[str, str]:
-    """The text of FILE (``-``: standard input; a name of the library; a link), and its name.
+    """The text of FILE (``-``: standard input; a name of the library or of a task to begin with; a
+    link), and its name.
 
     Raises
     ------
@@ -41,18 +49,23 @@ def text_of_source(file: str) -> tuple[str, str]:
     """
     if file == "-":
         if sys.stdin is None:
-            raise InputError("there is no standard input to read a mechanism from")
+            raise InputError("there is no standard input to read from")
         return text_of(sys.stdin.buffer.read(), "standard input"), "standard input"
     path = Path(file)
     there = os.path.exists(file)  # a long name is an error for Path.exists
-    if not there and file in examples():
-        return example_text(file), file
-    if not there and path.parent == Path() and path.stem in examples():
+    if not there and file in names_to_copy():
+        return text_to_copy(file), file
+    if not there and path.parent == Path() and path.stem in names_to_copy():
         raise InputError(
             f'there is no file "{file}"; to copy the example of this name:\n'
             f"    linkwork examples {path.stem} -o {path.stem}.toml"
         )
     return source_text(file)
+
+
+def names_to_copy() -> tuple[str, ...]:
+    """The mechanisms of the library, and the tasks to begin with."""
+    return (*examples(), *template_names())
 
 
 def text_to_copy(name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 
 import click
@@ -10,6 +11,7 @@ from linkwork.api.designs_folder import FolderOptions, check_folder, keeps_earli
 from linkwork.api.synthesis import Task
 from linkwork.api.task_copy import task_copy
 from linkwork.cli.interrupts import answer_interrupt
+from linkwork.cli.mechanism_source import text_of_source
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.synthesis_page import synthesis_lines
 from linkwork.cli.terminal import print_json, print_lines, progress, wrapped
@@ -49,6 +51,7 @@ def synthesize(
     others are written as mechanism files, best first.
 
     \b
+      linkwork synthesize five-poses   (a task to begin with)
       linkwork synthesize task.toml
       linkwork synthesize task.toml -o designs --draw --html
       linkwork synthesize task.toml -o designs --all --json
@@ -56,7 +59,8 @@ def synthesize(
     options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, fresh=fresh)
     if output is None and any((every, draw, csv, html, fresh)):
         raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
-    asked = Task.load(task)
+    # files that a task names lie beside it
+    asked = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
     if output is not None:
         earlier = check_folder(as_path(output), options, asked.described)
     try:

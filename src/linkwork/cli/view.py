@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkwork.api import example_text, examples, loads
+from linkwork.api import loads
+from linkwork.cli.mechanism_source import names_to_copy, text_to_copy
 from linkwork.cli.options import debug_option, json_option
 from linkwork.cli.terminal import print_json, print_lines, progress, title_lines
 from linkwork.foundation.errors import InputError
@@ -31,11 +32,11 @@ __all__ = ["view"]
 
 def _opened(file: str) -> MechanismFile:
     """A file, or a text that is written when it is saved: a mechanism of the library or of a link,
-    or a blank sheet.
+    a task to begin with, or a blank sheet.
     """
     if is_link(file) and not os.path.exists(file):
         return _of_link(text_of_link(file))
-    if Path(file).exists() or file not in examples():
+    if Path(file).exists() or file not in names_to_copy():
         path = Path(file)
         named = path if path.suffix or path.exists() else path.with_suffix(".toml")
         return MechanismFile(named, blank_sheet(path.stem))
@@ -43,9 +44,9 @@ def _opened(file: str) -> MechanismFile:
     if path.exists():
         raise InputError(
             f'there is a file "{path}" already: to open it, linkwork view {path}; to open the '
-            "library's, go to another folder"
+            "example, go to another folder"
         )
-    return MechanismFile(path, example_text(file))
+    return MechanismFile(path, text_to_copy(file))
 
 
 def _of_link(text: str) -> MechanismFile:
@@ -98,6 +99,7 @@ def view(file: str | None, port: int, no_browser: bool, as_json: bool) -> None:
       linkwork view rapier.toml   (a blank sheet, if there is no such file)
       linkwork view task.toml     (a task: its designs)
       linkwork view four-bar      (of the library: saved as four-bar.toml)
+      linkwork view five-poses    (a task to begin with)
       linkwork view "LINK"        (saved as linked.toml)
       linkwork view rapier.toml --port 8123 --no-browser
 

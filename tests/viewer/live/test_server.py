@@ -567,3 +567,15 @@ def test_a_mechanism_of_the_library_is_opened_and_saved_under_its_name(tmp_path:
     assert 'there is a file "four-bar.toml" already: to open it, linkwork view four-bar.toml' in (
         done.stderr.replace("\n  ", " ")
     )
+
+
+def test_a_task_to_begin_with_is_opened_under_its_name(tmp_path: Path) -> None:
+    process, address = begun("three-poses", cwd=tmp_path)
+    server: Any = _AsPrinted(address)
+    workbench: Any = None
+    with Served(server, workbench, tmp_path / "three-poses.toml").connect() as page:
+        state = told(page, "task_state")
+        assert (state["title"], len(state["positions"])) == ("Three poses", 3)
+        os.kill(process.pid, signal.SIGINT)
+        process.communicate(timeout=60)
+    assert list(tmp_path.iterdir()) == []

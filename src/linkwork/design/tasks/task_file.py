@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -34,15 +33,13 @@ __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"
 
 
 def read_task(path: Path | str) -> Task:
-    """Read the task in a file; ``-``: standard input.
+    """Read the task in a file.
 
     Raises
     ------
     MechanismFileError
         With every problem found: file, line, key and remedy.
     """
-    if path == "-" and sys.stdin is not None:
-        return read_task_text(text_of(sys.stdin.buffer.read(), "standard input"), "standard input")
     name = str(path)
     return read_task_text(text_of(bytes_of(as_path(path), name), name), name, as_path(path).parent)
 
