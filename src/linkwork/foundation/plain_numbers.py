@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwork.foundation.errors import InputError
 
-__all__ = ["as_told", "finite_number", "plain_number", "whole_number"]
+__all__ = ["as_told", "finite_number", "plain_number", "told_beside", "whole_number"]
 
 _LONGEST_TOLD = 40
 _LARGE = 1e308  # no number below is infinite as a float
@@ -71,6 +71,12 @@ def as_told(given: object) -> str:
     """A given value for a message: its ``repr``, with NumPy's numbers as plain ones, cut short."""
     told = repr(_plain(given))
     return told if len(told) <= _LONGEST_TOLD else f"{told[:_LONGEST_TOLD]}…"
+
+
+def told_beside(number: float, other: float) -> str:
+    """A number with so many digits, six or more, that it is told from another one."""
+    digits = next((k for k in range(6, 16) if f"{number:.{k}g}" != f"{other:.{k}g}"), 6)
+    return f"{number:.{digits}g}"
 
 
 def _plain(given: Any) -> object:

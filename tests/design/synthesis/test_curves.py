@@ -90,11 +90,14 @@ def test_a_curve_in_a_file_is_followed_in_order(tmp_path: Path) -> None:
         ("x,y\n1,2\n3\n", "", "line 3"),
         ("1,2\n3,4\n", "", "2 points"),
         ("1,2\n3,4\n5,a\n", "", "'5,a'"),
+        ("1;2\n3;4\n5;6\n", "", "with commas between them and points for decimals"),
+        ("1,2,0\n3,4,9\n5,4,0\n6,4,20\n7,1,30\n", 'timing = "as given"',
+         "line 3 has the input of line 1: move one of them"),
         ("1,2\n3,4\n5,4\n6,4\n7,1\n", 'timing = "as given"', "third column"),
         ("1,2\n3,4\n3,4\n6,4\n7,1\n", "", "repeats line 2 in line 3: leave one out"),
         ("# foot\n1,2\n", "", "has 1 point: a curve"),
     ],
-)
+)  # fmt: skip
 def test_a_file_without_a_curve_is_refused_with_its_place(
     tmp_path: Path, rows: str, curve: str, message: str
 ) -> None:
@@ -360,3 +363,29 @@ def test_inputs_across_a_whole_turn_are_those_of_a_part_of_a_curve(inputs: tuple
     assert not curve_goal_of(task, wishes_of(task, Drive.A0)).closed
     around = lw.Task.path(points, inputs=(288, 0, 72, 144, 216)).described
     assert curve_goal_of(around, wishes_of(around, Drive.A0)).closed
+
+
+def test_a_closed_curve_is_driven_through_a_whole_turn(tmp_path: Path) -> None:
+    bar = lw.loads(lw.example_text("four-bar")).with_dimensions({"A B": 110.0})
+    turn = bar.sweep().trace("B")[:360]
+    crank = 40.0 * np.exp(1j * np.radians(np.arange(360)))
+    path = crank + 0.6 * (turn - crank) + 25j * (turn - crank) / np.abs(turn - crank)
+    rows = path[10:360:24]  # the last stretch is half passed, half not
+    top = path[358]
+    (tmp_path / "curve.csv").write_text("".join(f"{z.real:.17g},{z.imag:.17g}\n" for z in rows))
+    text = 'format = 1\ntask = "path"\nmechanism = "four-bar"\n[improve]\nstarts = 60\n'
+    text += '[curve]\nfile = "curve.csv"\nclosed = "closed"\n'
+    (tmp_path / "free.toml").write_text(text)
+    free = lw.Task.load(tmp_path / "free.toml").solve()
+    best = min(free.delivered, key=lambda design: design.error)
+    assert best.error < 1e-6
+    motion = lw.api.Mechanism(best.linkage).sweep()
+    inputs = next(iter(motion.inputs.values()))
+    assert abs(inputs[-1] - inputs[0]) == pytest.approx(360.0)
+    (tmp_path / "held.toml").write_text(
+        f"{text}[wanted]\nclear_of = [[{top.real}, {top.imag}, 0.5]]\n"
+    )
+    held = lw.Task.load(tmp_path / "held.toml").solve()
+    same = [d for d in held.designs if d.error < 1e-6]
+    assert same
+    assert all(lw.DefectKind.OBSTACLE in design.kinds for design in same)

@@ -323,3 +323,36 @@ def test_a_pivot_on_the_line_of_a_slider_is_one_point_of_its_file() -> None:
         assert linkage.sliders[0].line == ("A0", "T")
         position = lw.loads(write_text(linkage)).solve(at=float(np.degrees(design.inputs[0])))
         assert np.allclose(position.points["P"], (0.0, 0.0), atol=1e-9)
+
+
+@pytest.mark.parametrize("timed", [False, True])
+def test_few_poses_are_met_within_their_tolerances(timed: bool) -> None:
+    poses = [(0.0, 0.0, 0.0), (40.0, -40.0, 10.0), (100.0, -80.0, 25.0)]
+
+    def solved(reach: float, swing: float) -> lw.Synthesis:
+        positions = [
+            {"point": [x, y], "angle": a, "tolerance": reach, "angle_tolerance": swing}
+            | ({"input": 30.0 * k} if timed else {})
+            for k, (x, y, a) in enumerate(poses)
+        ]
+        given = {"fixed_pivots": [[0.0, -200.0]]} | ({} if timed else {"moving_pivots": [[30, 30]]})
+        tables = {"task": "motion", "positions": positions, "given": given}
+        return lw.Task.loads(write_tables({"format": 1, "mechanism": "four-bar", **tables})).solve()
+
+    exact, near = solved(0.0, 0.0), solved(30.0, 8.0)
+    assert len(near.designs) > 20 * len(exact.designs)
+    assert "within the tolerances, the wanted one first" in near.message
+    if not timed:
+        assert not exact.delivered
+    assert near.delivered
+    for design in near.delivered[:8]:
+        motion = lw.api.Mechanism(design.linkage).sweep()
+        lead, path = next(iter(motion.inputs.values())), motion.trace("P")
+        side = motion.trace("B") - motion.trace("A")
+        rows = [int(np.abs(lead - at).argmin()) for at in design.inputs]
+        step = np.abs(np.diff(path)).max()
+        turns = np.degrees(np.angle(side[rows] / side[rows[0]]))
+        for k, (x, y, angle) in enumerate(poses):
+            assert abs(path[rows[k]] - complex(x, y)) <= 30.0 + step
+            assert abs(turns[k] - angle) <= 2 * 8.0 + 1.0
+    assert 0.0 < max(design.error for design in near.designs) <= 30.0

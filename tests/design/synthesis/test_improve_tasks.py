@@ -194,6 +194,10 @@ def test_an_input_that_does_not_turn_fully_is_a_defect() -> None:
             _HEAD + "[improve]\n" + _GOAL.replace("values", "least = 4\nmost = 3\n#"),
             8, "contradict",
         ),
+        (
+            _HEAD + "[improve]\n" + _GOAL.replace("90", "0"),
+            8, r"is another value than 60 at 0: leave one out",
+        ),
         (_HEAD + _HERE.format("C", 3, 4), 5, 'no point "C"'),
         (_HEAD + _HERE.format("B", 1, 2), 8, "same as position 1"),
         (
@@ -416,3 +420,53 @@ def test_bounds_that_are_kept_miss_nothing() -> None:
     task = lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=1, rank=by_error)
     (design,) = task.solve().delivered
     assert design.score == 1.0
+
+
+@pytest.mark.parametrize(
+    ("bound", "told"),
+    [
+        ({"of": "max(d)", "most": 100}, r"max\(d\) comes up to 128\.\d+, wanted at most 100"),
+        ({"of": "d", "least": 300}, r"d comes down to 1?\d\d\.\d+, wanted at least 300"),
+    ],
+)
+def test_a_broken_bound_of_a_goal_refuses_a_design(bound: dict[str, Any], told: str) -> None:
+    goals = [{"of": "stroke(d)", "target": 70}, bound]
+    for front in ({}, {"front": 2}):
+        more = [{"of": "mean(d)", "target": 100}] if front else []
+        task = lw.Task.improve("slider-crank", goals=goals + more, vary=["O2 A"], starts=2, **front)
+        found = task.solve()
+        assert not found.delivered
+        (defect,) = found.designs[0].defects
+        assert defect.kind is lw.DefectKind.BOUND
+        assert re.fullmatch(told, defect.message)
+    design = lw.example("slider-crank").improve(goals, vary=["O2 A"], starts=2)[0]
+    assert not design.sound
+    assert re.search(told, design.message)
+
+
+def test_a_bound_that_binds_is_kept() -> None:
+    goals = [{"of": "stroke(d)", "target": 70}, {"of": "stroke(d)", "most": 60}]
+    (design,) = (
+        lw.Task.improve("slider-crank", goals=goals, vary=["O2 A"], starts=2).solve().designs
+    )
+    assert design.defects == ()
+    assert np.ptp(lw.api.Mechanism(design.linkage).sweep()["d"]) == pytest.approx(60, abs=1e-4)
+
+
+def test_a_task_has_the_units_of_the_mechanism_it_improves(tmp_path: Path) -> None:
+    text = lw.example_text("four-bar").replace('"mm"', '"in"').replace('"deg"', '"rad"')
+    text = re.sub(r"step += +\d+", "step = 0.02", re.sub(r"to += +360", "to = 6.28", text))
+    (tmp_path / "bar.toml").write_text(text)
+    task = _HEAD.replace("four-bar", "bar.toml") + "[improve]\nstarts = 2\n[[improve.goals]]\n"
+    task += 'of = "stroke(rocker)"\ntarget = 1.0\n'
+    (tmp_path / "task.toml").write_text(task)
+    found = lw.Task.load(tmp_path / "task.toml").solve()
+    assert (found.task.length, found.task.angle.value) == ("in", "rad")
+    assert found.delivered
+    assert 0 < found.delivered[0].transmission < 1.571
+    for key, unit, own in (("length", "mm", "in"), ("angle", "deg", "rad")):
+        wrong = task.replace("[improve]", f'{key} = "{unit}"\n[improve]', 1)
+        (tmp_path / "task.toml").write_text(wrong)
+        with pytest.raises(MechanismFileError, match=f"write all numbers in {own}") as caught:
+            lw.Task.load(tmp_path / "task.toml")
+        assert [problem.line for problem in caught.value.problems] == [4]

@@ -37,6 +37,7 @@ class DefectKind(Enum):
     LENGTHS = "length out of bounds"
     TOLERANCE = "tolerance exceeded"
     OBSTACLE = "meets an obstacle"
+    BOUND = "bound of a goal broken"
     NOT_PROVED = "not proved"
 
 

@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from linkwork.design.improvement.goals import PathGoal, goal_of
+from linkwork.design.improvement.goals import Misses, PathGoal, goal_of
 from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
-from linkwork.design.improvement.settings import Goal
+from linkwork.design.improvement.settings import Aid, Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
 from linkwork.design.improvement.trade_off import Objectives, TradeOff
 from linkwork.design.improvement.written_designs import DesignWriter
@@ -52,6 +52,10 @@ class FittedNumbers:
         Root mean squares of the misses of each goal that is no bound, without its weight.
     broken : (D,)
         The largest weighted residual of a bound.
+    bounds : tuple of Goal
+        Those that a design has to keep.
+    beyond : (D, B, 2)
+        How far it is below and above them.
     start : (D,)
         The numbers of their starts.
     interrupted : bool
@@ -65,6 +69,8 @@ class FittedNumbers:
     names: tuple[str, ...]
     objectives: Array
     broken: Array
+    bounds: tuple[Goal, ...]
+    beyond: Array
     start: IndexArray
     interrupted: bool
 
@@ -181,6 +187,13 @@ class FitProblem:
             weights=np.array(weights),
             bounds=tuple(bounds),
         )
+
+    @property
+    def _kept(self) -> list[tuple[Misses, slice]]:
+        """The bounds that a design has to keep, and their residuals."""
+        bounds = [misses for misses in self.goals if misses.is_bound]
+        pairs = zip(bounds, self.objectives.bounds, strict=True)
+        return [pair for pair in pairs if not isinstance(pair[0].goal, Aid)]
 
     def copy_lanes(self, fit: LaneFit, of: IndexArray, to: IndexArray) -> None:
         """Begin lanes where others are now."""
@@ -360,6 +373,7 @@ class FitProblem:
         known = np.argsort(fit.total, kind="stable")[: max(1, np.isfinite(fit.total).sum())]
         known = np.sort(known[:most])
         there = self.measured(fit, known)
+        beyond = [misses.beyond(there.shared[:, own]) for misses, own in self._kept]
         fit = fit.take(known)
         timed = self.path is None or self.path.timed
         t = fit.t
@@ -374,6 +388,8 @@ class FitProblem:
             names=self.objectives.names,
             objectives=self.objectives.values(there),
             broken=self.objectives.broken(there),
+            bounds=tuple(misses.goal for misses, _ in self._kept),
+            beyond=np.reshape(beyond, (len(self._kept), len(known), 2)).swapaxes(0, 1),
             start=known,
             interrupted=fit.interrupted,
         )

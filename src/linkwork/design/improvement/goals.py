@@ -43,6 +43,7 @@ _NUMBER = "number_{}_of_the_motion"
 _ZERO = np.zeros(())
 _STIFF = 100.0  # weight of bounds: their shifts converge faster
 _MARGIN = 1e-7  # relative: by which bounds hold in the end
+_NONE = 1e-2  # of this margin: rounding
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -123,6 +124,15 @@ class Misses(ABC):
         """Whether only values beyond bounds are misses."""
         return self.goal.is_bound
 
+    def beyond(self, misses: Array) -> Array:
+        """How far values are below and above their bounds, from misses (D, K); (D, 2)."""
+        weight, goal = _STIFF * self.goal.weight, self.goal
+        low = -misses.min(axis=1) / weight
+        high = misses.max(axis=1) / weight
+        least, most = (0.0 if bound is None else bound for bound in (goal.least, goal.most))
+        away = np.stack([low - _margin(least), high - _margin(most)], axis=1)
+        return np.where(away > _NONE * _margin(np.array([least, most])), away, 0.0)
+
     @np.errstate(all="ignore")  # where there is no position there is no number
     def of(self, found: LanePositions, shift: Array) -> tuple[Array, Array, Array]:
         """Weighted misses (D, K), by the numbers, and the new shifts of the bounds, (2, D, K)."""
@@ -148,7 +158,11 @@ class Misses(ABC):
 
 
 def _above(bound: float) -> float:
-    return bound + _MARGIN * max(1.0, abs(bound))
+    return bound + float(_margin(bound))
+
+
+def _margin(bound: Any) -> Any:
+    return _MARGIN * np.maximum(1.0, np.abs(bound))
 
 
 def goal_of(model: Model, goal: Goal, table: Array, there: BoolArray, scale: float) -> Misses:

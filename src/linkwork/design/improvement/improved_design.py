@@ -32,7 +32,7 @@ class ImprovedDesign:
         The root mean square of the distances from the points; 0 without points [length].
     sound : bool
         Whether all rows of its table are proved to be on one branch, which does not end between
-        them.
+        them, and goals are within their bounds.
     message : str
         Why it is not sound, and how the search ended.
     inputs : tuple of float
@@ -42,6 +42,8 @@ class ImprovedDesign:
     goals : Mapping[str, float]
         The root mean square of the misses of each goal that is no bound, by quantity or point,
         without its weight [file units].
+    broken : tuple of str
+        The bounds of goals that it breaks, in words.
     motion : Motion, optional
         Its table with the proofs; ``None`` if it has no position.
     whole_motion : MotionBounds, optional
@@ -66,6 +68,7 @@ class ImprovedDesign:
     inputs: tuple[float, ...] = ()
     misses: tuple[float, ...] = ()
     goals: Mapping[str, float] = field(default_factory=dict)
+    broken: tuple[str, ...] = ()
     motion: Motion | None = None
     whole_motion: MotionBounds | None = None
 

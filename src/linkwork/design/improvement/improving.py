@@ -19,7 +19,7 @@ from linkwork.design.improvement.improved_design import ImprovedDesign
 from linkwork.design.improvement.mechanism_fit import fit_numbers
 from linkwork.design.improvement.motion_bounds import least_in_rows
 from linkwork.design.improvement.proved_design import fitted_design, interrupted_design
-from linkwork.design.improvement.settings import Goal, Improvement, Points
+from linkwork.design.improvement.settings import Aid, Goal, Improvement, Points
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import (
@@ -242,13 +242,13 @@ def _starts(model: Model, numbers: Sequence[VariedNumber], settings: Improvement
     return starts
 
 
-def transmission_goals(model: Model, least: float) -> Iterator[Goal]:
+def transmission_goals(model: Model, least: float) -> Iterator[Aid]:
     """A least transmission angle of all dyads, as bounds in all rows [rad]."""
     angle = model.description.angle
     bound = angle.from_radians(least)
     for name, asked in model.quantities.derived.items():
         if asked.row is TRANSMISSION_ANGLE:
-            yield Goal(of=name, least=bound, most=angle.turn / 2.0 - bound)
+            yield Aid(of=name, least=bound, most=angle.turn / 2.0 - bound)
 
 
 def _sizes(model: Model, numbers: Sequence[VariedNumber], x: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from linkwork.design.improvement.whole_motion import WholeMotion
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.errors import LinkworkError
 from linkwork.foundation.frozen import FrozenDict
+from linkwork.foundation.plain_numbers import told_beside
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.varied_number import VariedNumber, with_numbers
 from linkwork.motion.model import Model, model_of
@@ -44,10 +45,26 @@ def fitted_design(
         largest=float(found.largest[k]),
         goals=dict(zip(found.names, map(float, found.objectives[k]), strict=True)),
     )
+    broken = [*_broken(found, k)]
+    if broken:
+        told = "; ".join([design.message, *broken])
+        design = replace(design, broken=tuple(broken), sound=False, message=told)
     if path is None:
         return design
     rms = float(np.sqrt(found.path[k] / len(path.places)))
     return _on_path(replace(design, rms=rms), model, numbers, path, found.t[k])
+
+
+def _broken(found: FittedNumbers, k: int) -> Iterator[str]:
+    """The bounds that a design breaks, in words."""
+    for goal, (below, above) in zip(found.bounds, found.beyond[k], strict=True):
+        least, most = goal.least, goal.most
+        if least is not None and below > 0.0:
+            down = told_beside(least - below, least)
+            yield f"{goal.of} comes down to {down}, wanted at least {least:g}"
+        if most is not None and above > 0.0:
+            up = told_beside(most + above, most)
+            yield f"{goal.of} comes up to {up}, wanted at most {most:g}"
 
 
 def interrupted_design(design: ImprovedDesign) -> ImprovedDesign:

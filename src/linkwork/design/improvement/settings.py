@@ -12,7 +12,7 @@ import numpy as np
 from linkwork.foundation.errors import MechanismError, Problem, choices
 from linkwork.foundation.plain_numbers import as_told, plain_number
 
-__all__ = ["FITS", "WHOLE", "Goal", "Improvement", "Points", "read_goal"]
+__all__ = ["FITS", "WHOLE", "Aid", "Goal", "Improvement", "Points", "read_goal"]
 
 #: How misses count.
 FITS = ("least squares", "minimax")
@@ -65,6 +65,11 @@ class Goal:
             if len(self.values) != len(self.at):
                 told = f"{len(self.values)} values for {len(self.at)} inputs: give as many"
                 yield ("values",), told
+            wanted_at: dict[float, float] = {}
+            for k, (at, value) in enumerate(zip(self.at, self.values, strict=False)):
+                if wanted_at.setdefault(at, value) != value:
+                    told = f"is another value than {wanted_at[at]:g} at {at:g}: leave one out"
+                    yield ("values", k), told
             if self.target is not None or bounds != (None, None):
                 yield ("values",), "exclude target, least and most: give one goal for each"
         elif self.target is None and bounds == (None, None):
@@ -75,6 +80,11 @@ class Goal:
             yield ("target",), "excludes least and most: give one goal for each"
         if not (self.weight > 0.0 and math.isfinite(self.weight)):
             yield ("weight",), f"must be above 0, got {self.weight:g}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Aid(Goal):
+    """A bound that leads a fit: whether a design keeps it is judged in its whole motion."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,11 +63,14 @@ def is_tolerant(task: Task) -> bool:
     return any(position.tolerance or position.angle_tolerance for position in task.positions)
 
 
-def drawn_within(task: Task, count: int, rng: np.random.Generator) -> tuple[ComplexArray, Array]:
+def drawn_within(
+    task: Task, count: int, rng: np.random.Generator | None = None
+) -> tuple[ComplexArray, Array]:
     """Shifts [length] and turns [rad] of positions within their tolerances, (T, N).
 
     Shifts are spread evenly in discs; the first task has none.
     """
+    rng = rng or np.random.default_rng(_SEED)
     reach = np.array([position.tolerance for position in task.positions])
     swing = np.array([position.angle_tolerance for position in task.positions])
     shape = (count, len(reach))

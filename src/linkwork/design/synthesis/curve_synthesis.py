@@ -22,7 +22,6 @@ from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.task_conditions import LENGTHS
 from linkwork.design.tasks.wishes import Wishes
 from linkwork.foundation.angles import FULL_TURN, arc_in_order
-from linkwork.foundation.arrays import Array
 from linkwork.foundation.completeness import Completeness
 from linkwork.foundation.rounding import UNIT_ROUNDOFF
 from linkwork.foundation.sharing import cores
@@ -104,7 +103,7 @@ def curve_goal_of(task: Task, wishes: Wishes) -> CurveGoal:
         points=points,
         inputs=None if inputs is None else np.array(inputs),
         ordered=wishes.ordered,
-        closed=_is_closed(task, points, driven),
+        closed=is_closed(task, driven),
         turns_fully=turns,
         range=driven,
         transmission=wishes.transmission,
@@ -134,7 +133,9 @@ def usual_longest(task: Task) -> float:
     )
 
 
-def _is_closed(task: Task, points: Array, driven: tuple[float, float] | None) -> bool:
+def is_closed(task: Task, driven: tuple[float, float] | None = None) -> bool:
+    """Whether the positions of a task are a closed curve, passed in a driven range [rad]."""
+    points = np.array([complex(*position.point) for position in task.positions])
     if task.curve is not None and task.curve.closed:
         return task.curve.closed == "closed"
     if driven is not None and driven[1] - driven[0] < FULL_TURN:

@@ -24,6 +24,7 @@ from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, ComplexArray
 from linkwork.foundation.internal import internal
 from linkwork.foundation.names import GROUND
+from linkwork.foundation.plain_numbers import told_beside
 from linkwork.mechanism.description import Description
 from linkwork.mechanism.draft import Draft
 from linkwork.results.branch_end import branch_end
@@ -228,6 +229,8 @@ class ImprovedMechanism(SweptDesign):
             order = np.argsort(self.improved.inputs, kind="stable") + 1
             told = f"the input passes the positions in the order {', '.join(map(str, order))}"
             yield DefectKind.ORDER, told
+        for told in self.improved.broken:
+            yield DefectKind.BOUND, told
         yield from self._transmission_defects()
         yield from self._geometric_defects()
 
@@ -244,9 +247,8 @@ class ImprovedMechanism(SweptDesign):
             if found.high >= least:
                 kind = DefectKind.NOT_PROVED
                 told = "not proved: the transmission angle comes down to"
-        # as many digits as tell it from the wanted one
-        digits = next((k for k in range(6, 16) if f"{down:.{k}g}" != f"{wanted:.{k}g}"), 6)
-        yield kind, f"{told} {down:.{digits}g}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
+        shown = told_beside(down, wanted)
+        yield kind, f"{told} {shown}{angle.sign}{place}, wanted {wanted:g}{angle.sign}"
 
     def _input_text(self, value: float) -> str:
         """A value of the leading input with its name."""

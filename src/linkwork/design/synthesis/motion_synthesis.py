@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import chain, islice
 
 import numpy as np
 
-from linkwork.design.loops.candidates import GUIDED, Candidates, Drive
+from linkwork.design.loops.candidates import GUIDED, Candidates, Drive, LoopKind
 from linkwork.design.poses.burmester import (
     CentrePoints,
     centre_points,
@@ -26,7 +28,7 @@ from linkwork.design.poses.pose_families import (
     through_moving,
     timed_dyads,
 )
-from linkwork.design.poses.pose_tolerance import near_tasks, with_misses
+from linkwork.design.poses.pose_tolerance import drawn_within, is_tolerant, near_tasks, with_misses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.tasks.task import Task
 from linkwork.design.tasks.wishes import Wishes
@@ -48,6 +50,8 @@ _PARALLELOGRAMS = (
     "parallelogram, whose branch is lost at its change points: turn a pose, or guide the body by "
     "a third crank"
 )
+_TASKS = 400  # within tolerances
+_MOST_DESIGNS = 20_000  # of them
 _ROUNDED = 16.0 * EPSILON  # of a pole, relative to coordinates
 _PARALLEL = 1e-12  # angles that differ by less are equal to rounding
 
@@ -65,20 +69,7 @@ def solve_motion(task: Task, wishes: Wishes) -> Found:
     _check_motion(task, points, angles)
     if len(points) >= FIVE:
         return _through_five(task, points, angles)
-    family = _family(task, wishes, points, angles)
-    dyads = family.dyads
-    poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
-    made, told = _pairs(task, dyads, poses, family.leading)
-    return Found(
-        candidates=tuple(made),
-        complex=len(dyads),
-        real=len(dyads),
-        proved=int((dyads.refusal == Refusal.NONE.code).sum()),
-        completeness=Completeness.SAMPLED,
-        message=family.message + told,
-        dyads=dyads,
-        drives=(Drive.A0,) if family.timed else tuple(Drive),
-    )
+    return _through_few(task, wishes, points, angles)
 
 
 def _check_motion(task: Task, points: ComplexArray, angles: Array) -> None:
@@ -137,6 +128,53 @@ def _pairs(
         if immobile:
             told = f"; {immobile} pairs of guides are parallel or share a pivot: no such mechanism"
     return [part for part in made if part.kind.value in task.mechanisms], told
+
+
+def _through_few(task: Task, wishes: Wishes, points: ComplexArray, angles: Array) -> Found:
+    """A sample of the family through the wanted poses, and with tolerances through others."""
+    first = _family(task, wishes, points, angles)
+    pairs, told = _paired(task, first, points, angles)
+    if is_tolerant(task):
+        near = _near_pairs(task, wishes, points, angles)
+        every = [pairs, *islice(near, max(0, _MOST_DESIGNS // max(1, sum(map(len, pairs))) - 1))]
+        told += (
+            f"; the same for {len(every)} tasks within the tolerances, the wanted one first"
+            if len(every) > 1
+            else "; the poses are met exactly, and tolerances are not used"
+        )
+        whole: dict[LoopKind, list[Candidates]] = {}
+        for part in chain(*every):
+            kept = with_misses(task, points, angles, part)
+            whole.setdefault(part.kind, []).extend([] if kept is None else [kept])
+        pairs = [Candidates.joined(parts) for parts in whole.values() if parts]
+    return Found(
+        candidates=tuple(pairs),
+        complex=len(first.dyads),
+        real=len(first.dyads),
+        proved=int((first.dyads.refusal == Refusal.NONE.code).sum()),
+        completeness=Completeness.SAMPLED,
+        message=first.message + told,
+        dyads=first.dyads,
+        drives=(Drive.A0,) if first.timed else tuple(Drive),
+    )
+
+
+def _paired(
+    task: Task, family: _Family, points: ComplexArray, angles: Array
+) -> tuple[list[Candidates], str]:
+    """The mechanisms of a family through poses, and what is said of pairs that are none."""
+    poses = PoseSet(points=points[None], turns=np.exp(1j * angles)[None])
+    return _pairs(task, family.dyads, poses, family.leading)
+
+
+def _near_pairs(
+    task: Task, wishes: Wishes, points: ComplexArray, angles: Array
+) -> Iterator[list[Candidates]]:
+    """The mechanisms through poses within the tolerances."""
+    shift, turn = drawn_within(task, _TASKS)
+    for near, turned in zip(points + shift[1:], angles + turn[1:], strict=True):
+        with suppress(MechanismError):  # given pivots may be off the curves of these poses
+            yield _paired(task, _family(task, wishes, near, turned), near, turned)[0]
 
 
 def _through_five(task: Task, points: ComplexArray, angles: Array) -> Found:

@@ -20,7 +20,7 @@ from linkwork.design.improvement.settings import FITS, Improvement
 from linkwork.design.loops.candidates import Candidates, Drive
 from linkwork.design.loops.travel import Range
 from linkwork.design.poses.dyads import Refusal
-from linkwork.design.synthesis.curve_synthesis import solve_curve
+from linkwork.design.synthesis.curve_synthesis import is_closed, solve_curve
 from linkwork.design.synthesis.designs_table import relative_misses
 from linkwork.design.synthesis.found import Found
 from linkwork.design.synthesis.function_synthesis import solve_function
@@ -293,7 +293,8 @@ def _range(task: Task, wanted: Wanted, drive: Drive) -> Range | None:
     if wanted.turns_fully:
         return Range(turn=True)
     if wanted.range is None:
-        return None
+        fitted = task.kind == "path" and task.is_approximate
+        return Range(turn=True) if fitted and is_closed(task) else None
     start, stop = wanted.range
     if drive.turns:
         start, stop = task.in_radians(start), task.in_radians(stop)

@@ -133,7 +133,10 @@ class Task:
         yield from mechanism_problems(self.kind, self.mechanisms)
         exact = self.kind in ("path", "mixed") and not self.is_approximate
         if exact and "four-bar" not in self.mechanisms:
-            yield ("mechanism",), 'points are solved for the "four-bar" only'
+            told = 'points are solved for the "four-bar" only'
+            if self.kind == "path":
+                told += ": with [improve] starts = 1000 other kinds are fitted to them"
+            yield ("mechanism",), told
         if self.kind == "function":
             if self.function is None:
                 yield ("function",), "is missing: what the output should follow"
@@ -173,7 +176,8 @@ class Task:
             for name in ("tolerance", "angle_tolerance"):
                 if getattr(position, name) < 0:
                     yield ("positions", k, name), "must not be negative"
-        yield from self._repeated_positions()
+        repeated = [*self._repeated_positions()] or [*self._repeated_inputs()]
+        yield from repeated
         bare = [k for k, position in enumerate(self.positions) if not position.tolerance]
         if self.is_approximate and 0 < len(bare) < count:
             told = "is missing: points that are met by least squares all have tolerances, or none"
@@ -281,8 +285,24 @@ class Task:
                 yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
             elif same:
                 yield ("positions", k), f"is the same as position {j + 1}: leave one out"
-            elif self.is_approximate and one.input is not None and one.input == other.input:
+
+    def _repeated_inputs(self) -> Problems:
+        """Equal inputs, whole turns aside; the last one of a whole turn may be the first."""
+        turn = math.inf if self.kind == "improve" else self.angle.turn
+        known: dict[float, tuple[int, float]] = {}
+        for k, position in enumerate(self.positions):
+            if position.input is None:
+                continue
+            at = math.remainder(position.input, turn) if turn < math.inf else position.input
+            j, first = known.setdefault(at, (k, position.input))
+            around = (j, k) == (0, len(self.positions) - 1) and first != position.input
+            if j == k or around:
+                continue
+            if self.curve is None:
                 yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
+            else:
+                told = f"line {self.curve.lines[k]} has the input of line {self.curve.lines[j]}"
+                yield ("curve", "file"), f"{told}: move one of them"
 
     def _wish_problems(self) -> Problems:
         wanted = self.wanted

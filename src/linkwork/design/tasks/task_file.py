@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +21,17 @@ from linkwork.foundation.angles import AngleUnit
 from linkwork.foundation.errors import MechanismError, MechanismFileError, Problem
 from linkwork.foundation.paths import as_path
 from linkwork.foundation.plain_numbers import as_told
+from linkwork.mechanism.description import Description
 from linkwork.results.quantities.transmission import TRANSMISSION_ANGLE
 from linkwork.textfile.keys import FORMAT
-from linkwork.textfile.library import examples
+from linkwork.textfile.library import example_text, examples
 from linkwork.textfile.lines import Lines
 from linkwork.textfile.reader import check_format, check_kind, located_error
 from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.textfile.writer import write_tables
+
+_Units = tuple[str, AngleUnit]
 
 __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
 
@@ -117,17 +121,47 @@ def _own_mechanism(names: tuple[str, ...], folder: Path | None) -> str | None:
     return text_of(bytes_of(path, str(path)), str(path)) if path.is_file() else None
 
 
+def _own_units(content: Mapping[str, Any], names: tuple[str, ...], text: str | None) -> _Units:
+    """The units of a task that improves a mechanism: those of its file, which it may repeat.
+
+    Raises
+    ------
+    MechanismError
+        If the task has others.
+    """
+    usual = {"length": Description.length, "angle": Description.angle.value}
+    if text is None and names[0] in examples():
+        text = example_text(names[0])
+    own: Mapping[str, Any] = {}
+    with suppress(MechanismFileError):  # which is told when the mechanism is read
+        own = data_of(text or "", names[0])
+    units = {key: str(own.get(key, unit)) for key, unit in usual.items()}
+    told = f"is not the unit of {names[0]}: leave it out, and write all numbers in"
+    problems = [
+        Problem(key=(key,), message=f"{told} {unit}")
+        for key, unit in units.items()
+        if content.get(key, unit) != unit
+    ]
+    if problems:
+        raise MechanismError(problems, "the task")
+    return units["length"], AngleUnit(units["angle"])
+
+
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
     _check_tables(content)
     _check_numbers(content)
-    angle = AngleUnit(content.get("angle", "deg"))
-    curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     mechanism = content.get("mechanism", MECHANISMS)
     mechanisms = (mechanism,) if isinstance(mechanism, str) else tuple(mechanism)
+    own, length = None, content.get("length", Task.length)
+    angle = AngleUnit(content.get("angle", Task.angle.value))
+    if content["task"] == "improve":
+        own = _own_mechanism(mechanisms, folder)
+        length, angle = _own_units(content, mechanisms, own)
+    curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     return Task(
         kind=content["task"],
         name=content.get("name", stem),
-        length=content.get("length", Task.length),
+        length=length,
         angle=angle,
         mechanisms=mechanisms,
         positions=tuple(map(_position, content.get("positions", ()))),
@@ -138,7 +172,7 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
         curve=curve,
         improvement=_improvement(content["improve"]) if "improve" in content else None,
         folder=folder,
-        mechanism_text=_own_mechanism(mechanisms, folder) if content["task"] == "improve" else None,
+        mechanism_text=own,
         text=text,
     )
 
