@@ -13,7 +13,7 @@ from linkwork.design.improvement.lane_work import LaneWork
 from linkwork.design.improvement.largest_miss import largest_misses, powered
 from linkwork.design.improvement.settings import Aid, Goal
 from linkwork.design.improvement.solved_lanes import SolvedLanes
-from linkwork.design.improvement.trade_off import Objectives, TradeOff
+from linkwork.design.improvement.trade_off import Objectives, TradeOff, told_apart
 from linkwork.design.improvement.written_designs import DesignWriter
 from linkwork.foundation.angles import FULL_TURN
 from linkwork.foundation.arrays import Array, IndexArray
@@ -182,7 +182,7 @@ class FitProblem:
             columns.append(own)
             weights.append(misses.goal.weight)
         return Objectives(
-            names=_told_apart(names),
+            names=told_apart(names),
             columns=tuple(columns),
             weights=np.array(weights),
             bounds=tuple(bounds),
@@ -393,11 +393,3 @@ class FitProblem:
             start=known,
             interrupted=fit.interrupted,
         )
-
-
-def _told_apart(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of which equal ones are numbered."""
-    return tuple(
-        name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
-        for k, name in enumerate(names)
-    )

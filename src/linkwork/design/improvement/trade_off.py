@@ -13,6 +13,7 @@ system identification and system optimization, IEEE Transactions on Systems, Man
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ import numpy as np
 from linkwork.foundation.arrays import Array, IndexArray
 from linkwork.numerics.lane_least_squares import Residuals
 
-__all__ = ["Objectives", "TradeOff"]
+__all__ = ["Objectives", "TradeOff", "told_apart"]
 
 _STIFF = 10.0  # weight of limits, in spans of their objectives: their shifts converge faster
 _MARGIN = 1e-9  # of an objective's scale: by which limits hold in the end
@@ -148,3 +149,11 @@ class TradeOff:
     def update(self, lanes: IndexArray) -> None:
         """New shifts for lanes that were evaluated."""
         self._shift[lanes] = self._new[lanes]
+
+
+def told_apart(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of which equal ones are numbered."""
+    return tuple(
+        name if name not in names[:k] else f"{name} ({1 + list(names[:k]).count(name)})"
+        for k, name in enumerate(names)
+    )

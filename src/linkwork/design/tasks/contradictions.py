@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
 from linkwork.design.improvement.settings import Problems
+from linkwork.design.tasks.curve_file import Curve
 from linkwork.design.tasks.task_conditions import Given, Point, PrecisionPosition, Wanted
 from linkwork.design.tasks.wishes import Wishes, distances_to_segments
 from linkwork.foundation.arrays import Array, CountArray
 from linkwork.foundation.rounding import EPSILON, EQUAL_ROWS
 
-__all__ = ["length_contradictions", "outside_range", "place_contradictions", "unreached_places"]
+__all__ = [
+    "length_contradictions",
+    "outside_range",
+    "place_contradictions",
+    "repeated_inputs",
+    "repeated_places",
+    "unreached_places",
+]
 
 _Key = tuple[str | int, ...]
 _LENGTHS = ("wanted", "lengths")
@@ -109,6 +117,42 @@ def outside_range(
         at = at + np.round((0.5 * (low + high) - at) / turn) * turn
     for k in np.flatnonzero((at < low - slack) | (at > high + slack)):
         yield int(k), float(at[k]), f"outside the driven range from {low:g} to {high:g}"
+
+
+def repeated_places(
+    positions: Sequence[PrecisionPosition], curve: Curve | None, turn: float, *, once: bool
+) -> Problems:
+    """Equal positions, and without ``once`` equal neighbours."""
+    listed = list(enumerate(positions))
+    for (j, one), (k, other) in combinations(listed, 2) if once else pairwise(listed):
+        same = one.point == other.point
+        if one.angle is not None and other.angle is not None:
+            same &= math.remainder(one.angle - other.angle, turn) == 0
+        if same and curve is not None:
+            first, again = curve.lines[j], curve.lines[k]
+            yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
+        elif same:
+            yield ("positions", k), f"is the same as position {j + 1}: leave one out"
+
+
+def repeated_inputs(
+    positions: Sequence[PrecisionPosition], curve: Curve | None, turn: float
+) -> Problems:
+    """Equal inputs, whole turns aside; the last one of a whole turn may be the first."""
+    known: dict[float, tuple[int, float]] = {}
+    for k, position in enumerate(positions):
+        if position.input is None:
+            continue
+        at = math.remainder(position.input, turn)
+        j, first = known.setdefault(at, (k, position.input))
+        around = (j, k) == (0, len(positions) - 1) and first != position.input
+        if j == k or around:
+            continue
+        if curve is None:
+            yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
+        else:
+            told = f"line {curve.lines[k]} has the input of line {curve.lines[j]}"
+            yield ("curve", "file"), f"{told}: move one of them"
 
 
 def _pivots(wanted: Wanted, given: Given) -> Iterator[tuple[_Key, Sequence[Point]]]:

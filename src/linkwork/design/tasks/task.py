@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations, islice, pairwise
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,8 @@ from linkwork.design.loops.candidates import GUIDED
 from linkwork.design.tasks.contradictions import (
     length_contradictions,
     place_contradictions,
+    repeated_inputs,
+    repeated_places,
     unreached_places,
 )
 from linkwork.design.tasks.curve_file import Curve
@@ -176,8 +178,13 @@ class Task:
             for name in ("tolerance", "angle_tolerance"):
                 if getattr(position, name) < 0:
                     yield ("positions", k, name), "must not be negative"
-        repeated = [*self._repeated_positions()] or [*self._repeated_inputs()]
-        yield from repeated
+        turn = self.angle.turn
+        # a curve may come back to a point
+        once = not self.is_approximate
+        repeated = [*repeated_places(self.positions, self.curve, turn, once=once)]
+        # inputs of sliders have no turns
+        turn = math.inf if self.kind == "improve" else turn
+        yield from repeated or repeated_inputs(self.positions, self.curve, turn)
         bare = [k for k, position in enumerate(self.positions) if not position.tolerance]
         if self.is_approximate and 0 < len(bare) < count:
             told = "is missing: points that are met by least squares all have tolerances, or none"
@@ -270,39 +277,6 @@ class Task:
             yield ("given", "lengths"), self.given.coupler_trouble
         if "A0 B0" in lengths and len(self.given.fixed_pivots) == 2:
             yield ("given", "lengths", "A0 B0"), "is fixed by the given pivots: leave it out"
-
-    def _repeated_positions(self) -> Problems:
-        turn = self.angle.turn
-        # a curve may come back to a point
-        listed = list(enumerate(self.positions))
-        pairs = pairwise(listed) if self.is_approximate else combinations(listed, 2)
-        for (j, one), (k, other) in pairs:
-            same = one.point == other.point
-            if one.angle is not None and other.angle is not None:
-                same &= math.remainder(one.angle - other.angle, turn) == 0
-            if same and self.curve is not None:
-                first, again = self.curve.lines[j], self.curve.lines[k]
-                yield ("curve", "file"), f"repeats line {first} in line {again}: leave one out"
-            elif same:
-                yield ("positions", k), f"is the same as position {j + 1}: leave one out"
-
-    def _repeated_inputs(self) -> Problems:
-        """Equal inputs, whole turns aside; the last one of a whole turn may be the first."""
-        turn = math.inf if self.kind == "improve" else self.angle.turn
-        known: dict[float, tuple[int, float]] = {}
-        for k, position in enumerate(self.positions):
-            if position.input is None:
-                continue
-            at = math.remainder(position.input, turn) if turn < math.inf else position.input
-            j, first = known.setdefault(at, (k, position.input))
-            around = (j, k) == (0, len(self.positions) - 1) and first != position.input
-            if j == k or around:
-                continue
-            if self.curve is None:
-                yield ("positions", k, "input"), f"is that of position {j + 1}: move one of them"
-            else:
-                told = f"line {self.curve.lines[k]} has the input of line {self.curve.lines[j]}"
-                yield ("curve", "file"), f"{told}: move one of them"
 
     def _wish_problems(self) -> Problems:
         wanted = self.wanted
