@@ -425,8 +425,8 @@ def test_bounds_that_are_kept_miss_nothing() -> None:
 @pytest.mark.parametrize(
     ("bound", "told"),
     [
-        ({"of": "max(d)", "most": 100}, r"max\(d\) comes up to 128\.\d+, wanted at most 100"),
-        ({"of": "d", "least": 300}, r"d comes down to 1?\d\d\.\d+, wanted at least 300"),
+        ({"of": "max(d)", "most": 100}, r"goal max\(d\) comes up to 128\.\d+, wanted at most 100"),
+        ({"of": "d", "least": 300}, r"goal d comes down to 1?\d\d\.\d+, wanted at least 300"),
     ],
 )
 def test_a_broken_bound_of_a_goal_refuses_a_design(bound: dict[str, Any], told: str) -> None:

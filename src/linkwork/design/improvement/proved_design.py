@@ -61,10 +61,10 @@ def _broken(found: FittedNumbers, k: int) -> Iterator[str]:
         least, most = goal.least, goal.most
         if least is not None and below > 0.0:
             down = told_beside(least - below, least)
-            yield f"{goal.of} comes down to {down}, wanted at least {least:g}"
+            yield f"goal {goal.of} comes down to {down}, wanted at least {least:g}"
         if most is not None and above > 0.0:
             up = told_beside(most + above, most)
-            yield f"{goal.of} comes up to {up}, wanted at most {most:g}"
+            yield f"goal {goal.of} comes up to {up}, wanted at most {most:g}"
 
 
 def interrupted_design(design: ImprovedDesign) -> ImprovedDesign:
