@@ -78,7 +78,7 @@ def test_from_nothing_to_a_task_to_a_mechanism_and_back(
     assert_accessible(page)
     page.get_by_role("button", name="Open as mechanism").click()
     page.locator("#linkwork .lw[data-row]").wait_for()
-    assert page.locator(".lw-busy:not([hidden])").count() == 0
+    page.locator(".lw-busy:not([hidden])").wait_for(state="detached")
     assert lw.loads(bench.text).sweep().found.all()
     page.get_by_role("button", name="Back to five-poses.toml").click()
     page.locator(".lw-task").wait_for()
