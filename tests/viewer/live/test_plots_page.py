@@ -218,7 +218,7 @@ def test_work_is_announced_until_it_is_answered(
     open_live: Open, served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page = open_live()
-    assert page.locator(".lw-busy").is_hidden()
+    page.locator(".lw-busy").wait_for(state="hidden")
     seen = threading.Event()
     monkeypatch.setattr(type(served.workbench), "text", property(lambda bench: waiting(bench)))
 
