@@ -134,7 +134,10 @@ def test_a_bound_ends_a_front_and_one_that_nothing_keeps_is_told() -> None:
     assert min(strokes) >= 50.0
     (broken,) = crank.improve([*goals, {"of": "max(d)", "most": 10}], **given)
     assert not broken.sound
-    assert broken.message.endswith("no design keeps the bounds of all goals")
+    (told,) = broken.broken
+    assert told.startswith("goal max(d) comes up to ")
+    assert told.endswith(", wanted at most 10")
+    assert told in broken.message
 
 
 @pytest.mark.parametrize("until", [0.1, 0.35])

@@ -59,7 +59,7 @@ def synthesize(
     options = FolderOptions(refused=every, draw=draw, csv=csv, html=html, fresh=fresh)
     if output is None and any((every, draw, csv, html, fresh)):
         raise InputError("--all, --draw, --csv, --html and --fresh need a folder: add -o FOLDER")
-    # files that a task names lie beside it
+    # a task in a file finds the files that it names beside it
     asked = Task.load(task) if os.path.exists(task) else Task.loads(*text_of_source(task))
     if output is not None:
         earlier = check_folder(as_path(output), options, asked.described)

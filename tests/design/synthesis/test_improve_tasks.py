@@ -470,3 +470,15 @@ def test_a_task_has_the_units_of_the_mechanism_it_improves(tmp_path: Path) -> No
         with pytest.raises(MechanismFileError, match=f"write all numbers in {own}") as caught:
             lw.Task.load(tmp_path / "task.toml")
         assert [problem.line for problem in caught.value.problems] == [4]
+    # what is wrong with the mechanism is told of its own file
+    (tmp_path / "task.toml").write_text(task)
+    for wrong in (text.replace('"rad"', '"grad"'), "x = ["):
+        (tmp_path / "bar.toml").write_text(wrong)
+        with pytest.raises(MechanismFileError, match=r"in .*bar\.toml"):
+            lw.Task.load(tmp_path / "task.toml").solve()
+    absent = task.replace("bar.toml", "none.toml").replace(
+        "[improve]", 'length = "in"\n[improve]', 1
+    )
+    (tmp_path / "task.toml").write_text(absent)
+    with pytest.raises(MechanismFileError, match="is no file in the folder of the task"):
+        lw.Task.load(tmp_path / "task.toml").solve()

@@ -90,9 +90,6 @@ def front_designs(
                 path, found, lane = lanes[k]
                 design = fitted_design(model, numbers, path, found, lane)
                 design = _measured(design, numbers, box, path, goals, found.t[lane])
-                if broken[k] > BROKEN:
-                    message = f"{design.message}; no design keeps the bounds of all goals"
-                    design = replace(design, sound=False, message=message)
                 if is_sound(design):
                     # equal designs would take its place by rounding
                     values[alike(values, k, spans)] = np.inf

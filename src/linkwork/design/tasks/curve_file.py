@@ -131,9 +131,9 @@ def _rows(text: str, name: str) -> list[tuple[int, list[float]]]:
                 list(_COLUMNS),
             ):
                 continue
-            shown, other = as_told(",".join(cells)), ";" in cells[0] or "\t" in cells[0]
+            shown, parted = as_told(",".join(cells)), ";" in cells[0] or "\t" in cells[0]
             told = f'line {line} of "{name}" holds {shown}: numbers are wanted'
-            told += ", with commas between them and points for decimals" * other
+            told += ", with commas between them and points for decimals" * parted
             raise _problem(("curve", "file"), told) from None
         if not 2 <= len(row) <= len(_COLUMNS) or not all(map(math.isfinite, row)):
             told = f'line {line} of "{name}" is no point: give x, y and, if timed, input'

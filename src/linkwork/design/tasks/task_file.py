@@ -31,8 +31,6 @@ from linkwork.textfile.structure import Structure
 from linkwork.textfile.toml_text import bytes_of, data_of, text_of
 from linkwork.textfile.writer import write_tables
 
-_Units = tuple[str, AngleUnit]
-
 __all__ = ["located_task_error", "read_task", "read_task_text", "task_of_tables"]
 
 
@@ -113,38 +111,40 @@ def _curve(table: Mapping[str, Any], folder: Path | None, turn: float) -> Curve:
         raise MechanismError([problem], "the task") from None
 
 
-def _own_mechanism(names: tuple[str, ...], folder: Path | None) -> str | None:
+def _own_mechanism(name: str, folder: Path | None) -> str | None:
     """The text of the user's mechanism that a task improves, if there is its file."""
-    if len(names) != 1 or names[0] in examples():
+    if name in examples():
         return None
-    path = (folder or Path()) / names[0]
+    path = (folder or Path()) / name
     return text_of(bytes_of(path, str(path)), str(path)) if path.is_file() else None
 
 
-def _own_units(content: Mapping[str, Any], names: tuple[str, ...], text: str | None) -> _Units:
-    """The units of a task that improves a mechanism: those of its file, which it may repeat.
+def _units(content: Mapping[str, Any], mechanism: str, text: str | None) -> tuple[str, AngleUnit]:
+    """The units of a task; one that improves a mechanism has those of its file.
+
+    ``text``: of this mechanism; ``None`` if there is none.
 
     Raises
     ------
     MechanismError
         If the task has others.
     """
-    usual = {"length": Description.length, "angle": Description.angle.value}
-    if text is None and names[0] in examples():
-        text = example_text(names[0])
-    own: Mapping[str, Any] = {}
-    with suppress(MechanismFileError):  # which is told when the mechanism is read
-        own = data_of(text or "", names[0])
-    units = {key: str(own.get(key, unit)) for key, unit in usual.items()}
-    told = f"is not the unit of {names[0]}: leave it out, and write all numbers in"
+    length, angle = Description.length, Description.angle
+    if text is None:
+        return content.get("length", length), AngleUnit(content.get("angle", angle.value))
+    # what is wrong in the file of the mechanism is told when it is read
+    with suppress(MechanismFileError, ValueError):
+        own = data_of(text, mechanism)
+        length, angle = str(own.get("length", length)), AngleUnit(own.get("angle", angle.value))
+    told = f"is not the unit of {mechanism}: leave it out, and write all numbers in"
     problems = [
         Problem(key=(key,), message=f"{told} {unit}")
-        for key, unit in units.items()
+        for key, unit in (("length", length), ("angle", angle.value))
         if content.get(key, unit) != unit
     ]
     if problems:
         raise MechanismError(problems, "the task")
-    return units["length"], AngleUnit(units["angle"])
+    return length, angle
 
 
 def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None = None) -> Task:
@@ -152,11 +152,10 @@ def _task(content: Mapping[str, Any], text: str, stem: str, folder: Path | None 
     _check_numbers(content)
     mechanism = content.get("mechanism", MECHANISMS)
     mechanisms = (mechanism,) if isinstance(mechanism, str) else tuple(mechanism)
-    own, length = None, content.get("length", Task.length)
-    angle = AngleUnit(content.get("angle", Task.angle.value))
-    if content["task"] == "improve":
-        own = _own_mechanism(mechanisms, folder)
-        length, angle = _own_units(content, mechanisms, own)
+    improves = content["task"] == "improve" and len(mechanisms) == 1
+    own = _own_mechanism(mechanisms[0], folder) if improves else None
+    known = example_text(mechanisms[0]) if improves and mechanisms[0] in examples() else own
+    length, angle = _units(content, mechanisms[0], known)
     curve = _curve(content["curve"], folder, angle.turn) if "curve" in content else None
     return Task(
         kind=content["task"],
