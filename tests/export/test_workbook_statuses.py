@@ -120,4 +120,4 @@ def test_a_changed_grey_cell_is_said_not_to_be_solved(tmp_path: Path) -> None:
 def test_a_redundant_link_that_does_not_fit_is_named(tmp_path: Path) -> None:
     sheet = written(tmp_path, lw.example("scissor-three-bars"), start=60, stop=90, step=10)
     sheet.set("OC", 61.0)
-    assert statuses(sheet) == {"redundant link bar2 does not fit": 4}
+    assert statuses(sheet) == {"redundant link bar3 does not fit": 4}

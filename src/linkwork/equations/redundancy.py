@@ -62,8 +62,9 @@ def released_links(
         size = np.linalg.norm(stress, axis=0)
         if size.max() <= _STRESSED * largest:
             break
-        # among links with similar force, the last in the file is the redundant one
-        chosen = int(np.flatnonzero(size >= _ALIKE * size.max())[-1])
+        # among links with similar force, the last in the file is the redundant one; of equal bars
+        # some carry exactly half the force of others, whichever way the forces are rounded
+        chosen = int(np.flatnonzero(size >= (_ALIKE - _STRESSED) * size.max())[-1])
         found.append(bars[chosen])
         direction = stress[:, chosen] / size[chosen]
         # the remaining self-stresses do not load the released link
