@@ -37,6 +37,7 @@ from tests.campaigns.nine_points import nine_point_campaign
 from tests.campaigns.poses import pose_campaign
 from tests.campaigns.positions import library_positions, random_position
 from tests.campaigns.precision_points import precision_campaign
+from tests.campaigns.processors import processor_campaign
 from tests.campaigns.steps import judge_steps
 from tests.campaigns.study import study_campaign
 from tests.campaigns.whole_motions import EVERY as MOTIONS, whole_motion_campaign
@@ -178,6 +179,7 @@ WHOLE: dict[str, tuple[Callable[[int], tuple[Counter[str], list[str]]], int]] = 
     "workbooks": (workbook_campaign, 100),
     "fuzz": (fuzz_campaign, 100_000),
     "monkey": (monkey_campaign, 10_000),
+    "processors": (processor_campaign, 6),  # pairs of kernel and SIMD level
 }
 
 
