@@ -28,11 +28,10 @@ import linkwork as lw
 from tests.campaigns.snapshot_mechanisms import (
     designs_of,
     mechanism_of,
-    names_of,
     wants_circuits,
 )
 
-__all__ = ["Record", "Snapshot", "load", "record_of", "save", "take"]
+__all__ = ["Record", "Snapshot", "attempt", "load", "record_of", "save", "take"]
 
 Array = npt.NDArray[np.float64]
 T = TypeVar("T")
@@ -105,28 +104,28 @@ _COUNTED = {
 def record_of(name: str) -> Record:
     """What the mechanism of this name does."""
     record = Record(name)
-    mechanism = _attempt(record, "make", lambda: mechanism_of(name))
+    mechanism = attempt(record, "make", lambda: mechanism_of(name))
     if mechanism is None:
         return record
-    motion = _attempt(record, "sweep", mechanism.sweep)
+    motion = attempt(record, "sweep", mechanism.sweep)
     if motion is not None:
         _add_motion(record, motion)
-    configurations = _attempt(record, "configurations", mechanism.configurations)
+    configurations = attempt(record, "configurations", mechanism.configurations)
     if configurations is not None:
         _add_configurations(record, configurations)
     if wants_circuits(name):
-        circuits = _attempt(record, "circuits", mechanism.circuits)
+        circuits = attempt(record, "circuits", mechanism.circuits)
         if circuits is not None:
             _add_circuits(record, circuits)
     designs = {} if motion is None else designs_of(name, mechanism)
     if motion is not None and designs:
-        family = _attempt(record, "family", lambda: mechanism.family(designs).sweep(threads=1))
+        family = attempt(record, "family", lambda: mechanism.family(designs).sweep(threads=1))
         if family is not None:
             _add_family(record, family, motion)
     return record
 
 
-def _attempt(record: Record, section: str, call: Callable[[], T]) -> T | None:
+def attempt(record: Record, section: str, call: Callable[[], T]) -> T | None:
     """The result of a call, or the reason why there is none; what is not ours is a crash."""
     begin, found = process_time(), None
     try:
@@ -153,6 +152,7 @@ def _add_motion(record: Record, motion: lw.Motion) -> None:
     record.say("sweep.rows.added", motion.added.tolist())
     record.note("sweep.coordinates.value", np.stack([motion[name] for name in columns], axis=-1))
     record.note("sweep.coordinates.condition", motion.condition)
+    record.note("sweep.radii.value", motion.radius)
     _add_limits(record, "sweep", motion.limits)
 
 
@@ -258,15 +258,16 @@ def _add_family(record: Record, family: Any, motion: lw.Motion) -> None:
 
 
 def take(
-    count: int,
+    names: Sequence[str],
     processes: int,
     progress: Callable[[int, int], None] | None = None,
+    make: Callable[[str], Record] = record_of,
 ) -> Snapshot:
-    """Records of the library and of so many random mechanisms."""
-    begin, names, records = perf_counter(), names_of(count), {}
+    """Records of mechanisms by their names; ``make`` records one."""
+    begin, records = perf_counter(), {}
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        for record in pool.map(record_of, names, chunksize=4):
+        for record in pool.map(make, names, chunksize=4):
             records[record.name] = record
             if progress is not None:
                 progress(len(records), len(names))

@@ -3,9 +3,10 @@
 How near: 1e-12 of the mechanism's size, which is its largest coordinate; of an angle the larger of
 itself and 1 rad; of other outputs their largest value. A position is known no better than rounding
 times the condition of its equations, so that 4e-16 times the condition number of the row is added,
-up to a thousandth of the size. Ranges and limits may differ by their brackets, too: those say where
-a limit lies to rounding, or between which values it was not located. Conditions, radii, numbers of
-iterations and times are not compared, messages only on request.
+up to a thousandth of the size. Radii of proofs may differ by a factor of 2. Ranges and limits may
+differ by their brackets, too: those say where a limit lies to rounding, or between which values it
+was not located. Conditions, numbers of iterations and times are not compared, messages only on
+request.
 """
 
 from __future__ import annotations
@@ -27,6 +28,9 @@ _NEAR = 1e-12
 _ROUNDING = 4e-16  # times the condition
 _MOST = 1e-3  # of the size, whatever the condition
 _LIMIT_OF_DESIGN = 1e-10  # ends of designs come without a bracket
+_RADII = 2.0
+#: Of numbers that are integrated, fitted or printed, relative to the largest of their column.
+_SECTIONS = {"simulation": 1e-9, "synthesis": 1e-7, "page": 1e-6, "3mf": 1e-6, "stl": 1e-6}
 _RADIAN = {"deg": 180.0 / np.pi, "rad": 1.0}
 _SHOWN = 20
 
@@ -151,7 +155,9 @@ def _compare_numbers(found: Comparison, before: Record, after: Record) -> None:
             shapes = ["nothing" if x is None else f"shape {x.shape}" for x in (one, other)]
             found.add(before.name, path, 1, [Difference(before.name, path, "all rows", *shapes)])
             continue
-        if path.endswith("coordinates.value"):
+        if path.endswith("radii.value"):
+            allowed, size = np.fmax(one, other) / _RADII, np.ones_like(one)
+        elif path.endswith("coordinates.value"):
             allowed, size = _allowed_coordinates(before, path, one)
         else:
             allowed, size = _allowed(before, path, one)
@@ -191,6 +197,11 @@ def _allowed(record: Record, path: str, values: Array) -> tuple[Array, Array]:
     """For ranges and limits, and what gaps are measured by."""
     size = np.fmax(1.0, np.where(np.isfinite(values), np.abs(values), 1.0))
     near = _LIMIT_OF_DESIGN if path.startswith("family.limits") else _NEAR
+    if ".numbers." in path:
+        near = max(_SECTIONS.get(path.partition(".")[0], _NEAR), _NEAR)
+        size = np.fmax(
+            size, np.max(np.where(np.isfinite(values), np.abs(values), 0.0), axis=0, initial=1.0)
+        )
     slack = record.numbers.get(f"{path} slack", np.zeros(len(values)))
     slack = np.where(np.isfinite(slack), slack, 0.0)
     return near * size + slack.reshape(slack.shape + (1,) * (values.ndim - 1)), size
