@@ -18,7 +18,7 @@ from linkwork.kernels.curvature import Curvature, PhaseGroups
 from linkwork.kernels.exact_rows import exact_line, exact_rows
 from linkwork.kernels.law_row import TURN_ROUNDING, LawRow
 from linkwork.kernels.phasor_rows import PhasorRows
-from linkwork.kernels.real_rows import FunctionRow, LinearRows, hessian_of
+from linkwork.kernels.real_rows import EnclosedRow, FunctionRow, LinearRows, hessian_of
 from linkwork.kernels.single.single_laws import SingleWithLaws
 from linkwork.kernels.single.single_position import SinglePosition
 
@@ -197,6 +197,23 @@ class LoopTable:
     def has_curvature_bound(self) -> bool:
         """Whether :meth:`curvature` knows a bound: not for rows of any formula."""
         return len(self._bounded) == len(self.functions)
+
+    @property
+    def is_enclosed(self) -> bool:
+        """Whether :meth:`enclosure` knows bounds: of rows of any formula alone."""
+        only = not self.loops.rows and not len(self.linear.constant) and bool(self.functions)
+        return only and all(isinstance(row, EnclosedRow) for row in self.functions)
+
+    def enclosure(self, v: Array, box: Array) -> tuple[Array, Array]:
+        """Lowest and highest F, (2, B, m), and dF/dv, (2, B, m, N), over boxes around v (B, N)
+        with half widths ``box`` (B, N).
+        """
+        values = np.zeros((2, len(v), self.equations))
+        slopes = np.zeros((2, len(v), self.equations, self.variables))
+        for k, row in enumerate(self.functions):
+            assert isinstance(row, EnclosedRow)
+            values[:, :, k], slopes[:, :, k, list(row.variables)] = row.enclosure(v, box)
+        return values, slopes
 
     @property
     def is_straight(self) -> bool:

@@ -180,9 +180,7 @@ def end_at_dead_point(
     if not certify:
         return found
     if turn.proof is None:
-        bounded = all(block.system.has_curvature_bound for block in drive.solver.blocks)
-        why = Certification.POSITION_NOT_PROVED if bounded else Certification.NO_BOUND
-        return replace(found, certification=why)
+        return replace(found, certification=Certification.POSITION_NOT_PROVED)
     return replace(
         found,
         certification=Certification.CERTIFIED if joined else Certification.MOTION_NOT_PROVED,
