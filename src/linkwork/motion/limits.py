@@ -15,6 +15,7 @@ from linkwork.foundation.rounding import EPSILON
 from linkwork.foundation.status import Status
 from linkwork.motion.aligned_links import links_in_line
 from linkwork.motion.drive import Drive
+from linkwork.motion.locking_blocks import Lock, locks_ahead, sound_nodes
 from linkwork.motion.model import Model
 from linkwork.numerics.continuation.branch_tracking import End, Node, Track
 from linkwork.numerics.continuation.change_point import (
@@ -39,10 +40,6 @@ __all__ = [
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
-# Condition up to which a node is far enough from a dead point to begin the search for it. Nodes
-# must be proved up to 1e5 (motion.proving) and exist up to 3e6 (TrackOptions): a tenth of the first
-# leaves no doubt that this one is proved.
-_SOUND = 1e4
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
@@ -110,9 +107,14 @@ def ends_of(drive: Drive, track: Track, certify: bool = False) -> tuple[BranchEn
 def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bool) -> BranchEnd:
     if end.status is not Status.START_SINGULAR:
         crossing = locate_change_point(drive.solver, drive.path, nodes[-1], side)
+        ahead = None if crossing is not None else _turn_ahead(drive, nodes, side)
+        if ahead is None or not ahead.located:
+            lock = locks_ahead(drive, nodes, side)
+            # another block may cross branches where one locks: the branch ends all the same
+            if lock is not None and (crossing is None or not _is_before(crossing, lock, side)):
+                return _locked_end(drive, lock, side, certify)
         if crossing is not None:
             return _crossing_end(drive, nodes, crossing, side, certify)
-        ahead = _turn_ahead(drive, nodes, side)
         if ahead is not None:
             return _dead_end(drive, nodes[-1], ahead, side, certify)
     edges = sorted((end.reached, end.failed))
@@ -130,13 +132,9 @@ def _end(drive: Drive, nodes: Sequence[Node], end: End, side: float, certify: bo
 
 
 def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead | None:
-    """The dead point ahead of a track's last nodes.
-
-    First from a node that is proved with the others; rounding is worst at the very last ones.
-    """
-    sound = next((node for node in reversed(nodes) if node.nearness < _SOUND), nodes[-1])
+    """The dead point ahead of a track's last nodes."""
     best: TurnAhead | None = None
-    for last in (sound, nodes[-1]) if sound is not nodes[-1] else (sound,):
+    for last in sound_nodes(nodes):
         # the last nodes are ill-conditioned; a node somewhat earlier gives the same dead point
         ahead = turn_beyond(drive.leads, last.v, last.first, side)
         if ahead is not None and (best is None or ahead.located):
@@ -144,6 +142,29 @@ def _turn_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> TurnAhead |
         if best is not None and best.located:
             break
     return best
+
+
+def _is_before(crossing: ChangePoint, lock: Lock, side: float) -> bool:
+    """Whether a change point is met before blocks lock."""
+    ends = [sorted(side * edge for edge in place.bracket) for place in (crossing, lock)]
+    return ends[0][1] < ends[1][0]
+
+
+def _locked_end(drive: Drive, lock: Lock, side: float, certify: bool) -> BranchEnd:
+    """The end of a branch where blocks lock at one input, each proved by itself."""
+    low, high = lock.bracket
+    place = Crossing(
+        t=lock.t, v=lock.v, directions=np.empty((2, 0)), bracket=lock.bracket, located=True
+    )
+    return BranchEnd(
+        side=side,
+        limit=_locate_limit(drive, place, LimitKind.DEAD_POINT, lock.blocks),
+        t=lock.t,
+        slack=max(high - lock.t, lock.t - low),
+        v=_touching(drive, lock.v),
+        first=np.full(len(lock.v), np.nan),
+        certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
+    )
 
 
 def _dead_end(drive: Drive, last: Node, ahead: TurnAhead, side: float, certify: bool) -> BranchEnd:
@@ -243,7 +264,7 @@ def end_at_change_point(
 
     ``v``, ``first`` (N,): the position, and its derivatives on the branch that was followed.
     """
-    solver, model, t = drive.solver, drive.model, crossings[0].t
+    model, t = drive.model, crossings[0].t
     low = min(crossing.bracket[0] for crossing in crossings)
     high = max(crossing.bracket[1] for crossing in crossings)
     place = Crossing(
@@ -259,12 +280,6 @@ def end_at_change_point(
     for crossing in crossings:
         onward |= _rates(model, crossing.onward)
         other |= _rates(model, crossing.other)
-    done = solver.solve(
-        # J is singular here: a step of Newton-Raphson would lead away, so only residuals are
-        # checked
-        v[None, :],
-        replace(solver.options, equation_tolerance=_TOUCHING, max_steps=8),
-    )
     return BranchEnd(
         side=side,
         limit=replace(
@@ -272,11 +287,21 @@ def end_at_change_point(
         ),
         t=t,
         slack=max(high - t, t - low),
-        v=done.v[0] if done.status[0] == Status.CONVERGED.code else None,
+        v=_touching(drive, v),
         first=first,
         crossings=crossings,
         certification=Certification.POSITION_NOT_PROVED if certify else Certification.NOT_ASKED,
     )
+
+
+def _touching(drive: Drive, v: Array) -> Array | None:
+    """A position (N,) at which blocks are singular, if all equations hold there."""
+    done = drive.solver.solve(
+        # a step of Newton-Raphson would lead away, so only residuals are checked
+        v[None, :],
+        replace(drive.solver.options, equation_tolerance=_TOUCHING, max_steps=8),
+    )
+    return done.v[0] if done.status[0] == Status.CONVERGED.code else None
 
 
 class _EndPlace(Protocol):
