@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.certification import Certification
 from linkwork.foundation.rounding import EPSILON
@@ -23,6 +24,7 @@ from linkwork.numerics.continuation.change_point import (
     Crossing,
     locate_change_point,
     most_singular,
+    singular_blocks,
 )
 from linkwork.numerics.continuation.curve_proof import same_solution
 from linkwork.numerics.continuation.local_parametrization import Parametrization
@@ -36,10 +38,14 @@ __all__ = [
     "dead_point_limit",
     "end_at_change_point",
     "end_at_dead_point",
+    "kind_of_crossing",
     "ends_of",
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all
+# Ratio of singular values up to which a block locks with another: it grows with the root of the
+# distance from a dead point, so that sides that differ by rounding keep it below.
+_IN_LINE = 1e-6
 _TOUCHING = 1e-12  # residual at a located crossing, where Newton-Raphson must not take a step
 
 
@@ -158,7 +164,7 @@ def _locked_end(drive: Drive, lock: Lock, side: float, certify: bool) -> BranchE
     )
     return BranchEnd(
         side=side,
-        limit=_locate_limit(drive, place, LimitKind.DEAD_POINT, lock.blocks),
+        limit=_locate_limit(drive, place, LimitKind.DEAD_POINT, _locking(drive, lock.v)),
         t=lock.t,
         slack=max(high - lock.t, lock.t - low),
         v=_touching(drive, lock.v),
@@ -216,13 +222,24 @@ def dead_point_limit(drive: Drive, turn: TurningPoint) -> Limit:
 
 
 def _locking(drive: Drive, v: Array) -> tuple[int, ...]:
-    """The number of the block that locks at a position (N,), if one does."""
+    """The numbers of the blocks that lock at a position (N,): the one nearest to a singular
+    position, and those that are as good as singular, too.
+    """
     block = most_singular(drive.solver, v)
-    return () if block is None else (block,)
+    if block is None:
+        return ()
+    return tuple(sorted({block, *singular_blocks(drive.solver, v, _IN_LINE)}))
+
+
+def kind_of_crossing(leads: ParametrizedTable, crossing: Crossing) -> LimitKind:
+    """Where curves cross along both of which the input turns back, several blocks lock at once."""
+    p = leads.parameter
+    moves = np.abs(crossing.directions[:, p] / leads.scale[p]) > _MOVES
+    return LimitKind.CHANGE_POINT if moves.any() else LimitKind.DEAD_POINT
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """The limit at a change point between two curves, in file units."""
+    """The limit at which two curves cross, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []
@@ -233,7 +250,9 @@ def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
     blocks = _locking(drive, crossing.v)
-    limit = _locate_limit(drive, crossing, LimitKind.CHANGE_POINT, blocks)
+    limit = _locate_limit(drive, crossing, kind_of_crossing(leads, crossing), blocks)
+    if limit.kind is LimitKind.DEAD_POINT:
+        return limit
     return replace(limit, onward=onward, other=other)
 
 

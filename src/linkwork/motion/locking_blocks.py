@@ -34,11 +34,10 @@ _APART = 16.0 * EPSILON  # relative: dead points nearer to each other are at one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Lock:
-    """Blocks that lock at one value ``t`` of the path, within ``bracket``, proved; ``v`` (N,): the
+    """A value ``t`` of the path at which blocks lock, within ``bracket``, proved; ``v`` (N,): the
     position, as it was before for all variables that these blocks do not need.
     """
 
-    blocks: tuple[int, ...]
     t: float
     bracket: tuple[float, float]
     v: Array
@@ -57,7 +56,7 @@ def locks_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> Lock | None
     if not found:
         return None
     low, high = found[0].bracket
-    v, together = found[0].v.copy(), []
+    v = found[0].v.copy()
     for lock in found:
         slack = _APART * max(1.0, abs(lock.t))
         if lock.bracket[0] > high + slack or lock.bracket[1] < low - slack:
@@ -65,10 +64,9 @@ def locks_ahead(drive: Drive, nodes: Sequence[Node], side: float) -> Lock | None
         low, high = min(low, lock.bracket[0]), max(high, lock.bracket[1])
         moved = lock.v != nodes[-1].v
         v[moved] = lock.v[moved]
-        together.append(lock.blocks[0])
     t = found[0].t
     v[drive.solver.unknowns :] = drive.path.at(t)
-    return Lock(blocks=tuple(sorted(together)), t=t, bracket=(low, high), v=v)
+    return Lock(t=t, bracket=(low, high), v=v)
 
 
 def _lock(drive: Drive, nodes: Sequence[Node], block: int, side: float) -> Lock | None:
@@ -94,7 +92,7 @@ def _lock(drive: Drive, nodes: Sequence[Node], block: int, side: float) -> Lock 
         t, *edges = ((x - origin) / rate for x in (ahead.turn.t, *ahead.turn.bracket))
         v = nodes[-1].v.copy()
         v[order] = ahead.turn.v
-        return Lock(blocks=(block,), t=float(t), bracket=(min(edges), max(edges)), v=v)
+        return Lock(t=float(t), bracket=(min(edges), max(edges)), v=v)
     return None
 
 

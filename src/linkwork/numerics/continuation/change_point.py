@@ -331,9 +331,9 @@ def most_singular(solver: BlockSolver, v: Array) -> int | None:
     return int(np.argmin(ratios))
 
 
-def singular_blocks(solver: BlockSolver, v: Array) -> list[int]:
-    """The blocks that are near a singular position at v (N,)."""
-    return [block for block, ratio in enumerate(_ratios(solver, v)) if ratio <= _FAR]
+def singular_blocks(solver: BlockSolver, v: Array, most: float = _FAR) -> list[int]:
+    """The blocks that are near a singular position at v (N,): up to this ratio."""
+    return [block for block, ratio in enumerate(_ratios(solver, v)) if ratio <= most]
 
 
 def _ratios(solver: BlockSolver, v: Array) -> Iterator[float]:
