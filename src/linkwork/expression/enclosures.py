@@ -135,8 +135,9 @@ class _EnclosureArithmetic(Arithmetic["Enclosure"]):
 
     def power(self, x: Enclosure, y: Enclosure) -> Enclosure:
         """x to the power y; an exponent that is no whole number needs a positive base."""
-        number = float(y.v.low) if np.size(y.v.low) == 1 else np.nan
-        if not (number == y.v.high and number.is_integer()) or np.any(y.d.high) or np.any(y.d.low):
+        # a constant is no array of places
+        number = float(y.v.low) if np.ndim(y.v.low) == 0 and y.v.low == y.v.high else np.nan
+        if not number.is_integer():
             return _exp(y * _ln(x))
         whole = int(abs(number))
         found = x.chain(x.v**whole, whole * x.v ** max(whole - 1, 0))
