@@ -122,7 +122,9 @@ def root_campaign(seed: int, count: int) -> tuple[Counter[str], list[str]]:
         position = lw.plain_equations(
             angle="rad", equations=case.equations, guess=case.guess
         ).solve()
-        kind = ("without a root", "with a simple root")[case.order] if case.order < 2 else "multiple"
+        kind = (
+            ("without a root", "with a simple root")[case.order] if case.order < 2 else "multiple"
+        )
         counts[f"{kind}: {position.status.label}"] += 1
         found = position.status.ok
         if found and case.order != 1:

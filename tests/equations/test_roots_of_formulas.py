@@ -18,9 +18,11 @@ from tests.thinned import thinned
 NOT_PROVED = lw.Status.ROOT_NOT_PROVED
 
 
-def solved(text: str, guess: float = 1.0, **options: bool) -> lw.Position:
+def solved(
+    text: str, guess: float = 1.0, *, certify: bool = True, throw: bool = False
+) -> lw.Position:
     mechanism = lw.plain_equations(angle="rad", equations={"F": text}, guess={"x": guess})
-    return mechanism.solve(**options)
+    return mechanism.solve(certify=certify, throw=throw)
 
 
 @pytest.mark.parametrize("certify", [True, False])

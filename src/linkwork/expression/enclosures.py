@@ -89,11 +89,11 @@ class Interval(Operand):
 
 
 def _least(parts: Sequence[Array]) -> Array:
-    return np.minimum.reduce(np.broadcast_arrays(*parts))
+    return np.asarray(np.minimum.reduce(np.broadcast_arrays(*parts)))
 
 
 def _most(parts: Sequence[Array]) -> Array:
-    return np.maximum.reduce(np.broadcast_arrays(*parts))
+    return np.asarray(np.maximum.reduce(np.broadcast_arrays(*parts)))
 
 
 def _outwards(low: Array, high: Array) -> Interval:
@@ -104,9 +104,7 @@ def _outwards(low: Array, high: Array) -> Interval:
 def widened(low: Array, high: Array) -> Interval:
     """Widened by the errors of a library's function."""
     slack = _ULPS * EPSILON
-    return Interval(
-        low - slack * np.abs(low) - _SMALLEST, high + slack * np.abs(high) + _SMALLEST
-    )
+    return Interval(low - slack * np.abs(low) - _SMALLEST, high + slack * np.abs(high) + _SMALLEST)
 
 
 class _EnclosureArithmetic(Arithmetic["Enclosure"]):

@@ -38,8 +38,8 @@ __all__ = [
     "dead_point_limit",
     "end_at_change_point",
     "end_at_dead_point",
-    "kind_of_crossing",
     "ends_of",
+    "kind_of_crossing",
 ]
 
 _MOVES = 1e-7  # weighted: a direction along which the input moves at all

@@ -16,7 +16,7 @@ import numpy as np
 from linkwork.equations.parametrized_table import ParametrizedTable
 from linkwork.foundation.arrays import Array
 from linkwork.foundation.rounding import EPSILON
-from linkwork.kernels.loop_table import TableSplitter
+from linkwork.kernels.table_splitter import TableSplitter
 from linkwork.motion.drive import Drive
 from linkwork.numerics.continuation.branch_tracking import InputPath, Node
 from linkwork.numerics.continuation.change_point import singular_blocks

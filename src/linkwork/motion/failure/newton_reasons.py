@@ -87,7 +87,9 @@ def doubtful_root(block: Block, start: Array, found: Array, options: NewtonOptio
             away = order * ratio * np.abs(steps[-1])
     here = found[block.variables]
     free = excluded(block.system, here) * weights
-    return DoubtfulRoot(f=block.system.residual(here[None, :])[0], free=free, order=order, away=away)
+    return DoubtfulRoot(
+        f=block.system.residual(here[None, :])[0], free=free, order=order, away=away
+    )
 
 
 def trouble_of(

@@ -19,7 +19,14 @@ from linkwork.numerics.block_solver import Block, linearise_block
 from linkwork.numerics.newton import NewtonOptions, newton
 from linkwork.numerics.proof.position_proof import prove_block
 
-__all__ = ["Elsewhere", "ElsewhereAt", "block_positions", "distance", "positions_elsewhere", "roots_in_block"]
+__all__ = [
+    "Elsewhere",
+    "ElsewhereAt",
+    "block_positions",
+    "distance",
+    "positions_elsewhere",
+    "roots_in_block",
+]
 
 _STARTS = 192  # per block that is no dyad
 _MOST_BLOCKS = 8

@@ -28,7 +28,6 @@ __all__ = ["Enclosed", "excluded"]
 #: Half widths of boxes in units of the usual weights: from far beyond them down to rounding.
 _SIZES = 4.0 ** -np.arange(-3.0, 27.0)
 _TWICE = 2.0  # times the error at the centre: room for what the slopes change
-_REFINEMENTS = 3  # of an error bound, each valid by itself
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -79,13 +78,14 @@ class Enclosed:
             box = np.concatenate([w, np.tile(known, (len(_SIZES), 1))], axis=1)
             error, alone = lanes._errors(box)
             isolated = alone.reshape(len(_SIZES), count)
-            holds = (error < w).all(axis=1).reshape(isolated.shape) & isolated
+            inside = np.asarray((error < w).all(axis=1)).reshape(isolated.shape)
+            holds: BoolArray = inside & isolated
         bound = np.where(holds[:, :, None], error.reshape(size.shape), np.inf)
         best = (bound / weights).max(axis=2, initial=0.0).argmin(axis=0)
         rows = np.arange(count)
         # sizes fall: the first box without a second solution is the largest
         isolation = size[isolated.argmax(axis=0), rows]
-        proved = holds.any(axis=0)
+        proved = np.asarray(holds.any(axis=0))
         error_bound = bound[best, rows]
         isolation = np.where(proved[:, None], isolation, 0.0)
         return Radii(
@@ -104,14 +104,11 @@ class Enclosed:
         own = np.abs(np.eye(n) - centre[:, :, :n]) + spread[:, :, :n]
         shift = self.residual + matrix_vector((np.abs(centre) + spread)[:, :, n:], known)
         moved = PROOF_SLACK * matrix_vector(own, w)
-        error = PROOF_SLACK * (shift + moved)
-        alone: BoolArray = (moved < w).all(axis=1)
-        inside = (error < w).all(axis=1)
-        for _ in range(_REFINEMENTS):
-            # the solution lies within e, so that the same bound holds with e for w
-            closer = PROOF_SLACK * (shift + PROOF_SLACK * matrix_vector(own, error))
-            error = np.where(inside[:, None], np.minimum(closer, error), error)
-        return error, alone
+        error = PROOF_SLACK * (shift + moved)  # eq. (33a)
+        alone, inside = (np.asarray((size < w).all(axis=1)) for size in (moved, error))
+        # the solution lies within e, so that the same bound holds with e for w
+        closer = PROOF_SLACK * (shift + PROOF_SLACK * matrix_vector(own, error))
+        return np.where(inside[:, None], np.minimum(closer, error), error), alone
 
 
 def excluded(system: System, v: Array) -> float:
