@@ -140,13 +140,14 @@ def test_a_change_point_before_a_dead_point_is_still_crossed() -> None:
     assert kinds[181.0] is lw.LimitKind.DEAD_POINT
 
 
-def test_circuits_and_explanations_name_the_dead_point_of_both_dyads() -> None:
+def test_circuits_end_and_explanations_point_to_where_both_dyads_lock() -> None:
     two = copies(CASES["mirrored"])
     (circuit,) = two.circuits()
-    assert not circuit.change_points
-    angles = sorted(limit.input for limit in circuit.dead_points)
+    # four curves meet there, so that circuits call it a change point
+    assert not circuit.dead_points
+    angles = sorted(limit.input for limit in circuit.change_points)
     assert angles == pytest.approx([-dead_angle(), dead_angle()], abs=1e-10)
-    assert all(len(limit.loops) == 2 for limit in circuit.dead_points)
+    assert all(len(limit.loops) == 2 for limit in circuit.change_points)
     failure = two.solve(at=180).failure
     assert failure is not None
     assert failure.nearest_kind == "dead point"

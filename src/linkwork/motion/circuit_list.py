@@ -35,7 +35,6 @@ from linkwork.numerics.continuation.local_parametrization import same_position
 from linkwork.numerics.rows import SolvedRows
 from linkwork.results.circuits import Branch, Circuit, Circuits
 from linkwork.results.failure import Failure
-from linkwork.results.limit import LimitKind
 from linkwork.results.motion import Motion
 
 __all__ = ["branch_start", "circuits", "is_branch_name"]
@@ -139,8 +138,6 @@ class _Circuits:
         turns = [turn for arc in group.arcs for walk in arc.walks for turn in walk.turns]
         end = _end_of(group)
         limits = [limit.v for limit in turns] + [limit.v for limit in group.crossings]
-        met = [dead_point_limit(self.drive, turn) for turn in turns]
-        met += [change_point_limit(self.drive, crossing) for crossing in group.crossings]
         solved = Deferred(
             lambda: [b for arc in group.arcs for b in self.explorer.solved_branches(arc)]
         )
@@ -156,8 +153,10 @@ class _Circuits:
             turns=self._turns(around),
             turning={} if around is None else self._turning(around),
             branches=named,
-            dead_points=tuple(limit for limit in met if limit.kind is LimitKind.DEAD_POINT),
-            change_points=tuple(limit for limit in met if limit.kind is LimitKind.CHANGE_POINT),
+            dead_points=tuple(dead_point_limit(self.drive, turn) for turn in turns),
+            change_points=tuple(
+                change_point_limit(self.drive, crossing) for crossing in group.crossings
+            ),
             weakness=Deferred(lambda: self._weakness(limits, solved.value)),
             course=Deferred(lambda: self._motion(solved.value, named)),
         )

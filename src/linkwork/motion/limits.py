@@ -239,7 +239,7 @@ def kind_of_crossing(leads: ParametrizedTable, crossing: Crossing) -> LimitKind:
 
 
 def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
-    """The limit at which two curves cross, in file units."""
+    """The limit at a change point between two curves, in file units."""
     leads = drive.leads
     p = leads.parameter
     rates = []
@@ -250,9 +250,7 @@ def change_point_limit(drive: Drive, crossing: Crossing) -> Limit:
     taking_part = np.any(crossing.directions != 0.0, axis=0)
     onward, other = (_rates(drive.model, np.where(taking_part, rate, np.nan)) for rate in rates)
     blocks = _locking(drive, crossing.v)
-    limit = _locate_limit(drive, crossing, kind_of_crossing(leads, crossing), blocks)
-    if limit.kind is LimitKind.DEAD_POINT:
-        return limit
+    limit = _locate_limit(drive, crossing, LimitKind.CHANGE_POINT, blocks)
     return replace(limit, onward=onward, other=other)
 
 
